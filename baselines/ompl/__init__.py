@@ -1,0 +1,1 @@
+"""Sampling-based planners of the Open Motion Planning Library."""

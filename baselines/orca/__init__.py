@@ -1,0 +1,1 @@
+"""Optimal reciprocal collision avoidance (van den Berg et al. 2011)."""

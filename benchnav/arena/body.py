@@ -1,0 +1,48 @@
+"""Bodies: what moves or is moved by itself and never yields.
+
+A dynamic obstacle follows a motion law; a static obstacle may be re-placed once
+within the episode. Bodies translate and do not turn.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+
+from benchnav.arena.solid import Solid
+from benchnav.arrays import FloatArray
+
+
+class LawKind(IntEnum):
+    """How a body's position depends on time."""
+
+    TRACK = 0  # piecewise linear in time: back-and-forth, waypoint loop, recorded track
+    CIRCLE = 1  # constant angular speed around a centre
+    RELOCATE = 2  # stands, and stands elsewhere from a given time on, once that place is free
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """A motion law with its numbers drawn. Position at time t [s] is a pure function of t,
+    except RELOCATE, which waits until its new place is free."""
+
+    kind: LawKind
+    times: FloatArray  # (W,) [s], rising from 0. CIRCLE: [angular speed rad/s]. RELOCATE: [0, time]
+    points: FloatArray  # (W, 2) [m]. CIRCLE: [centre, (radius, phase angle)]. RELOCATE: [old, new]
+    periodic: bool = (
+        False  # TRACK: starts again after its last time (else it stays at its last point)
+    )
+    phase: float = 0.0  # TRACK: seconds added to the clock
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A solid centred at the origin, and the law that carries it."""
+
+    solid: Solid
+    law: Law
+
+
+def still(position: FloatArray) -> Law:
+    """A law that stays at ``position`` (2,) [m]."""
+    return Law(LawKind.TRACK, np.zeros(1), np.asarray(position, float).reshape(1, 2))

@@ -1,0 +1,79 @@
+"""Solids: the one geometry that is sensed, touched and mapped.
+
+A solid is either a disc or a set of closed loops whose interior lies to the
+*left* of every edge: outer boundaries run counter-clockwise, holes and the
+inside of a walled arena clockwise. A thin wall is a loop that runs there and
+back. Kernels see nothing but capsules: a segment with a radius, where a disc is
+a capsule of length zero and an edge one of radius zero.
+"""
+
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+
+import numpy as np
+
+from benchnav.arrays import FloatArray, IntArray
+
+
+class Kind(IntEnum):
+    """What a ray meets or a body touches."""
+
+    NOTHING = 0
+    AGENT = 1
+    WALL = 2
+    STATIC = 3
+    GOAL = 4
+    DYNAMIC = 5
+
+
+@dataclass(frozen=True, eq=False)
+class Solid:
+    """One wall, static obstacle, or the shape of a body (then centred at its origin)."""
+
+    kind: Kind
+    loops: tuple[
+        FloatArray, ...
+    ] = ()  # each (V, 2) [m], solid to the left, not repeated at its end
+    center: tuple[float, float] = (0.0, 0.0)  # of a disc [m]
+    radius: float = 0.0  # of a disc [m]; 0 where loops say the shape
+
+    @property
+    def is_disc(self) -> bool:
+        """True where the shape is a disc."""
+        return not self.loops
+
+    @cached_property
+    def capsules(self) -> FloatArray:
+        """(P, 5) x0, y0, x1, y1, radius, edges in loop order."""
+        if self.is_disc:
+            return np.array([[*self.center, *self.center, self.radius]])
+        edges = [np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in self.loops]
+        ends = np.vstack(edges)
+        return np.hstack([ends, np.zeros((len(ends), 1))])
+
+    @property
+    def bounding_radius(self) -> float:
+        """Radius [m] of the smallest circle around the origin (bodies) that holds the shape."""
+        c = self.capsules
+        reach = np.hypot(np.maximum(np.abs(c[:, 0]), 0), c[:, 1]) + c[:, 4]
+        return float(reach.max())
+
+    def moved(self, offset: FloatArray) -> "Solid":
+        """The same shape, translated by ``offset`` (2,) [m]."""
+        x, y = float(offset[0]), float(offset[1])
+        loops = tuple(loop + (x, y) for loop in self.loops)
+        return Solid(self.kind, loops, (self.center[0] + x, self.center[1] + y), self.radius)
+
+
+def edge_chain(solid: Solid) -> tuple[IntArray, IntArray]:
+    """Previous and next capsule (P,), (P,) of every capsule along its loop; -1 for a disc."""
+    if solid.is_disc:
+        return np.array([-1]), np.array([-1])
+    before, after, first = [], [], 0
+    for loop in solid.loops:
+        index = np.arange(len(loop))
+        before.append(first + np.roll(index, 1))
+        after.append(first + np.roll(index, -1))
+        first += len(loop)
+    return np.concatenate(before), np.concatenate(after)

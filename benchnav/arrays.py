@@ -1,0 +1,21 @@
+"""Array aliases and the axis alphabet that every docstring uses.
+
+Axes: B worlds, A agents, R rays, K neighbours, E edges, M bodies (dynamic and
+re-placed static obstacles), P primitives (capsules), V vertices, T steps,
+W waypoints. A trailing 2 is (x, y).
+
+Units: metres, seconds, radians. Frame: x right, y up, heading counter-clockwise
+from +x. Every float array that touches the state is float64.
+"""
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+ByteArray = npt.NDArray[np.int8]
+BoolArray = npt.NDArray[np.bool_]
+AnyArray = npt.NDArray[Any]

@@ -1,0 +1,1 @@
+"""The record of one run of one navigator in one world."""

@@ -1,0 +1,1 @@
+"""Pure functions on arrays: no state, no randomness, no input or output."""

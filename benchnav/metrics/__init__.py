@@ -1,0 +1,1 @@
+"""Tested definitions of how well an episode went."""

@@ -1,0 +1,1 @@
+"""Navigators, planners, controllers, and what they are told."""

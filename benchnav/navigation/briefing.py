@@ -1,0 +1,62 @@
+"""What a navigator is told before an episode, for the agents that it drives in one world."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchnav.arena.agents import Agents
+from benchnav.arrays import ByteArray, FloatArray, IntArray
+from benchnav.navigation.map import Map
+
+
+@dataclass(frozen=True, eq=False)
+class Briefing:
+    """Roles, goals, limits, clock, and the map that the track grants.
+
+    Nothing in it reveals the scenario's name or seed; the generator is seeded by a
+    keyed hash and is the only source of randomness that a navigator may use.
+    """
+
+    dt: float  # [s] between decisions
+    horizon: float  # [s]
+    goal_tolerance: float  # [m]
+    decision_budget: float | None  # [s] per decision and world, None if there is none
+    start: FloatArray  # (A, 2) [m]
+    heading: FloatArray  # (A,) [rad]
+    goal: FloatArray  # (A, 2) [m]
+    radius: FloatArray  # (A,) [m]
+    max_speed: FloatArray  # (A,) [m/s]
+    preferred_speed: FloatArray  # (A,) [m/s]
+    max_turn_rate: FloatArray  # (A,) [rad/s]
+    dynamics: ByteArray  # (A,) of Dynamics
+    role: ByteArray  # (A,) of Role
+    team: IntArray  # (A,)
+    map: Map | None
+    rng: np.random.Generator
+
+    def __len__(self) -> int:
+        return len(self.radius)
+
+
+def brief(
+    agents: Agents,
+    chosen: IntArray,
+    *,
+    dt: float,
+    horizon: float,
+    goal_tolerance: float,
+    decision_budget: float | None,
+    map: Map | None,
+    rng: np.random.Generator,
+) -> Briefing:
+    """The briefing of the agents ``chosen`` (indices into the world's agents)."""
+
+    def copy(array: FloatArray | IntArray | ByteArray) -> np.ndarray:
+        return array[chosen].copy()
+
+    return Briefing(
+        dt, horizon, goal_tolerance, decision_budget,
+        copy(agents.start), copy(agents.heading), copy(agents.goal), copy(agents.radius),
+        copy(agents.max_speed), copy(agents.preferred_speed), copy(agents.max_turn_rate),
+        copy(agents.dynamics), copy(agents.role), copy(agents.team), map, rng,
+    )  # fmt: skip

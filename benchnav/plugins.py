@@ -1,0 +1,155 @@
+"""One registry over entry points: lazy, collision-safe, and honest about what is broken.
+
+Names are read from installed distributions without importing anything. What ships
+with benchnav is registered through the same entry points as anybody's plugin. A
+script or notebook registers with a decorator, and ``module:attribute`` is accepted
+wherever a name is.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, TypeVar
+
+from benchnav.errors import (
+    BrokenPluginError,
+    PluginConflictError,
+    UnknownPluginError,
+    did_you_mean,
+)
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a name comes from."""
+
+    name: str
+    distribution: str  # "benchnav 0.1.0", or "registered in this process"
+    value: str  # "package.module:attribute"
+
+
+@dataclass
+class Registry:
+    """Names of one kind of plugin → what they stand for."""
+
+    group: str  # entry-point group, "benchnav.navigators"
+    kind: str  # "navigator", for messages
+    _local: dict[str, tuple[Any, str]] = field(default_factory=dict)
+    _found: dict[str, list[EntryPoint]] | None = None
+
+    def register(self, name: str) -> Callable[[T], T]:
+        """Decorator that registers in this process only.
+
+        Raises PluginConflictError where the name is taken by something else.
+        """
+
+        def decorate(thing: T) -> T:
+            value = f"{getattr(thing, '__module__', '?')}:{getattr(thing, '__qualname__', thing)}"
+            taken = self._local.get(name)
+            if taken is not None and taken[1] != value:
+                raise self._conflict(name, [taken[1], value])
+            if name in self._entries():
+                raise self._conflict(name, [str(_source(self._entries()[name][0])), value])
+            self._local[name] = (thing, value)
+            return thing
+
+        return decorate
+
+    def names(self) -> list[str]:
+        """Every name, sorted, without importing anything."""
+        return sorted({*self._entries(), *self._local})
+
+    def source(self, name: str) -> Source:
+        """Where ``name`` comes from."""
+        if name in self._local:
+            return Source(name, "registered in this process", self._local[name][1])
+        if ":" in name and name not in self._entries():
+            return Source(name, "named by module", name)
+        return _source(self._entry(name))
+
+    def load(self, name: str) -> Any:
+        """What ``name`` stands for.
+
+        Raises:
+            UnknownPluginError: no such name.
+            PluginConflictError: two distributions claim it.
+            BrokenPluginError: it fails to import.
+        """
+        if name in self._local:
+            return self._local[name][0]
+        if ":" in name and name not in self._entries():
+            return self._load_by_module(name)
+        entry = self._entry(name)
+        try:
+            return entry.load()
+        except Exception as error:
+            raise BrokenPluginError(
+                f"The {self.kind} {name!r} cannot be used: {type(error).__name__}: {error}"
+                f" (while importing {entry.value}, from {_source(entry).distribution})."
+            ) from error
+
+    def broken(self) -> Iterator[tuple[str, str]]:
+        """(name, cause) of every plugin that cannot be loaded. Imports everything."""
+        for name in self.names():
+            try:
+                self.load(name)
+            except (BrokenPluginError, PluginConflictError) as error:
+                yield name, str(error)
+
+    def _entries(self) -> dict[str, list[EntryPoint]]:
+        if self._found is None:
+            self._found = {}
+            for entry in entry_points(group=self.group):
+                claims = self._found.setdefault(entry.name, [])
+                if all(_source(entry) != _source(other) for other in claims):
+                    claims.append(entry)
+        return self._found
+
+    def _entry(self, name: str) -> EntryPoint:
+        entries = self._entries()
+        if name not in entries:
+            raise UnknownPluginError(
+                f"There is no {self.kind} {name!r}.{did_you_mean(name, self.names())}"
+                f" 'benchnav list {self.kind}s' shows all."
+            )
+        if len(entries[name]) > 1:
+            raise self._conflict(
+                name, [f"{_source(e).distribution} ({e.value})" for e in entries[name]]
+            )
+        return entries[name][0]
+
+    def _load_by_module(self, name: str) -> Any:
+        module, _, attribute = name.partition(":")
+        try:
+            return getattr(import_module(module), attribute)
+        except Exception as error:
+            raise BrokenPluginError(
+                f"The {self.kind} {name!r} cannot be used: {type(error).__name__}: {error}."
+            ) from error
+
+    def _conflict(self, name: str, claims: list[str]) -> PluginConflictError:
+        return PluginConflictError(
+            f"The {self.kind} name {name!r} is claimed more than once: {' and '.join(claims)}."
+            " Uninstall one, or name what you want as module:Class."
+        )
+
+
+def _source(entry: EntryPoint) -> Source:
+    dist = entry.dist
+    owner = f"{dist.name} {dist.version}" if dist is not None else "an unknown distribution"
+    return Source(entry.name, owner, entry.value)
+
+
+NAVIGATORS = Registry("benchnav.navigators", "navigator")
+PLANNERS = Registry("benchnav.planners", "planner")
+CONTROLLERS = Registry("benchnav.controllers", "controller")
+METRICS = Registry("benchnav.metrics", "metric")
+SCENARIOS = Registry("benchnav.scenarios", "scenario")
+
+register_navigator = NAVIGATORS.register
+register_planner = PLANNERS.register
+register_controller = CONTROLLERS.register
+register_metric = METRICS.register

@@ -1,0 +1,1 @@
+"""Rollouts, suites and their execution."""

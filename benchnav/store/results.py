@@ -1,0 +1,29 @@
+"""The table of measured values: one row per episode, role and metric.
+
+It is computed from the stored episodes and can be computed again at any time; it
+is kept beside them so that a leaderboard needs no second pass.
+"""
+
+import pyarrow as pa
+
+RESULTS = pa.schema(
+    [
+        ("navigator", pa.string()),
+        ("scenario", pa.string()),  # "leaders/dynamic@1"
+        ("scenario_hash", pa.string()),
+        ("track", pa.string()),
+        ("split", pa.string()),
+        ("seed", pa.int64()),
+        ("role", pa.string()),  # leader, follower
+        ("metric", pa.string()),
+        (
+            "value",
+            pa.float64(),
+        ),  # mean over the agents of the role where defined; NaN where nowhere
+        ("agents", pa.int64()),  # agents of the role
+        ("defined", pa.int64()),  # agents over which the mean was taken
+        ("failure", pa.string()),  # why the navigator failed in this episode; "" if it did not
+        ("horizon", pa.float64()),  # [s]
+        ("dt", pa.float64()),  # [s]
+    ]
+)

@@ -1,0 +1,1 @@
+"""Checks shipped to plugin authors."""

@@ -1,0 +1,1 @@
+"""Drawing worlds and stepping them in batches."""
