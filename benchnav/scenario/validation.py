@@ -1,0 +1,192 @@
+"""Checks a document against a pydantic model; every complaint names file, line and key."""
+
+import json
+from collections.abc import Sequence
+from functools import lru_cache
+from typing import Any, TypeVar
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from benchnav.errors import ScenarioError, did_you_mean
+from benchnav.scenario.document import Document, PathKey, shown
+
+MAX_ERRORS = 10
+M = TypeVar("M", bound=BaseModel)
+Schema = dict[str, Any]
+
+_MUST_BE = {
+    "missing": "must be given",
+    "float_type": "must be a number", "int_type": "must be a whole number",
+    "int_from_float": "must be a whole number", "bool_type": "must be true or false",
+    "string_type": "must be text", "finite_number": "must be finite",
+    "dict_type": "must be a mapping", "model_type": "must be a mapping",
+    "model_attributes_type": "must be a mapping", "list_type": "must be a list",
+    "tuple_type": "must be a list", "path_type": "must be a path",
+}  # fmt: skip
+_BOUND = {
+    "greater_than": "must be > {gt}", "greater_than_equal": "must be ≥ {ge}",
+    "less_than": "must be < {lt}", "less_than_equal": "must be ≤ {le}",
+    "literal_error": "must be {expected}", "enum": "must be {expected}",
+    "too_short": "must have at least {min_length} entries",
+    "too_long": "must have at most {max_length} entries",
+    "string_too_short": "must have at least {min_length} characters",
+    "string_too_long": "must have at most {max_length} characters",
+    "string_pattern_mismatch": "must match {pattern}",
+    "union_tag_invalid": "must have one of the types {expected_tags}",
+}  # fmt: skip
+
+
+class FieldError(ValueError):
+    """A complaint of a model's own check about the key at ``path`` inside that model."""
+
+    def __init__(self, path: Sequence[PathKey], message: str) -> None:
+        super().__init__(message)
+        self.path = tuple(path)
+
+
+def validate(model: type[M], document: Document) -> M:
+    """The document as ``model``; numbers are never read out of text, lists serve as tuples.
+
+    Raises:
+        ScenarioError: one line per complaint, at most ten.
+    """
+    if not isinstance(document.data, dict):
+        raise ScenarioError(
+            f"{document.where()} the file must be a mapping; got {_seen(document.data)}."
+        )
+    try:
+        return model.model_validate_json(json.dumps(document.data), strict=True)
+    except ValidationError as error:
+        count = error.error_count()
+        found = error.errors(include_url=False, include_input=False)[:MAX_ERRORS]
+        lines = [_complaint(model, document, detail) for detail in found]
+        if count > MAX_ERRORS:
+            lines.append(f"… and {count - MAX_ERRORS} more.")
+        raise ScenarioError("\n".join(lines)) from None
+
+
+def _complaint(model: type[BaseModel], document: Document, detail: ErrorDetails) -> str:
+    context = detail.get("ctx", {})
+    own = context.get("error")
+    loc: tuple[PathKey, ...] = detail["loc"]
+    path = _real(document.data, loc, detail["type"])
+    if isinstance(own, FieldError):
+        path += own.path
+    at = document.where(path) if path else f"{document.where()} the file"
+    got = _value(document.data, path)
+    kind = detail["type"]
+    if kind == "extra_forbidden":
+        known = _keys(model, document.data, path[:-1])
+        return f"{at} is not a known key.{_hint(str(path[-1]), known)}"
+    if kind == "missing":
+        return f"{at} must be given."
+    if own is not None:
+        return f"{at} {own}{'' if str(own).endswith(('.', '?')) else '.'}"
+    must = _must_be(kind, context, detail["msg"])
+    hint = ""
+    if kind in {"literal_error", "union_tag_invalid", "enum"} and got is not _ABSENT:
+        expected = str(context.get("expected", context.get("expected_tags", "")))
+        tag = got.get("type") if isinstance(got, dict) else got
+        hint = did_you_mean(str(tag)[:100], [e for e in expected.split("'") if e.strip(", or")])
+        got = tag
+    return f"{at} {must}; got {_seen(got)}.{hint}"
+
+
+def _must_be(kind: str, context: dict[str, Any], message: str) -> str:
+    if kind in _MUST_BE:
+        return _MUST_BE[kind]
+    if kind in _BOUND:
+        return _BOUND[kind].format(**context)
+    return message[:1].lower() + message[1:].rstrip(".")
+
+
+_ABSENT = object()
+
+
+def _seen(value: object) -> str:
+    if value is _ABSENT or value is None:
+        return "nothing"
+    if isinstance(value, dict):
+        return f"a mapping ({', '.join(shown(k, 20) for k in list(value)[:4]) or 'empty'})"
+    if isinstance(value, list | tuple):
+        return f"a list of {len(value)}"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    return repr(shown(value)) if isinstance(value, str) else shown(value)
+
+
+def _holds(data: Any, key: PathKey) -> bool:
+    if isinstance(data, list):
+        return isinstance(key, int) and key < len(data)
+    return isinstance(data, dict) and isinstance(key, str) and key in data
+
+
+def _value(data: Any, path: Sequence[PathKey]) -> Any:
+    for key in path:
+        if not _holds(data, key):
+            return _ABSENT
+        data = data[key]
+    return data
+
+
+def _real(data: Any, loc: Sequence[PathKey], kind: str) -> tuple[PathKey, ...]:
+    """The location without the union tags that pydantic puts into it."""
+    path: list[PathKey] = []
+    for index, key in enumerate(loc):
+        if _holds(data, key):
+            data = data[key]
+            path.append(key)
+        elif kind == "missing" and index == len(loc) - 1:
+            path.append(key)
+    return tuple(path)
+
+
+@lru_cache(maxsize=32)
+def _schema(model: type[BaseModel]) -> Schema:
+    return model.model_json_schema()
+
+
+def _keys(model: type[BaseModel], data: Any, path: Sequence[PathKey]) -> list[str]:
+    """Keys that the schema knows for the mapping at ``path``."""
+    root = _schema(model)
+    nodes = _branches(root, root, data)
+    for key in path:
+        data = data[key]
+        below: list[Schema] = []
+        for node in nodes:
+            step = _step(node, key)
+            if step is not None:
+                below += _branches(root, step, data)
+        nodes = below
+    return sorted({key for node in nodes for key in node.get("properties", {})})
+
+
+def _step(node: Schema, key: PathKey) -> Schema | None:
+    if isinstance(key, str):
+        found = node.get("properties", {}).get(key, node.get("additionalProperties"))
+    else:
+        fixed = node.get("prefixItems", [])
+        found = fixed[key] if key < len(fixed) else node.get("items")
+    return found if isinstance(found, dict) else None
+
+
+def _branches(root: Schema, node: Schema, data: Any) -> list[Schema]:
+    """What a schema node may be, references and unions resolved, narrowed by `type` if it can."""
+    if "$ref" in node:
+        name = node["$ref"].rsplit("/", 1)[-1]
+        return _branches(root, root["$defs"][name], data)
+    mapping = node.get("discriminator", {}).get("mapping", {})
+    tag = data.get("type") if isinstance(data, dict) else None
+    if isinstance(tag, str) and tag in mapping:
+        return _branches(root, {"$ref": mapping[tag]}, data)
+    union = [*node.get("oneOf", []), *node.get("anyOf", []), *node.get("allOf", [])]
+    return [b for part in union for b in _branches(root, part, data)] or [node]
+
+
+def _hint(key: str, known: list[str]) -> str:
+    near = did_you_mean(key, known)
+    if near or not known:
+        return near
+    listed = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")
+    return f" Known keys: {listed}."
