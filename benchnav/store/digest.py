@@ -1,0 +1,38 @@
+"""The digest of what happened: equal digests mean equal states, commands and events."""
+
+import hashlib
+
+import numpy as np
+
+from benchnav.episode.episode import Episode
+
+
+def digest(episode: Episode) -> str:
+    """sha256 over states, commands and events, as little-endian bytes in C order.
+
+    Each array is preceded by its name, type and shape, so that no two different
+    episodes share a byte stream. Timings and names are left out: they may differ.
+    """
+    hashed = hashlib.sha256()
+    contacts = episode.contacts
+    for name, array, dtype in (
+        ("position", episode.position, "<f8"),
+        ("heading", episode.heading, "<f8"),
+        ("status", episode.status, "|i1"),
+        ("requested", episode.requested, "<f8"),
+        ("executed", episode.executed, "<f8"),
+        ("body_position", episode.body_position, "<f8"),
+        ("arrival", episode.arrival, "<f8"),
+        ("contacts.agent", contacts.agent, "<i8"),
+        ("contacts.kind", contacts.kind, "|i1"),
+        ("contacts.partner", contacts.partner, "<i8"),
+        ("contacts.start", contacts.start, "<f8"),
+        ("contacts.end", contacts.end, "<f8"),
+        ("contacts.penetration", contacts.penetration, "<f8"),
+        ("contacts.closing_speed", contacts.closing_speed, "<f8"),
+        ("contacts.charged", contacts.charged, "|b1"),
+    ):
+        fixed = np.ascontiguousarray(array, dtype=np.dtype(dtype))
+        hashed.update(f"{name} {dtype} {fixed.shape}\n".encode())
+        hashed.update(fixed.tobytes())
+    return hashed.hexdigest()

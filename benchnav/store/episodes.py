@@ -1,0 +1,131 @@
+"""Episodes ↔ rows of a table: one row per episode, arrays flattened in C order.
+
+A column of states holds the numbers of all agents and times of one episode; the
+shapes follow from ``steps`` T, ``agents`` A and ``bodies`` M as `SHAPES` says.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from benchnav.arrays import AnyArray
+from benchnav.episode.episode import Contacts, Episode, Identity, Timings
+from benchnav.store.world_codec import world_from_json, world_to_json
+
+SHAPES = {  # column → its shape in T, A, M
+    "position": "T+1 A 2",
+    "heading": "T+1 A",
+    "status": "T+1 A",
+    "requested": "T A 2",
+    "executed": "T A 2",
+    "body_position": "T+1 M 2",
+    "arrival": "A",
+}
+_IDENTITY = ("scenario", "scenario_hash", "split", "track", "navigator")
+_CONTACTS = {
+    "agent": pa.int64(), "kind": pa.int8(), "partner": pa.int64(), "start": pa.float64(),
+    "end": pa.float64(), "penetration": pa.float64(), "closing_speed": pa.float64(),
+    "charged": pa.bool_(),
+}  # fmt: skip
+_NUMPY = {pa.float64(): np.float64, pa.int64(): np.int64, pa.int8(): np.int8, pa.bool_(): np.bool_}
+
+
+def _item(column: str) -> pa.DataType:
+    return pa.int8() if column == "status" else pa.float64()
+
+
+EPISODES = pa.schema(
+    [
+        *((name, pa.string()) for name in _IDENTITY),
+        ("seed", pa.int64()),
+        ("failure", pa.string()),
+        ("reproducible", pa.bool_()),
+        ("digest", pa.string()),
+        ("steps", pa.int64()),
+        ("agents", pa.int64()),
+        ("bodies", pa.int64()),
+        ("world", pa.large_string()),
+        *((name, pa.large_list(_item(name))) for name in SHAPES),
+        *((f"contact_{name}", pa.large_list(kind)) for name, kind in _CONTACTS.items()),
+        ("decision_seconds", pa.large_list(pa.float64())),
+        ("planning_seconds", pa.float64()),
+        ("batch", pa.int64()),
+    ]
+)
+DICTIONARY = [*_IDENTITY, "failure"]  # columns whose values repeat
+
+
+def to_table(episodes: Sequence[Episode]) -> pa.Table:
+    """(N rows) of `EPISODES`."""
+    columns: dict[str, Any] = {
+        name: [getattr(e.identity, name) for e in episodes] for name in (*_IDENTITY, "seed")
+    }
+    for name in ("failure", "reproducible", "digest"):
+        columns[name] = [getattr(e, name) for e in episodes]
+    columns["steps"] = [len(e.requested) for e in episodes]
+    columns["agents"] = [len(e.world.agents) for e in episodes]
+    columns["bodies"] = [len(e.world.bodies) for e in episodes]
+    columns["world"] = [world_to_json(e.world) for e in episodes]
+    for name in SHAPES:
+        columns[name] = _lists([getattr(e, name) for e in episodes], _item(name))
+    for name, kind in _CONTACTS.items():
+        columns[f"contact_{name}"] = _lists([getattr(e.contacts, name) for e in episodes], kind)
+    columns["decision_seconds"] = _lists([e.timings.decision for e in episodes], pa.float64())
+    columns["planning_seconds"] = [e.timings.planning for e in episodes]
+    columns["batch"] = [e.timings.batch for e in episodes]
+    arrays = [
+        values if isinstance(values, pa.Array) else pa.array(values, type=field.type)
+        for field in EPISODES
+        for values in [columns[field.name]]
+    ]
+    return pa.Table.from_arrays(arrays, schema=EPISODES)
+
+
+def from_table(table: pa.Table) -> Iterator[Episode]:
+    """The episodes of a table of `EPISODES`, in its order."""
+    for batch in table.to_batches():
+        for row in range(batch.num_rows):
+            yield _episode(batch, row)
+
+
+def _episode(batch: pa.RecordBatch, row: int) -> Episode:
+    def scalar(name: str) -> Any:
+        return batch.column(name)[row].as_py()
+
+    def values(name: str, dtype: Any) -> AnyArray:
+        column = batch.column(name)
+        flat = column.values.slice(
+            column.offsets[row].as_py(),
+            column.offsets[row + 1].as_py() - column.offsets[row].as_py(),
+        )
+        return np.array(flat.to_numpy(zero_copy_only=False), dtype=dtype)
+
+    steps, agents, bodies = scalar("steps"), scalar("agents"), scalar("bodies")
+    size = {"T": steps, "T+1": steps + 1, "A": agents, "M": bodies, "2": 2}
+    arrays = {
+        name: values(name, _NUMPY[_item(name)]).reshape([size[axis] for axis in shape.split()])
+        for name, shape in SHAPES.items()
+    }
+    contacts = {name: values(f"contact_{name}", _NUMPY[kind]) for name, kind in _CONTACTS.items()}
+    timings = Timings(
+        values("decision_seconds", np.float64), scalar("planning_seconds"), scalar("batch")
+    )
+    return Episode(
+        identity=Identity(**{name: scalar(name) for name in (*_IDENTITY, "seed")}),
+        world=world_from_json(scalar("world")),
+        contacts=Contacts(**contacts),
+        timings=timings,
+        failure=scalar("failure"),
+        reproducible=scalar("reproducible"),
+        digest=scalar("digest"),
+        **arrays,
+    )
+
+
+def _lists(arrays: Sequence[AnyArray], kind: pa.DataType) -> pa.Array:
+    offsets = np.concatenate([[0], np.cumsum([a.size for a in arrays])]).astype(np.int64)
+    dtype = _NUMPY[kind]
+    flat = np.concatenate([np.asarray(a, dtype=dtype).ravel() for a in arrays])
+    return pa.LargeListArray.from_arrays(pa.array(offsets), pa.array(flat, type=kind))

@@ -1,0 +1,92 @@
+"""What a run folder says about itself."""
+
+import hashlib
+import json
+import platform
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from benchnav.errors import CorruptPartError, StoreError
+
+SCHEMA = 1  # version of the layout of a run folder and of its columns
+MANIFEST = "manifest.json"
+_RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
+
+
+@dataclass(frozen=True)
+class Manifest:
+    """The suite that a run executes, and with what."""
+
+    suite: Mapping[str, Any]  # resolved: hashes of scenarios, full configurations, seeds
+    cells: tuple[Mapping[str, Any], ...]  # key, scenario, track, navigator, reason it is n/a or ""
+    schema: int = SCHEMA
+    versions: Mapping[str, str] = field(default_factory=lambda: versions())
+    platform: str = field(default_factory=platform.platform)
+    created: str = field(default_factory=lambda: datetime.now(UTC).isoformat(timespec="seconds"))
+
+    @property
+    def name(self) -> str:
+        """For people: ``quick@1 (3f2a9c01d2e4)``."""
+        return f"{self.suite.get('name')}@{self.suite.get('version')} ({self.suite_hash[:12]})"
+
+    @property
+    def suite_hash(self) -> str:
+        """sha256 of the resolved suite: runs that may share a folder share it."""
+        text = json.dumps(self.suite, sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    def dump(self) -> str:
+        """JSON for `MANIFEST`."""
+        said = {**asdict(self), "suite_hash": self.suite_hash}
+        return json.dumps(said, indent=1, ensure_ascii=False) + "\n"
+
+
+def versions() -> dict[str, str]:
+    """Installed packages that have a say in the numbers, and their versions."""
+    found = {"python": platform.python_version()}
+    for name in _RECORDED:
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            continue
+    return found
+
+
+def load_manifest(run: Path) -> Manifest:
+    """The manifest of a run folder.
+
+    Raises:
+        StoreError: the folder is no run, or a newer benchnav wrote it.
+        CorruptPartError: its manifest is damaged.
+    """
+    path = run / MANIFEST
+    if not path.is_file():
+        what = "Got a file" if run.is_file() else "It is not there" if not run.exists() else None
+        raise StoreError(
+            f"{run} must be a run folder, with a {MANIFEST}."
+            f" {what or 'It has none'}. 'benchnav run SUITE --out {run}' makes one."
+        )
+    try:
+        said = json.loads(path.read_text(encoding="utf-8"))
+        schema = said["schema"]
+        if isinstance(schema, int) and schema > SCHEMA:
+            raise StoreError(
+                f"{path}: schema must be at most {SCHEMA}. Got {schema} instead:"
+                f" benchnav {said['versions'].get('benchnav')} wrote it; install that one."
+            )
+        manifest = Manifest(
+            said["suite"], tuple(said["cells"]), schema, said["versions"],
+            said["platform"], said["created"],
+        )  # fmt: skip
+        whole = manifest.suite_hash == said["suite_hash"]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise CorruptPartError(
+            f"{path} must be what was written. It cannot be read: {error}."
+        ) from error
+    if not whole:
+        raise CorruptPartError(f"{path} must be what was written. Its suite was changed.")
+    return manifest

@@ -1,0 +1,117 @@
+"""A part: the episodes of one cell for a range of seeds, and the values measured on them.
+
+A part is three files. The seal is written last and holds size and sha256 of the
+other two; without a seal there is no part, whatever else a killed run left there.
+"""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from benchnav.episode.episode import Episode
+from benchnav.errors import CorruptPartError
+from benchnav.store.episodes import from_table
+
+SEAL = ".seal.json"
+EPISODES_FILE = ".episodes.parquet"
+RESULTS_FILE = ".results.parquet"
+
+
+@dataclass(frozen=True, order=True)
+class Part:
+    """Seeds first … stop - 1 of the cell whose folder is ``folder``."""
+
+    folder: Path
+    first: int
+    stop: int
+
+    @property
+    def stem(self) -> str:
+        """What the names of its three files start with."""
+        return f"{self.first:06d}-{self.stop:06d}"
+
+    def path(self, suffix: str) -> Path:
+        """One of its three files."""
+        return self.folder / f"{self.stem}{suffix}"
+
+    @property
+    def seeds(self) -> range:
+        """The seeds that it holds."""
+        return range(self.first, self.stop)
+
+    @property
+    def sealed(self) -> bool:
+        """True once it is complete on disk."""
+        return self.path(SEAL).exists()
+
+    def results(self) -> pa.Table:
+        """Its measured values. Raises CorruptPartError."""
+        return self._table(RESULTS_FILE)
+
+    def episodes(self) -> Iterator[Episode]:
+        """Its episodes, by seed. Raises CorruptPartError."""
+        table = self._table(EPISODES_FILE)
+        try:
+            yield from from_table(table)
+        except (KeyError, TypeError, ValueError) as error:
+            raise self._corrupt(self.path(EPISODES_FILE), f"cannot be decoded ({error})") from error
+
+    def check(self) -> None:
+        """Raise CorruptPartError where a file is missing or has another size than was sealed."""
+        for suffix in (EPISODES_FILE, RESULTS_FILE):
+            self._check_size(suffix, self._sealed(suffix))
+
+    def _table(self, suffix: str) -> pa.Table:
+        path, sealed = self.path(suffix), self._sealed(suffix)
+        self._check_size(suffix, sealed)
+        with path.open("rb") as file:
+            found = hashlib.file_digest(file, "sha256").hexdigest()
+        if found != sealed["sha256"]:
+            raise self._corrupt(
+                path, f"has sha256 {found[:12]}…, sealed was {sealed['sha256'][:12]}…"
+            )
+        try:
+            return pq.read_table(path, partitioning=None)
+        except (OSError, pa.ArrowException) as error:
+            raise self._corrupt(path, f"is no Parquet file ({error})") from error
+
+    def _sealed(self, suffix: str) -> dict[str, Any]:
+        seal = self.path(SEAL)
+        try:
+            sealed: dict[str, Any] = json.loads(seal.read_text(encoding="utf-8"))[suffix]
+            return {"bytes": int(sealed["bytes"]), "sha256": str(sealed["sha256"])}
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise self._corrupt(seal, f"cannot be read ({error})") from error
+
+    def _check_size(self, suffix: str, sealed: dict[str, Any]) -> None:
+        path = self.path(suffix)
+        if not path.exists():
+            raise self._corrupt(path, "is missing")
+        if path.stat().st_size != sealed["bytes"]:
+            raise self._corrupt(
+                path, f"has {path.stat().st_size} bytes, sealed were {sealed['bytes']}"
+            )
+
+    def _corrupt(self, path: Path, what: str) -> CorruptPartError:
+        run = self.folder.parent.parent
+        return CorruptPartError(
+            f"{path} must be what was written. It {what}."
+            f" Delete {self.path(SEAL)} and run the same suite again with --out {run}"
+            " to redo only this part."
+        )
+
+
+def parts_of(folder: Path) -> list[Part]:
+    """The sealed parts in the folder of one cell, by seed."""
+    found = []
+    for seal in folder.glob(f"*{SEAL}"):
+        first, _, stop = seal.name.removesuffix(SEAL).partition("-")
+        if first.isdigit() and stop.isdigit():
+            found.append(Part(folder, int(first), int(stop)))
+    return sorted(found)

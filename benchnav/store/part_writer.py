@@ -1,0 +1,133 @@
+"""Writes one part: everything under temporary names, then renamed, the seal last."""
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from benchnav.episode.episode import Episode
+from benchnav.errors import StoreError
+from benchnav.store.episodes import DICTIONARY, EPISODES, to_table
+from benchnav.store.part import EPISODES_FILE, RESULTS_FILE, SEAL, Part
+from benchnav.store.results import RESULTS
+
+TEMPORARY = ".writing-"  # names of files that are not finished start with this
+
+
+class PartWriter:
+    """Collects batches of episodes of a part; nothing is visible before `seal`.
+
+    Every method raises StoreError where the disk refuses (full, read-only).
+    """
+
+    def __init__(self, part: Part, notes: Mapping[str, Any] | None = None) -> None:
+        self.part = part
+        self._notes = dict(notes or {})
+        self._results: list[pa.Table] = []
+        self._rows = 0
+        self._sealed = False
+        self._open()
+
+    def add(self, episodes: Sequence[Episode], results: pa.Table) -> None:
+        """Append episodes, and the table of `RESULTS` that was measured on them."""
+        if not episodes:
+            return
+        try:
+            self._writer.write_table(to_table(episodes))
+        except OSError as error:
+            raise self._refused(error) from error
+        self._rows += len(episodes)
+        self._results.append(results)
+
+    def seal(self) -> None:
+        """Make the part visible, complete and durable."""
+        try:
+            self._writer.close()
+            _sync(self._file)
+            results = self._temporary(RESULTS_FILE)
+            with results.open("wb") as file:
+                pq.write_table(
+                    pa.concat_tables([RESULTS.empty_table(), *self._results]),
+                    file,
+                    compression="zstd",
+                )
+                _sync(file)
+            sealed = {s: _facts(self._temporary(s)) for s in (EPISODES_FILE, RESULTS_FILE)}
+            notes = {**sealed, "episodes": self._rows, **self._notes}
+            with self._temporary(SEAL).open("wb") as file:
+                file.write(json.dumps(notes, indent=1).encode())
+                _sync(file)
+            for suffix in (EPISODES_FILE, RESULTS_FILE, SEAL):
+                self._temporary(suffix).replace(self.part.path(suffix))
+            _sync_folder(self.part.folder)
+        except OSError as error:
+            raise self._refused(error) from error
+        self._sealed = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._sealed:
+            return
+        with suppress(OSError, pa.ArrowException):  # what made it fail is already on its way up
+            self._writer.close()
+        with suppress(OSError):
+            self._file.close()
+        for suffix in (EPISODES_FILE, RESULTS_FILE, SEAL):
+            self._temporary(suffix).unlink(missing_ok=True)
+
+    def _open(self) -> None:
+        try:
+            self.part.folder.mkdir(parents=True, exist_ok=True)
+            self._file = self._temporary(EPISODES_FILE).open("wb")
+        except OSError as error:
+            raise self._refused(error) from error
+        self._writer = pq.ParquetWriter(
+            self._file, EPISODES, compression="zstd", use_dictionary=DICTIONARY,
+            write_statistics=["seed"],
+        )  # fmt: skip
+
+    def _temporary(self, suffix: str) -> Path:
+        return self.part.folder / f"{TEMPORARY}{self.part.stem}{suffix}"
+
+    def _refused(self, error: OSError) -> StoreError:
+        run = self.part.folder.parent.parent
+        return StoreError(
+            f"{self.part.folder} must be writable and have room."
+            f" The system says: {error.strerror or error}."
+            " Every part that was finished is safe; make room and run the same suite again"
+            f" with --out {run} to go on from there."
+        )
+
+
+def _sync(file: Any) -> None:
+    file.flush()
+    os.fsync(file.fileno())
+    file.close()
+
+
+def _sync_folder(folder: Path) -> None:
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _facts(path: Path) -> dict[str, Any]:
+    with path.open("rb") as file:
+        found = hashlib.file_digest(file, "sha256").hexdigest()
+    return {"bytes": path.stat().st_size, "sha256": found}

@@ -1,0 +1,134 @@
+"""The folder that executing a suite leaves: append-only, resumable, one writer at a time."""
+
+import fcntl
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+from benchnav.errors import RunConflictError, StoreError
+from benchnav.store.manifest import MANIFEST, Manifest, load_manifest
+from benchnav.store.part import EPISODES_FILE, RESULTS_FILE, Part, parts_of
+from benchnav.store.part_writer import TEMPORARY
+
+LOCK = ".lock"
+
+
+@dataclass(frozen=True)
+class RunFolder:
+    """A run on disk: ``manifest.json`` and ``parts/<cell>/<seeds>.*``."""
+
+    path: Path
+    manifest: Manifest
+
+    @classmethod
+    def open(cls, path: Path) -> "RunFolder":
+        """An existing run, for reading. Raises StoreError where there is none."""
+        return cls(path, load_manifest(path))
+
+    @classmethod
+    def start(cls, path: Path, manifest: Manifest) -> "RunFolder":
+        """A new run in an empty or missing folder, or the same suite's run, resumed.
+
+        Raises:
+            RunConflictError: the folder holds another suite's run, or something else.
+            StoreError: the folder cannot be made.
+        """
+        if (path / MANIFEST).exists():
+            held = load_manifest(path)
+            if held.suite_hash != manifest.suite_hash:
+                raise RunConflictError(
+                    f"{path} must be empty or hold a run of {manifest.name}."
+                    f" It holds a run of {held.name}, begun {held.created}."
+                    f"{_difference(held, manifest)} Give another --out."
+                )
+            return cls(path, held)
+        if path.exists() and (not path.is_dir() or not _is_free(path)):
+            raise RunConflictError(
+                f"{path} must be an empty folder or a run of {manifest.name}."
+                " It holds something that is not a run. Give another --out."
+            )
+        _write(path / MANIFEST, manifest.dump())
+        return cls(path, manifest)
+
+    def cell(self, key: str) -> Path:
+        """The folder of one cell's parts."""
+        return self.path / "parts" / key
+
+    def parts(self) -> Iterator[Part]:
+        """Every sealed part, in the order of the manifest's cells, then of seeds."""
+        for cell in self.manifest.cells:
+            if not cell["reason"]:
+                yield from parts_of(self.cell(cell["key"]))
+
+    def done(self, key: str) -> set[int]:
+        """The seeds of a cell that are stored. Raises CorruptPartError where a part is damaged."""
+        seeds: set[int] = set()
+        for part in parts_of(self.cell(key)):
+            part.check()
+            seeds.update(part.seeds)
+        return seeds
+
+    @contextmanager
+    def writing(self) -> Iterator[None]:
+        """Hold the folder as its only writer; leftovers of a killed run are removed first.
+
+        Raises RunConflictError where another process writes it.
+        """
+        with _locked(self.path):
+            self._sweep()
+            yield
+
+    def _sweep(self) -> None:
+        for folder in self.path.glob("parts/*"):
+            sealed = {part.stem for part in parts_of(folder)}
+            for path in folder.iterdir():
+                unsealed = path.name.endswith((EPISODES_FILE, RESULTS_FILE))
+                unsealed &= path.name.partition(".")[0] not in sealed
+                if unsealed or path.name.startswith(TEMPORARY):
+                    path.unlink()
+
+
+@contextmanager
+def _locked(path: Path) -> Iterator[None]:
+    try:
+        handle = os.open(path / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
+    except OSError as error:
+        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            holder = os.pread(handle, 64, 0).decode(errors="replace").strip() or "unknown"
+            raise RunConflictError(
+                f"{path} must have one writer. The process {holder} writes it now."
+                " Wait for it, or give another --out."
+            ) from None
+        os.truncate(handle, 0)
+        os.pwrite(handle, str(os.getpid()).encode(), 0)
+        yield
+    finally:
+        os.close(handle)
+
+
+def _is_free(folder: Path) -> bool:
+    return all(p.name == LOCK or p.name.startswith(TEMPORARY) for p in folder.iterdir())
+
+
+def _write(path: Path, text: str) -> None:
+    temporary = path.with_name(TEMPORARY + path.name)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with temporary.open("w", encoding="utf-8") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.replace(path)
+    except OSError as error:
+        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+
+
+def _difference(held: Manifest, asked: Manifest) -> str:
+    keys = [k for k in asked.suite if asked.suite.get(k) != held.suite.get(k)]
+    return f" They differ in {', '.join(keys)}." if keys else ""
