@@ -1,0 +1,1 @@
+"""Readers of other projects' files, and the scenarios that are made of them."""

@@ -1,0 +1,73 @@
+"""What every occupancy map becomes: cells that are blocked, free or unknown."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.errors import MapError
+from benchnav.geometry.rotation import rotated
+
+MAX_CELLS = 16_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Occupancy:
+    """A grid in the world: row 0 at the bottom, column 0 at the left, y up."""
+
+    blocked: BoolArray  # (H, W) True where something stands; never also unknown
+    unknown: BoolArray  # (H, W) True where the map does not say
+    cell: float  # [m] side of a cell
+    origin: tuple[float, float, float]  # (x, y, yaw) [m, m, rad] of the grid's lower left corner
+
+    def points(self, cells: FloatArray) -> FloatArray:
+        """(…, 2) places (column, row) in cells from the lower left corner → world [m]."""
+        x, y, yaw = self.origin
+        scaled = np.asarray(cells, np.float64) * self.cell
+        turned = rotated(scaled, yaw) if yaw != 0.0 else scaled
+        return np.asarray(turned + np.array([x, y]))
+
+    def centres(self, columns: FloatArray, rows: FloatArray) -> FloatArray:
+        """(…, 2) [m] centres of the cells (row 0 at the bottom)."""
+        return self.points(np.stack([np.asarray(columns), np.asarray(rows)], axis=-1) + 0.5)
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """Box xmin, ymin, xmax, ymax [m] around the (possibly turned) grid."""
+        high, wide = self.blocked.shape
+        corners = self.points(np.array([[0, 0], [wide, 0], [wide, high], [0, high]], float))
+        low, top = corners.min(axis=0), corners.max(axis=0)
+        return float(low[0]), float(low[1]), float(top[0]), float(top[1])
+
+
+def check_size(where: str, width: int, height: int) -> None:
+    """Refuses a map without cells, or with more than ``MAX_CELLS``.
+
+    Raises:
+        MapError: says the declared size and the limit.
+    """
+    if width < 1 or height < 1:
+        raise MapError(f"{where}: width and height must be ≥ 1; got {width} × {height}.")
+    if width * height > MAX_CELLS:
+        raise MapError(
+            f"{where}: a map has at most {MAX_CELLS} cells; "
+            f"got {width} × {height} = {width * height}. Cut it or scale it down."
+        )
+
+
+def read_bytes(path: Path, limit: int, what: str) -> bytes:
+    """The content of a file of at most ``limit`` bytes.
+
+    Raises:
+        MapError: it is missing, unreadable or larger.
+    """
+    try:
+        with path.open("rb") as file:
+            raw = file.read(limit + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise MapError(f"{path}:1: {what} cannot be read: {reason}.") from None
+    if len(raw) > limit:
+        raise MapError(f"{path}:1: {what} must have at most {limit} bytes; it is larger.")
+    return raw

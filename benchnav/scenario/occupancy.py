@@ -1,0 +1,76 @@
+"""Occupancy maps as walls: the outline of what is blocked, exact to the cell."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from benchnav.arena.solid import Kind, Solid
+from benchnav.errors import MapError
+from benchnav.geometry.contour import outlines
+from benchnav.scenario.importers import movingai, ros_map
+from benchnav.scenario.importers.grid import MAX_CELLS, Occupancy
+
+Format = Literal["movingai", "ros"]
+Bounds = tuple[float, float, float, float]
+
+__all__ = ["MAX_CELLS", "Format", "Occupancy", "occupancy_solids", "read_occupancy", "trace"]
+
+
+def read_occupancy(path: Path | str, format: Format, cell: float | None = None) -> Occupancy:
+    """The map in ``path``; ``cell`` [m] a cell (default: 1 m for MovingAI, the file's for ROS).
+
+    Raises:
+        MapError: it is not a map of that format.
+    """
+    if format == "movingai":
+        return movingai.read_map(path, 1.0 if cell is None else cell)
+    if format == "ros":
+        return ros_map.read_map(path, cell)
+    raise MapError(f"{path}:1: the format must be 'movingai' or 'ros'; got {format!r}.")
+
+
+def trace(occupancy: Occupancy, unknown_is_free: bool = False) -> tuple[Solid, ...]:
+    """Walls around everything blocked, one for each 8-connected set of cells.
+
+    The outside of the map is blocked and comes first. Nothing passes between two
+    blocked cells that touch at a corner. Unknown cells are blocked unless
+    ``unknown_is_free``.
+    """
+    blocked = occupancy.blocked if unknown_is_free else occupancy.blocked | occupancy.unknown
+    return tuple(
+        Solid(Kind.WALL, tuple(occupancy.points(loop) for loop in outline.loops))
+        for outline in outlines(blocked)
+    )
+
+
+def occupancy_solids(
+    path: Path | str,
+    format: Format,
+    offset: Sequence[float] = (0.0, 0.0),
+    cell: float | None = None,
+    unknown_is_free: bool = False,
+) -> tuple[tuple[Solid, ...], Bounds]:
+    """Walls and bounds (xmin, ymin, xmax, ymax) [m] of an occupancy map.
+
+    Args:
+        path: a MovingAI ``.map`` file, or a map_server YAML file.
+        format: `movingai` (y upwards, lower left corner at the origin) or `ros` (where the
+            file's origin says, turned by its yaw).
+        offset: (x, y) [m] added to every point.
+        cell: [m] a cell; None: 1 m for MovingAI, the file's resolution for ROS.
+        unknown_is_free: whether cells that the map does not know can be entered.
+
+    Raises:
+        MapError: the file is not what it must be, or no cell is free.
+    """
+    occupancy = read_occupancy(path, format, cell)
+    solids = trace(occupancy, unknown_is_free)
+    if not solids:
+        raise MapError(f"{path}:1: the map must have a free cell; all are blocked.")
+    shift = np.asarray(offset, np.float64)
+    xmin, ymin, xmax, ymax = occupancy.bounds
+    x, y = float(shift[0]), float(shift[1])
+    moved = tuple(solid.moved(shift) for solid in solids)
+    return moved, (xmin + x, ymin + y, xmax + x, ymax + y)
