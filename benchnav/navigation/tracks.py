@@ -1,0 +1,60 @@
+"""Knowledge tracks: which map a navigator is granted. The runner hands it nothing more.
+
+known    static geometry as it stands now; its revision rises when some of it is re-placed
+stale    static geometry as it stood before it moved; never corrected
+partial  walls only
+unknown  no map
+"""
+
+from typing import Literal, get_args
+
+from benchnav.arena.solid import Kind, Solid
+from benchnav.arena.world import World
+from benchnav.arrays import FloatArray
+from benchnav.navigation.map import Map
+
+Track = Literal["known", "stale", "partial", "unknown"]
+TRACKS: tuple[str, ...] = get_args(Track)
+
+
+def granted_map(
+    world: World, track: str, body_position: FloatArray | None = None, revision: int = 0
+) -> Map | None:
+    """The map of ``world`` that ``track`` grants.
+
+    Args:
+        world: the drawn world.
+        track: one of `TRACKS`.
+        body_position: (M, 2) [m] where its bodies stand now; None: where they start.
+        revision: how often static obstacles were re-placed so far.
+
+    Dynamic obstacles are on no map. Solids are shared with the world, read-only.
+    """
+    if track == "unknown":
+        return None
+    if track == "partial":
+        walls = tuple(solid for solid in world.solids if solid.kind == Kind.WALL)
+        return Map(world.bounds, _frozen(walls))
+    if track == "stale":
+        old = world.stale_solids
+        solids = world.solids if old is None else old
+        meshes = world.meshes if old is None else ()
+        return Map(world.bounds, _frozen(solids + _placed(world, None)), 0, meshes)
+    solids = world.solids + _placed(world, body_position)
+    return Map(world.bounds, _frozen(solids), revision, world.meshes)
+
+
+def _placed(world: World, position: FloatArray | None) -> tuple[Solid, ...]:
+    """The static bodies where they stand."""
+    return tuple(
+        body.solid.moved(body.law.points[0] if position is None else position[m])
+        for m, body in enumerate(world.bodies)
+        if body.solid.kind == Kind.STATIC
+    )
+
+
+def _frozen(solids: tuple[Solid, ...]) -> tuple[Solid, ...]:
+    for solid in solids:
+        for array in (*solid.loops, solid.capsules):
+            array.setflags(write=False)
+    return solids
