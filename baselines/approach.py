@@ -1,0 +1,21 @@
+"""The velocity that leads straight to a point without passing it."""
+
+import numpy as np
+
+from benchnav.arrays import FloatArray
+
+
+def approach(
+    position: FloatArray, target: FloatArray, speed: FloatArray, dt: FloatArray
+) -> FloatArray:
+    """(…, 2) velocity [m/s] from ``position`` (…, 2) towards ``target`` (…, 2) [m].
+
+    Its length is ``speed`` (…) [m/s], or less where the target is less than one
+    step ``dt`` (…) [s] away; zero at the target.
+    """
+    offset = target - position
+    distance = np.sqrt(offset[..., 0] ** 2 + offset[..., 1] ** 2)
+    length = np.minimum(speed, distance / np.where(dt > 0.0, dt, 1.0))
+    scale = np.divide(length, distance, out=np.zeros_like(distance), where=distance > 0.0)
+    velocity: FloatArray = offset * scale[..., None]
+    return velocity

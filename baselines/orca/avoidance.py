@@ -1,0 +1,113 @@
+"""What the ORCA navigator and the ORCA controller share: limits per row, and the kernel's call."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.navigator import PluginConfig
+from benchnav.navigation.observation import Edges, Neighbours, Observation
+from benchnav.navigation.row_table import RowTable
+from benchnav.navigation.streams import canonical_order
+from benchnav.threads import run_rows
+
+from ..approach import approach
+from .kernel import OWN, avoid
+
+
+class OrcaConfig(PluginConfig):
+    """Parameters of optimal reciprocal collision avoidance (van den Berg et al. 2011)."""
+
+    time_horizon: float = Field(
+        5.0, gt=0, description="[s] for which velocities are safe with respect to neighbours"
+    )
+    time_horizon_obstacle: float = Field(
+        2.0, gt=0, description="[s] for which velocities are safe with respect to edges"
+    )
+    margin: float = Field(0.01, ge=0, description="[m] by which every disc is taken to be larger")
+    neighbours: int = Field(10, ge=0, description="nearest neighbours that are considered")
+    perturbation: float = Field(
+        0.01, ge=0, lt=1,
+        description="size of a constant random part of the preferred velocity, as a share of"
+        " its length; breaks exact symmetry",
+    )  # fmt: skip
+
+
+class Avoidance:
+    """Turns targets into velocities that avoid neighbours and edges."""
+
+    def __init__(self, config: OrcaConfig) -> None:
+        self.config = config
+        self._told = RowTable()
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        """Take radii, limits and the symmetry-breaking offsets of the worlds ``rows`` (N,)."""
+        for row, briefing in zip(rows, briefings, strict=True):
+            count = len(briefing)
+            offset = np.empty((count, 2))
+            offset[canonical_order(briefing)] = 2.0 * briefing.rng.random((count, 2)) - 1.0
+            own = np.empty((count, 4))
+            own[:, 0] = briefing.radius
+            own[:, 1] = briefing.max_speed
+            own[:, 2] = briefing.preferred_speed
+            own[:, 3] = briefing.dt
+            self._told.put(int(row), own=own, offset=offset * self.config.perturbation)
+
+    def velocity(self, observation: Observation, target: FloatArray) -> FloatArray:
+        """(B, A, 2) velocity [m/s] near the one that leads to ``target`` (B, A, 2) [m]."""
+        worlds, agents = observation.active.shape
+        told = self._told.take("own", observation.rows, agents)
+        offset = self._told.take("offset", observation.rows, agents)
+        wanted = approach(observation.position, target, told[..., 2], told[..., 3])
+        speed = np.sqrt(np.sum(wanted * wanted, axis=-1, keepdims=True))
+        own = np.empty((worlds, agents, OWN))
+        own[..., 0:2] = observation.position
+        own[..., 2:4] = observation.velocity
+        own[..., 4:6] = wanted + speed * offset
+        own[..., 6:8] = told[..., 0:2]
+        own[..., 8] = 1.0 / np.where(told[..., 3] > 0.0, told[..., 3], 1.0)
+        return self._solve(own, observation.active, observation.neighbours, observation.edges)
+
+    def _solve(
+        self,
+        own: FloatArray,
+        active: BoolArray,
+        neighbours: Neighbours | None,
+        edges: Edges | None,
+    ) -> FloatArray:
+        worlds, agents = active.shape
+        rows = worlds * agents
+        seen = neighbours if neighbours is not None else no_neighbours(worlds, agents)
+        sides = edges if edges is not None else no_edges(worlds, agents)
+        parts = (
+            seen.position, seen.velocity, seen.radius, seen.kind, seen.count,
+            sides.start, sides.end, sides.before, sides.after,
+            sides.start_convex, sides.end_convex, sides.count,
+        )  # fmt: skip
+        flat = (np.ascontiguousarray(p).reshape(rows, *p.shape[2:]) for p in parts)
+        answer = np.zeros((rows, 2))
+        run_rows(
+            avoid, rows, own.reshape(rows, OWN), np.ascontiguousarray(active).reshape(rows), *flat,
+            self.config.neighbours, self.config.margin, 1.0 / self.config.time_horizon,
+            1.0 / self.config.time_horizon_obstacle, answer,
+        )  # fmt: skip
+        return answer.reshape(worlds, agents, 2)
+
+
+def no_neighbours(worlds: int, agents: int) -> Neighbours:
+    """Nobody in sight."""
+    at = (worlds, agents, 0)
+    return Neighbours(
+        np.zeros((*at, 2)), np.zeros((*at, 2)), np.zeros(at), np.zeros(at, np.int8),
+        np.zeros(at[:2], np.int64),
+    )  # fmt: skip
+
+
+def no_edges(worlds: int, agents: int) -> Edges:
+    """Nothing solid in sight."""
+    at = (worlds, agents, 0)
+    start, end, before, after = (np.zeros((*at, 2)) for _ in range(4))
+    convex = np.zeros(at, np.bool_)
+    return Edges(start, end, before, after, convex, convex, np.zeros(at[:2], np.int64))

@@ -1,0 +1,29 @@
+"""ORCA towards the guide's target."""
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.controller import Controller, Guide
+from benchnav.navigation.navigator import Need, PluginConfig
+from benchnav.navigation.observation import Observation
+
+from .avoidance import Avoidance, OrcaConfig
+
+
+class OrcaController(Controller):
+    """Optimal reciprocal collision avoidance, preferring to go to the guide's target."""
+
+    Config = OrcaConfig
+    needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self._avoidance = Avoidance(self.config)
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        self._avoidance.reset(briefings, rows)
+
+    def steer(self, observation: Observation, guide: Guide) -> FloatArray:
+        return self._avoidance.velocity(observation, guide.target)

@@ -1,0 +1,33 @@
+"""ORCA towards the goal."""
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.navigator import Navigator, Need, PluginConfig
+from benchnav.navigation.observation import Observation
+
+from .avoidance import Avoidance, OrcaConfig
+
+
+class Orca(Navigator):
+    """Optimal reciprocal collision avoidance, preferring to go straight at the goal.
+
+    Agents share the effort with agents; beside a dynamic obstacle, which never
+    yields, they take all of it. A unicycle tracks the velocity as the simulator
+    defines.
+    """
+
+    Config = OrcaConfig
+    needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self._avoidance = Avoidance(self.config)
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        self._avoidance.reset(briefings, rows)
+
+    def act(self, observation: Observation) -> FloatArray:
+        return self._avoidance.velocity(observation, observation.goal)

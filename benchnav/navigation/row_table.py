@@ -1,0 +1,52 @@
+"""What a navigator keeps for each row (world) and agent, as arrays."""
+
+import numpy as np
+
+from benchnav.arrays import AnyArray, IntArray
+
+
+class RowTable:
+    """Named arrays (rows, A, …) that grow as `reset` names rows; unset entries are zero.
+
+    >>> table = RowTable()
+    >>> table.put(2, speed=np.array([1.0, 1.5]))
+    >>> table.take("speed", np.array([2]), 3).tolist()
+    [[1.0, 1.5, 0.0]]
+    """
+
+    def __init__(self) -> None:
+        self._arrays: dict[str, AnyArray] = {}
+
+    def put(self, row: int, **values: AnyArray) -> None:
+        """Replace what ``row`` holds; each value starts with the agents' axis (A, …)."""
+        for name, value in values.items():
+            array = self._grown(name, row + 1, value)
+            array[row] = 0
+            array[row, : len(value)] = value
+
+    def take(self, name: str, rows: IntArray, agents: int) -> AnyArray:
+        """(B, agents, …) what the rows (B,) hold, cut or filled with zeros to ``agents``."""
+        array = self._arrays[name]
+        taken = array[rows, :agents]
+        missing = agents - taken.shape[1]
+        if missing > 0:
+            widths = [(0, 0), (0, missing)] + [(0, 0)] * (taken.ndim - 2)
+            taken = np.pad(taken, widths)
+        return taken
+
+    def at(self, name: str, row: int) -> AnyArray:
+        """(A, …) a view of what ``row`` holds, to be written to."""
+        view: AnyArray = self._arrays[name][row]
+        return view
+
+    def _grown(self, name: str, rows: int, value: AnyArray) -> AnyArray:
+        old = self._arrays.get(name)
+        if old is not None and old.shape[0] >= rows and old.shape[1] >= len(value):
+            return old
+        height, width = (0, 0) if old is None else old.shape[:2]
+        capacity = height if height >= rows else max(rows, 2 * height)
+        new = np.zeros((capacity, max(width, len(value)), *value.shape[1:]), value.dtype)
+        if old is not None:
+            new[:height, :width] = old
+        self._arrays[name] = new
+        return new
