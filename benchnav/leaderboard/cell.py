@@ -1,0 +1,62 @@
+"""One cell of a table for people: a number, its interval, and what it is based on."""
+
+import math
+from dataclasses import dataclass
+
+from benchnav.leaderboard.record import Record
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A piece of text; bold for the best, ties included."""
+
+    text: str
+    bold: bool = False
+
+
+def cell(r: Record | None, *, interval: bool, decided: bool) -> Cell:
+    """Value, unit, interval if wanted, and how many episodes define it if not all do.
+
+    ``decided`` says that somebody is significantly worse than the best: only then does
+    a bold cell tell anything.
+    """
+    if r is None or not r.episodes:
+        return Cell("")
+    if math.isnan(r.value):
+        return Cell("–")
+    text = number(r.value, r.value)
+    if interval and not math.isnan(r.low):
+        widest = max(abs(r.value), abs(r.low), abs(r.high))
+        low, value, high = (number(x, widest) for x in (r.low, r.value, r.high))
+        text = f"{value} [{low}, {high}]"
+    unit = f" {r.unit}" if r.unit else ""
+    count = f" ({r.defined})" if r.defined < r.episodes else ""
+    return Cell(f"{text}{unit}{count}", decided and r.rank_low == 1)
+
+
+def entrant(r: Record) -> Cell:
+    """A navigator's name, and how often it failed."""
+    return Cell(f"{r.navigator}, {r.failures} failed" if r.failures else r.navigator)
+
+
+def rank(r: Record | None) -> Cell:
+    """``1``, ``1–3`` for a tie, ``–`` where it does not rank."""
+    if r is None or r.rank_low is None or r.rank_high is None:
+        return Cell("–")
+    tie = r.rank_low != r.rank_high
+    return Cell(f"{r.rank_low}–{r.rank_high}" if tie else f"{r.rank_low}")
+
+
+def heading(r: Record) -> Cell:
+    """A metric and its direction."""
+    return Cell(r.metric + {"higher": " ↑", "lower": " ↓", None: ""}[r.better])
+
+
+def number(value: float, scale: float) -> str:
+    """About three figures, with as many decimals as ``scale`` takes."""
+    if scale == 0.0 or value == 0.0:
+        return "0"
+    size = math.floor(math.log10(abs(scale)))
+    if size < -4 or size > 5:
+        return f"{value:.1e}"
+    return f"{value:.{max(0, 2 - max(size, 0)) if size >= -1 else 1 - size}f}"

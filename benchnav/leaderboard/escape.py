@@ -1,0 +1,42 @@
+"""Names come from plugins and files: nothing in them may act in what is printed."""
+
+import re
+import unicodedata
+from html import escape
+
+_LATEX = {
+    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_",
+    "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
+    "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}", "[": "{[}", "]": "{]}",
+    '"': r"\textquotedbl{}", "–": "--", "↑": r"$\uparrow$", "↓": r"$\downarrow$",
+    "·": r"\textperiodcentered{}",
+}  # fmt: skip
+
+
+def visible(text: str) -> str:
+    """Line breaks become spaces, control and formatting characters a replacement mark."""
+    spaced = re.sub(r"\s+", " ", text)
+    return "".join("\ufffd" if unicodedata.category(c).startswith("C") else c for c in spaced)
+
+
+def markdown(text: str) -> str:
+    """Text that a Markdown table cell shows as it is."""
+    safe = visible(text).replace("&", "&amp;").replace("<", "&lt;").replace("\\", "\\\\")
+    safe = re.sub(r"([|*`~!])", r"\\\1", safe)
+    safe = re.sub(r"(?<![^\W_])_|_(?![^\W_])", r"\\_", safe)  # within a word it does nothing
+    return re.sub(r"\](?=[(\[:])", r"\\]", safe)
+
+
+def latex(text: str) -> str:
+    """Text that LaTeX prints as it is."""
+    return "".join(_LATEX.get(c, c) for c in visible(text))
+
+
+def html(text: str) -> str:
+    """Text that a browser shows as it is, in an element or an attribute."""
+    return escape(visible(text), quote=True)
+
+
+def spreadsheet(text: str) -> str:
+    """Text that a spreadsheet does not take for a formula."""
+    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text

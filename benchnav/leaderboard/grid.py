@@ -1,0 +1,172 @@
+"""From rows of results to dense arrays: one stratum per set of episodes that may be compared."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from hashlib import sha256
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from benchnav.errors import UsageError
+from benchnav.metrics.metric import Metric
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+KEYS = ("split", "track", "role", "scenario", "scenario_hash", "horizon", "dt")
+
+
+@dataclass(frozen=True, eq=False)
+class Stratum:
+    """Episodes with the same split, track, role, scenario, geometry, horizon and time step.
+
+    S seeds, N navigators, M metrics.
+    """
+
+    split: str
+    track: str
+    role: str
+    scenario: str
+    scenario_hash: str
+    horizon: float
+    dt: float
+    navigators: tuple[str, ...]  # (N,) sorted
+    metrics: tuple[str, ...]  # (M,) sorted
+    seeds: IntArray  # (S,) sorted
+    value: FloatArray  # (S, N, M) NaN where undefined
+    agents: FloatArray  # (S, N, M) over which a value was taken
+    attempted: BoolArray  # (S, N)
+    failed: BoolArray  # (S, N) the navigator failed
+
+    def rng(self, purpose: str) -> np.random.Generator:
+        """A generator of this stratum's own, whatever else the table holds."""
+        key = "\0".join([purpose, *(str(getattr(self, name)) for name in KEYS)])
+        return np.random.default_rng(list(sha256(key.encode()).digest()))
+
+
+def strata(results: pa.Table, metrics: Mapping[str, Metric]) -> list[Stratum]:
+    """Every stratum, sorted by its key, whatever the order of the rows (RESULTS).
+
+    Raises UsageError where one navigator has two values in one world.
+    """
+    rows = results.num_rows
+    columns = {name: _encode(results[name]) for name in (*KEYS, "navigator", "metric", "seed")}
+    numbers = {name: results[name].to_numpy() for name in ("value", "defined")}
+    numbers["failed"] = _failed(results["failure"])
+    codes = np.zeros(rows, dtype=np.int64)
+    for name in KEYS:
+        code, known = columns[name]
+        if len(known) > 1:
+            codes = np.unique(codes * len(known) + code, return_inverse=True)[1]
+    order = np.argsort(codes, kind="stable")
+    ends = np.flatnonzero(np.diff(codes[order])) + 1
+    parts = np.split(order, ends) if rows else []
+    found = [_stratum(part, columns, numbers, metrics) for part in parts]
+    return sorted(found, key=lambda s: tuple(getattr(s, name) for name in KEYS))
+
+
+def _encode(column: Any) -> tuple[IntArray, list[Any]]:
+    """(rows,) codes and the sorted values that they stand for."""
+    import pyarrow.compute as pc
+
+    encoded = pc.dictionary_encode(column).combine_chunks()
+    if hasattr(encoded, "chunks"):
+        encoded = encoded.chunk(0)
+    values = encoded.dictionary.to_pylist()
+    order = sorted(range(len(values)), key=lambda i: values[i])
+    place = np.empty(len(values), dtype=np.int64)
+    place[order] = np.arange(len(values))
+    return place[encoded.indices.to_numpy()], [values[i] for i in order]
+
+
+def _failed(column: Any) -> BoolArray:
+    import pyarrow.compute as pc
+
+    failed: BoolArray = pc.not_equal(pc.fill_null(column, ""), "").to_numpy()
+    return failed
+
+
+def _stratum(
+    part: IntArray,
+    columns: Mapping[str, tuple[IntArray, list[Any]]],
+    numbers: Mapping[str, AnyArray],
+    metrics: Mapping[str, Metric],
+) -> Stratum:
+    key = {name: columns[name][1][int(columns[name][0][part[0]])] for name in KEYS}
+    at, axes = [], []
+    for name in ("seed", "navigator", "metric"):
+        code, values = columns[name]
+        present, place = np.unique(code[part], return_inverse=True)
+        at.append(place)
+        axes.append([values[int(i)] for i in present])
+    shape = tuple(len(axis) for axis in axes)
+    flat = np.ravel_multi_index(tuple(at), shape)
+    kept, settled = _settle(numbers["value"][part], flat, axes, metrics)
+    value = np.full(shape, np.nan)
+    agents = np.zeros(shape)
+    value.ravel()[flat[kept]] = settled
+    agents.ravel()[flat[kept]] = numbers["defined"][part[kept]]
+    attempted = np.zeros(shape[:2], dtype=np.bool_)
+    failed = np.zeros(shape[:2], dtype=np.bool_)
+    attempted[at[0], at[1]] = True
+    broken = numbers["failed"][part]
+    failed[at[0][broken], at[1][broken]] = True
+    _charge(value, agents, failed, axes[2], metrics)
+    return Stratum(
+        **key, navigators=tuple(axes[1]), metrics=tuple(axes[2]),
+        seeds=np.array(axes[0], dtype=np.int64),
+        value=value, agents=agents, attempted=attempted, failed=failed,
+    )  # fmt: skip
+
+
+def _settle(
+    value: FloatArray, flat: IntArray, axes: list[list[Any]], metrics: Mapping[str, Metric]
+) -> tuple[IntArray, FloatArray]:
+    """(K,) one row for each cell, and the value (K,) that counts for it.
+
+    Rows that repeat an episode count once; timings of repeated runs are averaged.
+    """
+    order = np.lexsort((value, flat))  # NaN comes last
+    cell, first, count = np.unique(flat[order], return_index=True, return_counts=True)
+    settled = value[order[first]].astype(np.float64)
+    greatest = value[order[first + count - 1]]
+    same = (settled == greatest) | (np.isnan(settled) & np.isnan(greatest))
+    for i in np.flatnonzero(~same):
+        at = np.unravel_index(int(cell[i]), [len(axis) for axis in axes])
+        seed, navigator, metric = (axis[int(k)] for axis, k in zip(axes, at, strict=True))
+        if metric not in metrics or metrics[metric].verifiable:
+            raise UsageError(
+                f"A navigator must have one value in one world, but {navigator!r} has"
+                f" {settled[i]:.6g} and {greatest[i]:.6g} for {metric!r} at seed {seed}."
+                " Give runs of differently configured navigators different labels."
+            )
+        settled[i] = float(np.nanmean(value[order[first[i] : first[i] + count[i]]]))
+    return order[first], settled
+
+
+def _charge(
+    value: FloatArray,
+    agents: FloatArray,
+    failed: BoolArray,
+    names: list[str],
+    metrics: Mapping[str, Metric],
+) -> None:
+    """A failed episode counts with the worst value that its metric can take.
+
+    It is undefined where there is no worst, where the metric is conditional on having
+    arrived or is undefined in that world for everybody, and stays where it only describes.
+    """
+    for m, name in enumerate(names):
+        metric = metrics.get(name)
+        if metric is None or metric.better is None:
+            continue
+        worst = metric.low if metric.better == "higher" else metric.high
+        known = ~np.isnan(value[:, :, m])
+        owed = failed & (metric.rate | known.any(axis=1, keepdims=True))
+        possible = np.isfinite(worst) and not metric.conditional
+        value[:, :, m][failed] = np.nan
+        value[:, :, m][owed] = worst if possible else np.nan
+        agents[:, :, m][owed] = np.maximum(agents[:, :, m].max(initial=1.0), 1.0)

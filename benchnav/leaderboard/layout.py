@@ -1,0 +1,167 @@
+"""What a table for people shows, whatever it is printed as."""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+from benchnav.errors import UsageError, did_you_mean
+from benchnav.leaderboard.cell import Cell, cell, entrant, heading, rank
+from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Leaderboard, Record
+
+DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "decision_time_p50")
+NARROW = 4  # metrics up to which every cell shows its interval
+INTERVALS = 2  # metrics that show it in a wider table
+WIDE = 8  # metrics beyond which a table has a row for each of them
+ABREAST = 5  # navigators side by side in such a table
+
+LEGEND = (
+    "value [low, high] is the mean over worlds with its 95 % interval;"
+    " (n) where only n episodes define it.",
+    "rank, by the first metric that ranks, counts those significantly better and worse"
+    " (paired worlds, sign flips, Holm): 1–3 is a tie.",
+    "Bold: nobody is significantly better. ↑ more is better, ↓ less is better."
+    " A failed episode counts as the worst: success 0, collided 1.",
+)
+
+
+@dataclass(frozen=True)
+class Section:
+    """One table."""
+
+    title: str
+    headings: tuple[Cell, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    notes: tuple[str, ...]
+
+
+def choose(board: Leaderboard, metrics: Sequence[str] | None) -> tuple[str, ...]:
+    """The metrics to show: the default few, ``["all"]``, or those named.
+
+    Raises UsageError for a metric that the leaderboard does not hold.
+    """
+    if metrics is None:
+        return tuple(name for name in DEFAULT if name in board.metrics) or board.metrics[:NARROW]
+    if list(metrics) == ["all"]:
+        return board.metrics
+    for name in metrics:
+        if name not in board.metrics:
+            raise UsageError(
+                f"A metric to show must be one that the leaderboard holds. Got {name!r} instead."
+                f"{did_you_mean(name, board.metrics)} 'all' shows all."
+            )
+    return tuple(dict.fromkeys(metrics))
+
+
+def sections(board: Leaderboard, metrics: Sequence[str] | None) -> Iterator[Section]:
+    """Tables of a leaderboard, one per track, scenario and role."""
+    shown = choose(board, metrics)
+    groups = {key: list(group) for key, group in groupby(board.records, key=_key)}
+    for key, records in groups.items():
+        if key[2] == ALL_INTERQUARTILE:
+            continue
+        variants = sum((*k[:3], k[-1]) == (*key[:3], key[-1]) for k in groups) > 1
+        middle = [
+            r
+            for k, group in groups.items()
+            for r in group
+            if key[2] == ALL and (*k[:3], k[-1]) == (*key[:2], ALL_INTERQUARTILE, key[-1])
+        ]
+        yield from _Table(records, middle, shown).sections(_title(records, variants))
+
+
+def _key(r: Record) -> tuple[str, ...]:
+    """What stands in one table: the scenario is third, the role last."""
+    return r.split, r.track, r.scenario, r.scenario_hash, f"{r.horizon!r}", f"{r.dt!r}", r.role
+
+
+def _title(records: list[Record], variants: bool) -> str:
+    first = records[0]
+    scenario = "all scenarios" if first.scenario == ALL else first.scenario
+    counts = {r.episodes for r in records if r.episodes}
+    worlds = f", {counts.pop()} worlds" if len(counts) == 1 else ""
+    split = "" if first.split == "test" else f", split {first.split}"
+    variant = (
+        f", horizon {first.horizon:g} s, dt {first.dt:g} s, hash {first.scenario_hash[:8]}"
+        if variants
+        else ""
+    )
+    return f"{scenario}, track {first.track}{split}, {first.role}s{worlds}{variant}"
+
+
+class _Table:
+    """The records of one scenario, track and role, the best navigator first."""
+
+    def __init__(self, records: list[Record], middle: list[Record], shown: Sequence[str]) -> None:
+        self.at = {(r.navigator, r.metric): r for r in records}
+        self.middle = {(r.navigator, r.metric): r for r in middle}
+        known = {r.metric for r in records}
+        self.metrics = [name for name in shown if name in known]
+        ranked = {r.metric for r in records if r.ranked}
+        self.leading = next((name for name in self.metrics if name in ranked), self.metrics[0])
+        self.navigators = sorted({r.navigator for r in records})
+        self.navigators.sort(key=lambda name: _merit(self.at[name, self.leading]))
+        # bold says something only where somebody is significantly worse
+        self.decided = {r.metric for r in records if (r.rank_low or 0) > 1}
+
+    def sections(self, title: str) -> Iterator[Section]:
+        """A row for each navigator, or for each metric where those are many."""
+        if len(self.metrics) <= WIDE:
+            rows = tuple(self._navigator(name) for name in self.navigators)
+            yield Section(title, tuple(self._headings()), rows, self._notes(self.navigators))
+            return
+        for start in range(0, len(self.navigators), ABREAST):
+            block = self.navigators[start : start + ABREAST]
+            names = tuple(entrant(self.at[name, self.leading]) for name in block)
+            ranks = tuple(rank(self.at[name, self.leading]) for name in block)
+            rows = tuple(self._metric(metric, block) for metric in self.metrics)
+            first = (Cell(f"rank ({self.leading})"), *ranks)
+            yield Section(title, (Cell("metric"), *names), (first, *rows), self._notes(block))
+
+    def _headings(self) -> Iterator[Cell]:
+        yield from (Cell("navigator"), Cell("rank"))
+        for metric in self.metrics:
+            yield heading(self._any(metric))
+            if self.middle and metric == self.leading:
+                yield Cell("middle half")  # interquartile mean over scenarios
+
+    def _navigator(self, name: str) -> tuple[Cell, ...]:
+        leader = self.at[name, self.leading]
+        row = [entrant(leader), rank(leader)]
+        if not leader.episodes:
+            blank = [Cell("")] * (len(self.metrics) - 1 + bool(self.middle))
+            return (*row, Cell(leader.note), *blank)
+        limit = len(self.metrics) if len(self.metrics) <= NARROW else INTERVALS
+        for place, metric in enumerate(self.metrics):
+            shown = place < limit - bool(self.middle)
+            row.append(self._cell(name, metric, shown))
+            if self.middle and metric == self.leading:
+                inner = self.middle.get((name, metric))
+                row.append(cell(inner, interval=False, decided=False))
+        return tuple(row)
+
+    def _metric(self, metric: str, block: list[str]) -> tuple[Cell, ...]:
+        return heading(self._any(metric)), *(self._cell(name, metric, True) for name in block)
+
+    def _cell(self, name: str, metric: str, interval: bool) -> Cell:
+        r = self.at.get((name, metric))
+        return cell(r, interval=interval, decided=metric in self.decided)
+
+    def _any(self, metric: str) -> Record:
+        return next(r for (_, name), r in self.at.items() if name == metric)
+
+    def _notes(self, names: list[str]) -> tuple[str, ...]:
+        leaders = [self.at[name, self.leading] for name in names]
+        return tuple(
+            f"{r.navigator} is not ranked: {r.note}." for r in leaders if r.note and r.episodes
+        )
+
+
+def _merit(r: Record) -> tuple[float, float, float]:
+    """Ranked before unranked before absent; then by value."""
+    if r.rank_low is None or r.rank_high is None:
+        ranks = (math.inf, math.inf if math.isnan(r.value) else 0.0)
+    else:
+        ranks = (float(r.rank_low), float(r.rank_high))
+    value = 0.0 if math.isnan(r.value) else r.value
+    return (*ranks, value if r.better == "lower" else -value)

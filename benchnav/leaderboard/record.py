@@ -1,0 +1,59 @@
+"""One number of a leaderboard, with everything that is needed to judge it."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+ALL = "all"
+"""Stands where a scenario stands: the mean over scenarios."""
+ALL_INTERQUARTILE = "all (interquartile mean)"
+"""Stands where a scenario stands: the interquartile mean over scenarios."""
+
+
+@dataclass(frozen=True)
+class NotApplicable:
+    """A cell that cannot be run: a navigator that needs what the track does not give."""
+
+    navigator: str
+    scenario: str
+    track: str
+    reason: str  # "needs a map"
+
+
+@dataclass(frozen=True)
+class Record:
+    """One navigator × scenario × track × role × metric."""
+
+    navigator: str
+    scenario: str  # "leaders/dynamic@1", ALL, or ALL_INTERQUARTILE
+    track: str
+    role: str
+    metric: str
+    value: float  # mean over episodes; NaN where no episode defines it
+    low: float  # of the 95 % interval; NaN where the episodes give none
+    high: float
+    unit: str
+    better: Literal["higher", "lower"] | None
+    episodes: int  # attempted
+    defined: int  # of them with a value (after failed ones were counted as failures)
+    failures: int  # of them in which the navigator failed
+    rank_low: int | None  # 1 + entries that are significantly better; None if not ranked
+    rank_high: int | None  # N − entries that are significantly worse
+    ranked: int  # N, how many entries were ranked together; 0 if not ranked
+    note: str  # why it is not ranked, or why there is no value; "" if it is ranked
+    split: str
+    scenario_hash: str  # "" for aggregates over scenarios
+    horizon: float  # [s]; NaN for aggregates
+    dt: float  # [s]; NaN for aggregates
+
+
+@dataclass(frozen=True)
+class Leaderboard:
+    """Tidy records, sorted; each group of episodes that may be compared stands together."""
+
+    records: tuple[Record, ...]
+    metrics: tuple[str, ...]  # every metric that occurs, in the order of the definitions
+
+    @property
+    def navigators(self) -> tuple[str, ...]:
+        """Every navigator that occurs, sorted."""
+        return tuple(sorted({record.navigator for record in self.records}))

@@ -1,0 +1,198 @@
+"""Results → leaderboard."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.leaderboard.estimate import (
+    Column,
+    Estimate,
+    Sample,
+    estimate,
+    interquartile_mean_over,
+    mean_over,
+)
+from benchnav.leaderboard.grid import Stratum, strata
+from benchnav.leaderboard.interval import resample
+from benchnav.leaderboard.record import (
+    ALL,
+    ALL_INTERQUARTILE,
+    Leaderboard,
+    NotApplicable,
+    Record,
+)
+from benchnav.leaderboard.standing import Standing, standings
+from benchnav.metrics.metric import Metric
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+MIDDLE_HALF = 4  # scenarios from which the interquartile mean differs from the mean
+
+
+def leaderboard(
+    results: pa.Table,
+    metrics: Mapping[str, Metric],
+    not_applicable: Sequence[NotApplicable] = (),
+) -> Leaderboard:
+    """Every navigator × scenario × track × role × metric, with interval and rank.
+
+    ``results`` has the schema `benchnav.store.results.RESULTS` and may join several
+    runs; the order of its rows changes nothing. ``metrics`` maps names to definitions;
+    a metric that it lacks is shown and not ranked. ``not_applicable`` are cells that
+    were not run. Raises UsageError where one navigator has two values in one world.
+    """
+    records: list[Record] = []
+    found = strata(results, metrics)
+    for _, group in groupby(found, key=lambda s: (s.split, s.track, s.role)):
+        aligned = _align(list(group))
+        records += _group(aligned, metrics)
+        records += _missing(aligned, not_applicable, metrics)
+    order = {name: place for place, name in enumerate(metrics)}
+    names = sorted(
+        {r.metric for r in records}, key=lambda name: (order.get(name, len(order)), name)
+    )
+    return Leaderboard(tuple(sorted(records, key=_place(names))), tuple(names))
+
+
+def _align(group: list[Stratum]) -> list[Stratum]:
+    """The same navigators and metrics in every stratum, absent ones unattempted."""
+    navigators = tuple(sorted({name for s in group for name in s.navigators}))
+    metrics = tuple(sorted({name for s in group for name in s.metrics}))
+    aligned = []
+    for s in group:
+        n = np.searchsorted(navigators, s.navigators)
+        m = np.searchsorted(metrics, s.metrics)
+        shape = (len(s.seeds), len(navigators), len(metrics))
+        value, agents = np.full(shape, np.nan), np.zeros(shape)
+        value[:, n[:, None], m], agents[:, n[:, None], m] = s.value, s.agents
+        attempted, failed = np.zeros(shape[:2], bool), np.zeros(shape[:2], bool)
+        attempted[:, n], failed[:, n] = s.attempted, s.failed
+        aligned.append(
+            replace(s, navigators=navigators, metrics=metrics, value=value, agents=agents)
+        )
+        aligned[-1] = replace(aligned[-1], attempted=attempted, failed=failed)
+    return aligned
+
+
+@dataclass(frozen=True, eq=False)
+class _Body:
+    """What the records of one scenario, or of all, are made of: n worlds, N × M columns."""
+
+    scenario: str
+    stratum: Stratum  # gives split, track, role and the axes
+    value: FloatArray  # (n, N, M)
+    attempted: BoolArray  # (n, N)
+    failed: BoolArray  # (n, N)
+    found: Estimate  # (N·M,)
+    places: list[list[Standing]]  # [metric][navigator]
+    single: bool  # False for aggregates over scenarios
+
+
+def _group(group: list[Stratum], metrics: Mapping[str, Metric]) -> Iterator[Record]:
+    """Records of strata that share split, track and role, then those over all of them."""
+    column = _columns(group[0], metrics)
+    samples = [_sample(s) for s in group]
+    parts = [estimate(sample, column) for sample in samples]
+    for s, part in zip(group, parts, strict=True):
+        same = np.zeros(len(s.seeds), dtype=np.int64)
+        places = standings(s.value, s.attempted, same, s.metrics, metrics)
+        yield from _records(
+            _Body(s.scenario, s, s.value, s.attempted, s.failed, part, places, True), metrics
+        )
+    if len(group) < 2:
+        return
+    value = np.concatenate([s.value for s in group])
+    attempted = np.concatenate([s.attempted for s in group])
+    failed = np.concatenate([s.failed for s in group])
+    stratum = np.repeat(np.arange(len(group)), [len(s.seeds) for s in group])
+    places = standings(value, attempted, stratum, group[0].metrics, metrics)
+    whole = mean_over(parts, samples, column)
+    body = _Body(ALL, group[0], value, attempted, failed, whole, places, False)
+    yield from _records(body, metrics)
+    if len(group) >= MIDDLE_HALF:
+        middle = interquartile_mean_over(samples)
+        never = Standing(None, None, 0, "the mean over scenarios ranks")
+        unranked = [[never] * len(row) for row in places]
+        yield from _records(
+            replace(body, scenario=ALL_INTERQUARTILE, found=middle, places=unranked), metrics
+        )
+
+
+def _sample(s: Stratum) -> Sample:
+    worlds = len(s.seeds)
+    weights = resample(worlds, s.rng("bootstrap"))
+    return Sample(s.value.reshape(worlds, -1), s.agents.reshape(worlds, -1), weights)
+
+
+def _columns(s: Stratum, metrics: Mapping[str, Metric]) -> Column:
+    """Of N × M columns, navigator by navigator."""
+    known = [metrics.get(name) for name in s.metrics]
+    rate = np.array([m is not None and m.rate for m in known])
+    least = np.array([-np.inf if m is None else m.low for m in known])
+    most = np.array([np.inf if m is None else m.high for m in known])
+    repeat = len(s.navigators)
+    return Column(np.tile(rate, repeat), np.tile(least, repeat), np.tile(most, repeat))
+
+
+def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:
+    s = body.stratum
+    defined = (~np.isnan(body.value)).sum(axis=0)
+    for n, navigator in enumerate(s.navigators):
+        episodes = int(body.attempted[:, n].sum())
+        if not episodes:
+            continue
+        for m, name in enumerate(s.metrics):
+            at, place, metric = n * len(s.metrics) + m, body.places[m][n], metrics.get(name)
+            yield Record(
+                navigator, body.scenario, s.track, s.role, name,
+                float(body.found.value[at]), float(body.found.low[at]), float(body.found.high[at]),
+                metric.unit if metric else "", metric.better if metric else None,
+                episodes, int(defined[n, m]), int(body.failed[:, n].sum()),
+                place.low, place.high, place.ranked, place.note,
+                s.split, s.scenario_hash if body.single else "",
+                s.horizon if body.single else float("nan"), s.dt if body.single else float("nan"),
+            )  # fmt: skip
+
+
+def _missing(
+    group: list[Stratum], cells: Iterable[NotApplicable], metrics: Mapping[str, Metric]
+) -> Iterator[Record]:
+    """Records of cells that cannot be run, in every stratum that they would be part of."""
+    for cell in cells:
+        for s in group:
+            if (cell.scenario, cell.track) != (s.scenario, s.track):
+                continue
+            if (
+                cell.navigator in s.navigators
+                and s.attempted[:, s.navigators.index(cell.navigator)].any()
+            ):
+                continue  # another run did run it
+            for name in s.metrics:
+                metric = metrics.get(name)
+                yield Record(
+                    cell.navigator, s.scenario, s.track, s.role, name,
+                    float("nan"), float("nan"), float("nan"),
+                    metric.unit if metric else "", metric.better if metric else None,
+                    0, 0, 0, None, None, 0, f"n/a ({cell.reason})",
+                    s.split, s.scenario_hash, s.horizon, s.dt,
+                )  # fmt: skip
+
+
+def _place(names: Sequence[str]) -> Callable[[Record], tuple[Any, ...]]:
+    """Scenarios in order, then what stands for all of them; navigators and metrics within."""
+    order = {name: place for place, name in enumerate(names)}
+    aggregates = {ALL: 1, ALL_INTERQUARTILE: 2}
+
+    def key(r: Record) -> tuple[Any, ...]:
+        last = aggregates.get(r.scenario, 0)
+        variant = () if last else (r.scenario, r.scenario_hash, r.horizon, r.dt)
+        return (r.split, r.track, last, variant, r.role, r.navigator, order[r.metric])
+
+    return key
