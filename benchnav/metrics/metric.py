@@ -10,7 +10,7 @@ from benchnav.episode.episode import Episode
 
 @dataclass(frozen=True)
 class Metric:
-    """Per agent: ``function(episode) -> (A,)``. Per group: ``function(episode, members (A,)) -> float``.
+    """Per agent: ``function(episode) -> (A,)``; per group: ``function(episode, members) -> float``.
 
     Undefined is NaN, never a perfect score.
     """

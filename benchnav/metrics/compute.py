@@ -1,0 +1,73 @@
+"""Compute: wall-clock time, the one part of an episode that nobody can verify.
+
+Timings are those of the navigator's calls alone. A call serves a batch of worlds and
+is divided by them: figures compare where batches are alike; latency is measured in a
+pass of its own with one world.
+"""
+
+import math
+
+import numpy as np
+
+from benchnav.arrays import BoolArray
+from benchnav.episode.episode import Episode
+from benchnav.metrics.analysis import analyse
+from benchnav.metrics.metric import Metric
+from benchnav.metrics.success import OWN
+
+
+def decision_time(episode: Episode, share: float) -> float:
+    """[s] quantile ``share`` over decisions of the time per active agent of the navigator."""
+    ordered = analyse(episode).decision_per_agent
+    if len(ordered) == 0:
+        return math.nan
+    return float(np.interp(share * (len(ordered) - 1), np.arange(len(ordered)), ordered))
+
+
+def decision_time_p50(episode: Episode, members: BoolArray) -> float:
+    """[s] median time per decision and agent."""
+    return decision_time(episode, 0.50)
+
+
+def decision_time_p95(episode: Episode, members: BoolArray) -> float:
+    """[s] 95th percentile of the time per decision and agent."""
+    return decision_time(episode, 0.95)
+
+
+def decision_time_p99(episode: Episode, members: BoolArray) -> float:
+    """[s] 99th percentile of the time per decision and agent."""
+    return decision_time(episode, 0.99)
+
+
+def planning_time(episode: Episode, members: BoolArray) -> float:
+    """[s] that this world took of the navigator's reset."""
+    return float(episode.timings.planning)
+
+
+def over_budget(episode: Episode, members: BoolArray) -> float:
+    """Share of decisions that took longer than the scenario's budget; NaN without one."""
+    budget, decision = episode.world.clock.decision_budget, episode.timings.decision
+    if budget is None or len(decision) == 0:
+        return math.nan
+    return float((decision > budget).mean())
+
+
+DECISION_TIME_P50, DECISION_TIME_P95, DECISION_TIME_P99 = (
+    Metric(
+        f"decision_time_{name}", f"{title} decision time per agent", "s", "lower", 0.0, math.inf,
+        OWN, function, scope="group", verifiable=False,
+    )
+    for name, title, function in [
+        ("p50", "Median", decision_time_p50),
+        ("p95", "95th percentile of the", decision_time_p95),
+        ("p99", "99th percentile of the", decision_time_p99),
+    ]
+)  # fmt: skip
+PLANNING_TIME = Metric(
+    "planning_time", "Time before the first decision", "s", "lower", 0.0, math.inf, OWN,
+    planning_time, scope="group", verifiable=False,
+)  # fmt: skip
+OVER_BUDGET = Metric(
+    "over_budget", "Share of decisions over the scenario's budget", "", "lower", 0.0, 1.0, OWN,
+    over_budget, scope="group", verifiable=False,
+)  # fmt: skip

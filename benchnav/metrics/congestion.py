@@ -1,0 +1,193 @@
+"""Congestion: how crowded it was, and what crowding did to motion.
+
+Density, congestion level and velocity fluctuation describe everybody who was in the
+measurement area, background agents included; flow and jam are those of the members.
+All that needs a measurement area is NaN where the world defines none.
+"""
+
+import math
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.episode.episode import Episode
+from benchnav.metrics.analysis import Analysis, analyse
+from benchnav.metrics.density import frame_times
+from benchnav.metrics.metric import Metric
+from benchnav.metrics.success import OWN
+from benchnav.metrics.trajectory import positions_at, present_at
+
+SLOW = 0.2  # of the preferred speed
+CELL = 0.5  # [m] of the velocity field of the congestion level
+WINDOW = 10.0  # [s] over which that field is averaged
+
+
+def jam(episode: Episode) -> FloatArray:
+    """(A,) share of its time in which the agent was slower than 0.2 × its preferred speed
+    while not at the goal and with another agent's centre within two of its diameters.
+
+    NaN for an agent whose attempt was over at once.
+    """
+    found = analyse(episode)
+    t = found.trajectories
+    slow = t.speed < SLOW * episode.world.agents.preferred_speed[:, None]
+    jammed = (slow & found.encounters.near[:, :-1]) * t.duration
+    total = t.duration.sum(axis=1)
+    return np.where(total > 0.0, jammed.sum(axis=1) / np.where(total > 0.0, total, 1.0), math.nan)
+
+
+def density_mean(episode: Episode, members: BoolArray) -> float:
+    """[1/m²] mean over time of the Voronoi density."""
+    density = analyse(episode).density
+    return float(density.mean()) if len(density) else math.nan
+
+
+def density_peak(episode: Episode, members: BoolArray) -> float:
+    """[1/m²] greatest Voronoi density."""
+    density = analyse(episode).density
+    return float(density.max()) if len(density) else math.nan
+
+
+def flow(episode: Episode, members: BoolArray) -> float:
+    """[1/s] of members (A,) through the line that halves the measurement area.
+
+    The line lies across the axis along which the agents' goals are farther from their
+    starts. (N − 1) over the time between the first and the last crossing, each agent
+    counted when it first crosses; NaN with fewer than two.
+    """
+    area = episode.world.measurement_area
+    if area is None:
+        return math.nan
+    times = np.sort(first_crossings(analyse(episode), area)[members])
+    times = times[np.isfinite(times)]
+    if len(times) < 2 or times[-1] <= times[0]:
+        return math.nan
+    return float((len(times) - 1) / (times[-1] - times[0]))
+
+
+def first_crossings(found: Analysis, area: tuple[float, float, float, float]) -> FloatArray:
+    """(A,) [s] when each agent first crosses the middle line of ``area``; inf if never."""
+    agents, t = found.world.agents, found.trajectories
+    x = int(np.argmax(np.abs(agents.goal - agents.start).sum(axis=0)))  # the axis that is crossed
+    y = 1 - x
+    middle = 0.5 * (area[x] + area[x + 2])
+    before, after = t.position[:, :-1, x] - middle, t.position[:, 1:, x] - middle
+    crosses = ((before < 0.0) & (after >= 0.0)) | ((before >= 0.0) & (after < 0.0))
+    share = before / np.where(crosses, before - after, 1.0)
+    at = t.position[:, :-1, y] + share * np.diff(t.position[..., y], axis=1)
+    crosses &= (area[y] <= at) & (at <= area[y + 2])
+    times = np.arange(t.duration.shape[1]) * t.dt + share * t.duration
+    first: FloatArray = np.where(crosses, times, math.inf).min(axis=1, initial=math.inf)
+    return first
+
+
+def velocity_fluctuation(episode: Episode, members: BoolArray) -> float:
+    """[m/s] mean over time of the root mean square deviation from the mean velocity of those
+    who are in the measurement area; instants with fewer than two of them do not count.
+    """
+    area = episode.world.measurement_area
+    if area is None:
+        return math.nan
+    found = analyse(episode)
+    _, inside, velocity = _in_area(found, area, frame_times(found.trajectories))
+    count = inside.sum(axis=0)
+    weight = (inside / np.maximum(count, 1))[..., None]
+    mean = (velocity * weight).sum(axis=0)
+    variance = ((velocity - mean) ** 2 * weight).sum(axis=(0, 2))
+    return float(np.sqrt(variance[count > 1]).mean()) if (count > 1).any() else math.nan
+
+
+def congestion_level(episode: Episode, members: BoolArray) -> float:
+    """[1/m] (greatest − smallest rotation of the velocity field) / mean speed, mean over time.
+
+    The definition is Feliciani & Nishinari's; that the field is averaged over windows
+    of 10 s, in square cells of about 0.5 m, and that the rotation is taken around the
+    corners whose four cells were all visited, is this project's choice. Windows with
+    fewer than two such corners do not count.
+    """
+    area = episode.world.measurement_area
+    if area is None:
+        return math.nan
+    found = analyse(episode)
+    times = frame_times(found.trajectories)
+    place, inside, velocity = _in_area(found, area, times)
+    levels = []
+    for first in np.arange(0.0, times[-1] + 1e-9, WINDOW):
+        now = inside & (times >= first) & (times < first + WINDOW)
+        levels.append(_level(place[now], velocity[now], area))
+    defined = [level for level in levels if level == level]
+    return float(np.mean(defined)) if defined else math.nan
+
+
+def _level(
+    place: FloatArray, velocity: FloatArray, area: tuple[float, float, float, float]
+) -> float:
+    """Of one window: places and velocities (N, 2)."""
+    low, size = np.array(area[:2]), np.array([area[2] - area[0], area[3] - area[1]])
+    cells = np.maximum(1, np.round(size / CELL)).astype(np.int64)
+    index = np.clip(((place - low) / size * cells).astype(np.int64), 0, cells - 1)
+    flat = index[:, 0] * cells[1] + index[:, 1]
+    count = np.bincount(flat, minlength=int(cells.prod())).reshape(*cells)
+    field = (
+        np.stack(
+            [np.bincount(flat, v, int(cells.prod())).reshape(*cells) for v in velocity.T], axis=-1
+        )
+        / np.where(count > 0, count, np.nan)[..., None]
+    )
+    dx, dy = size / cells
+    vx, vy = field[..., 0], field[..., 1]
+    across = 0.5 * (vy[1:, :-1] + vy[1:, 1:] - vy[:-1, :-1] - vy[:-1, 1:]) / dx
+    along = 0.5 * (vx[:-1, 1:] + vx[1:, 1:] - vx[:-1, :-1] - vx[1:, :-1]) / dy
+    rotation = across - along
+    rotation = rotation[np.isfinite(rotation)]
+    speed = float(np.hypot(*velocity.T).mean()) if len(velocity) else 0.0
+    if len(rotation) < 2 or speed <= 0.0:
+        return math.nan
+    return float(rotation.max() - rotation.min()) / speed
+
+
+def _in_area(
+    found: Analysis, area: tuple[float, float, float, float], times: FloatArray
+) -> tuple[FloatArray, BoolArray, FloatArray]:
+    """Places (A, N, 2), who is in the area (A, N), and velocities (A, N, 2) at ``times``.
+
+    The velocity is the mean over half a second around the instant.
+    """
+    t = found.trajectories
+    place = positions_at(t, times)
+    inside = present_at(t, times) & (times[None] < t.end[:, None])
+    inside &= (place >= area[:2]).all(axis=2) & (place <= area[2:]).all(axis=2)
+    end = t.duration.shape[1] * t.dt
+    before, after = np.maximum(times - 0.25, 0.0), np.minimum(times + 0.25, end)
+    span = np.maximum(after - before, 1e-9)[None, :, None]
+    velocity: FloatArray = (positions_at(t, after) - positions_at(t, before)) / span
+    return place, inside, velocity
+
+
+JAM = Metric(
+    "jam", "Share of time slow beside another agent and not at the goal", "", "lower", 0.0, 1.0,
+    OWN, jam,
+)  # fmt: skip
+_STEFFEN = "Steffen & Seyfried 2010, computed with PedPy"
+DENSITY_MEAN = Metric(
+    "density_mean", "Mean Voronoi density in the measurement area", "1/m²", None, 0.0, math.inf,
+    _STEFFEN, density_mean, scope="group",
+)  # fmt: skip
+DENSITY_PEAK = Metric(
+    "density_peak", "Greatest Voronoi density in the measurement area", "1/m²", None, 0.0,
+    math.inf, _STEFFEN, density_peak, scope="group",
+)  # fmt: skip
+FLOW = Metric(
+    "flow", "Flow through the middle line of the measurement area", "1/s", None, 0.0, math.inf,
+    OWN, flow, scope="group",
+)  # fmt: skip
+CONGESTION_LEVEL = Metric(
+    "congestion_level", "Range of rotation of the velocity field over mean speed", "1/m", None,
+    0.0, math.inf, "Feliciani & Nishinari 2018", congestion_level, scope="group",
+)  # fmt: skip
+VELOCITY_FLUCTUATION = Metric(
+    "velocity_fluctuation", "Deviation of velocities from their mean in the measurement area",
+    "m/s", None, 0.0, math.inf,
+    "Helbing, Johansson & Al-Abideen 2007, whose variance is its square",
+    velocity_fluctuation, scope="group",
+)  # fmt: skip

@@ -1,0 +1,104 @@
+"""Voronoi density in the measurement area, computed with PedPy.
+
+Places are taken at 2 Hz, whatever the decision step. Cells are cut by everything that
+never moves (walls and static obstacles; what is thinner than 2 mm is made so thick,
+so that no cell reaches through a thin wall) and, as Steffen & Seyfried do for sparse
+crowds, kept below 2 m²: no cell reaches farther than 0.8 m from its agent.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from benchnav.arena.solid import Solid
+from benchnav.arena.world import World
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.metrics.trajectory import Trajectories, positions_at, present_at
+
+FRAME_RATE = 2.0  # [Hz]
+REACH = 0.8  # [m]: a circle of 2.01 m²
+QUARTER = 16  # segments of a quarter of that circle
+SKIN = 1e-3  # [m] half the least thickness of a wall
+
+
+def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
+    """(N,) [1/m²] at 2 Hz from the start on; (0,) where the world has no measurement area."""
+    area = world.measurement_area
+    if area is None:
+        return np.zeros(0)
+    import pedpy
+    import shapely
+
+    times = frame_times(trajectories)
+    ids, frames, points = bodies_at(trajectories, times)
+    walkable = walkable_area(world)
+    inside = shapely.contains_xy(walkable, points[:, 0], points[:, 1])
+    density = np.zeros(len(times))
+    if not inside.any():
+        return density
+    cells = pedpy.compute_individual_voronoi_polygons(
+        traj_data=_table(ids[inside], frames[inside], points[inside]),
+        walkable_area=pedpy.WalkableArea(walkable),
+        cut_off=pedpy.Cutoff(radius=REACH, quad_segments=QUARTER),
+    )
+    measured, _ = pedpy.compute_voronoi_density(
+        individual_voronoi_data=cells, measurement_area=pedpy.MeasurementArea(shapely.box(*area))
+    )
+    density[measured["frame"].to_numpy()] = measured["density"].to_numpy()
+    return density
+
+
+def frame_times(trajectories: Trajectories) -> FloatArray:
+    """(N,) [s] at 2 Hz, to the end of the record."""
+    record = trajectories.duration.shape[1] * trajectories.dt
+    return np.arange(int(record * FRAME_RATE + 1e-9) + 1) / FRAME_RATE
+
+
+def bodies_at(
+    trajectories: Trajectories, times: FloatArray
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Agent (N,), frame (N,) and place (N, 2) [m] of everybody who is a body at ``times``."""
+    ids, frames = np.nonzero(present_at(trajectories, times))
+    return ids, frames, positions_at(trajectories, times)[ids, frames]
+
+
+def walkable_area(world: World) -> Any:
+    """The part of the bounds, free of solids, that holds most of the measurement area."""
+    import shapely
+
+    free = shapely.box(*world.bounds)
+    for solid in world.solids:
+        free = _without(free, solid)
+    measured = shapely.box(*world.measurement_area or world.bounds)
+    parts = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon"]
+    if not parts:
+        return shapely.Polygon()
+    return max(parts, key=lambda part: (part.intersection(measured).area, part.area))
+
+
+def _without(free: Any, solid: Solid) -> Any:
+    """``free`` less a solid: loops that run counter-clockwise are filled, clockwise ones hollow."""
+    import shapely
+
+    if solid.is_disc:
+        return free.difference(shapely.Point(solid.center).buffer(solid.radius))
+    filled: list[Any] = []
+    hollow: list[Any] = []
+    for loop in solid.loops:
+        shape = shapely.make_valid(shapely.Polygon(loop))
+        clockwise = not shapely.LinearRing(loop).is_ccw
+        (hollow if clockwise and shape.area > 0.0 else filled).append(shape)
+    skin = shapely.union_all([shapely.LinearRing(loop).buffer(SKIN) for loop in solid.loops])
+    hole = shapely.union_all(hollow)
+    if any(shape.area > 0.0 for shape in filled):
+        body = shapely.union_all(filled).difference(hole)
+        return free.difference(body.union(skin))
+    return (free.intersection(hole) if hollow else free).difference(skin)
+
+
+def _table(ids: IntArray, frames: IntArray, points: FloatArray) -> Any:
+    import pandas as pd
+    import pedpy
+
+    columns = {"id": ids, "frame": frames, "x": points[:, 0], "y": points[:, 1]}
+    return pedpy.TrajectoryData(data=pd.DataFrame(columns), frame_rate=FRAME_RATE)

@@ -1,0 +1,94 @@
+"""Efficiency: length and time against what the walls alone would allow."""
+
+import math
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.episode.episode import Episode
+from benchnav.metrics.analysis import analyse
+from benchnav.metrics.metric import Metric
+from benchnav.metrics.success import OWN
+
+
+def time_to_goal(episode: Episode) -> FloatArray:
+    """(A,) [s] first arrival; NaN where it never came."""
+    return analyse(episode).arrival.copy()
+
+
+def path_length(episode: Episode) -> FloatArray:
+    """(A,) [m] travelled until the attempt was over, in the plane: turning adds nothing."""
+    return analyse(episode).trajectories.length.copy()
+
+
+def geodesic_length(episode: Episode) -> FloatArray:
+    """(A,) [m] shortest way of the agent's disc among walls and static obstacles to its goal disc.
+
+    NaN where static geometry moves within the episode.
+    """
+    return analyse(episode).geodesic.copy()
+
+
+def efficiency(episode: Episode) -> FloatArray:
+    """(A,) shortest way over way travelled, of those that arrived.
+
+    At most 1: chords between states cut corners by a hair, so a best path may measure
+    shorter than the shortest. NaN where the shortest way is nothing.
+    """
+    found = analyse(episode)
+    return np.where(found.arrived, _share(found.geodesic, found.trajectories.length), math.nan)
+
+
+def spl(episode: Episode) -> FloatArray:
+    """(A,) success weighted by path length: success · ℓ* / max(ℓ, ℓ*)."""
+    found = analyse(episode)
+    return found.success * _share(found.geodesic, found.trajectories.length)
+
+
+def sct(episode: Episode) -> FloatArray:
+    """(A,) success weighted by completion time: success · T* / max(T, T*).
+
+    T* is the shortest way at the preferred speed. (Yokoyama et al. use the fastest time
+    of their dynamics; preferred speed is this project's choice.)
+    """
+    found = analyse(episode)
+    best = found.geodesic / episode.world.agents.preferred_speed
+    time = np.where(found.success, found.arrival, best)
+    return found.success * _share(best, time)
+
+
+def makespan(episode: Episode, members: BoolArray) -> float:
+    """[s] when the last of the members (A,) arrived; NaN unless all did."""
+    times = analyse(episode).arrival[members]
+    return float(times.max()) if len(times) else math.nan
+
+
+def _share(best: FloatArray, taken: FloatArray) -> FloatArray:
+    """Best / max(taken, best); NaN where best is 0, for nothing was asked, or undefined."""
+    asked = np.where(best > 0.0, best, math.nan)
+    share: FloatArray = asked / np.maximum(taken, asked)
+    return share
+
+
+_ANDERSON = "Anderson et al. 2018, On evaluation of embodied navigation agents"
+_YOKOYAMA = "Yokoyama et al. 2021, Success weighted by completion time"
+
+TIME_TO_GOAL = Metric(
+    "time_to_goal", "Time until first arrival", "s", "lower", 0.0, math.inf, OWN, time_to_goal,
+    conditional=True,
+)  # fmt: skip
+PATH_LENGTH = Metric("path_length", "Way travelled", "m", None, 0.0, math.inf, OWN, path_length)
+GEODESIC_LENGTH = Metric(
+    "geodesic_length", "Shortest way among walls and static obstacles", "m", None, 0.0, math.inf,
+    OWN, geodesic_length,
+)  # fmt: skip
+EFFICIENCY = Metric(
+    "efficiency", "Shortest way over way travelled", "", "higher", 0.0, 1.0, OWN, efficiency,
+    conditional=True,
+)  # fmt: skip
+SPL = Metric("spl", "Success weighted by path length", "", "higher", 0.0, 1.0, _ANDERSON, spl)
+SCT = Metric("sct", "Success weighted by completion time", "", "higher", 0.0, 1.0, _YOKOYAMA, sct)
+MAKESPAN = Metric(
+    "makespan", "Time until the last one arrived", "s", "lower", 0.0, math.inf, OWN, makespan,
+    scope="group", conditional=True,
+)  # fmt: skip

@@ -1,0 +1,128 @@
+"""Groups: how a team keeps together. All describe the members of one team, two or more.
+
+A value is a mean over time, at 2 Hz, while at least two of the team's members are on
+their way, and then over the teams of which there are at least two members. NaN where
+no team has two. Following a guiding path is not measured here: the episode of a
+follower does not hold one.
+"""
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numba import njit
+
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.episode.episode import Episode
+from benchnav.metrics.analysis import analyse
+from benchnav.metrics.metric import Metric
+from benchnav.metrics.success import OWN
+
+LINK = 3.0  # diameters between centres that hold a group together
+STILL = 1e-9  # [m] a step that is shorter has no direction
+
+
+def cohesion(episode: Episode, members: BoolArray) -> float:
+    """Mean distance to the centroid over that of as many discs packed hexagonally into a disc.
+
+    n discs of radius r so packed fill a disc of radius R with n·2√3·r² = π·R², where the
+    mean distance to the centre is ⅔·R = ⅔·r·√(n·√12/π).
+    """
+    return _over_teams(episode, members, _spread)
+
+
+def polarisation(episode: Episode, members: BoolArray) -> float:
+    """Length of the mean of the unit vectors of motion (Vicsek order), of those that move."""
+    return _over_teams(episode, members, _order)
+
+
+def splits(episode: Episode, members: BoolArray) -> float:
+    """Connected parts of the team, where centres within three diameters are connected."""
+    return _over_teams(episode, members, _parts)
+
+
+Instants = Callable[[FloatArray, FloatArray, BoolArray, FloatArray], FloatArray]
+
+
+def _over_teams(episode: Episode, members: BoolArray, value: Instants) -> float:
+    """Mean over teams of the mean over time of ``value(place, step, active, radius)``."""
+    agents, found = episode.world.agents, analyse(episode)
+    place, step, active = found.group_motion
+    means = []
+    for team in np.unique(agents.team[members]):
+        own = np.flatnonzero(members & (agents.team == team))
+        together = active[own].sum(axis=0) > 1
+        if together.any():
+            now = np.ix_(own, np.flatnonzero(together))
+            values = value(place[now], step[now], active[now], agents.radius[own])
+            means.append(values[~np.isnan(values)])
+    defined = [float(mean.mean()) for mean in means if len(mean)]
+    return float(np.mean(defined)) if defined else math.nan
+
+
+def _spread(
+    place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
+) -> FloatArray:
+    """(N,) of places (n, N, 2) of those who are active (n, N)."""
+    share = active / active.sum(axis=0)
+    away = place - (place * share[..., None]).sum(axis=0)
+    distance = (np.hypot(away[..., 0], away[..., 1]) * share).sum(axis=0)
+    mean_radius = (radius[:, None] * share).sum(axis=0)
+    packed = np.sqrt(active.sum(axis=0) * math.sqrt(12.0) / math.pi)
+    spread: FloatArray = distance / (2.0 / 3.0 * mean_radius * packed)
+    return spread
+
+
+def _order(
+    place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
+) -> FloatArray:
+    """(N,); NaN where nobody moves."""
+    length = np.hypot(step[..., 0], step[..., 1])
+    moving = active & (length > STILL)
+    unit = np.where(moving, 1.0 / np.where(moving, length, 1.0), 0.0)[..., None] * step
+    count = moving.sum(axis=0)
+    order = np.hypot(*unit.sum(axis=0).T) / np.maximum(count, 1)
+    return np.where(count > 0, order, math.nan)
+
+
+@njit(cache=True)
+def _parts(
+    place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
+) -> FloatArray:
+    """(N,) parts of those who are active: each is filled from a seed, neighbour by neighbour."""
+    n, instants = active.shape
+    parts = np.zeros(instants)
+    stack = np.empty(n, np.int64)
+    for k in range(instants):
+        waiting = active[:, k].copy()
+        for seed in range(n):
+            if not waiting[seed]:
+                continue
+            parts[k] += 1.0
+            waiting[seed] = False
+            stack[0], top = seed, 1
+            while top > 0:
+                top -= 1
+                i = stack[top]
+                for j in range(n):
+                    dx = place[j, k, 0] - place[i, k, 0]
+                    dy = place[j, k, 1] - place[i, k, 1]
+                    reach = LINK * (radius[i] + radius[j])
+                    if waiting[j] and dx * dx + dy * dy <= reach * reach:
+                        waiting[j] = False
+                        stack[top] = j
+                        top += 1
+    return parts
+
+
+COHESION = Metric(
+    "cohesion", "Spread of a team over that of its closest packing", "", None, 0.0, math.inf, OWN,
+    cohesion, scope="group",
+)  # fmt: skip
+POLARISATION = Metric(
+    "polarisation", "How far a team moves in one direction", "", None, 0.0, 1.0,
+    "Vicsek et al. 1995", polarisation, scope="group",
+)  # fmt: skip
+SPLITS = Metric(
+    "splits", "Connected parts of a team", "", None, 1.0, math.inf, OWN, splits, scope="group"
+)

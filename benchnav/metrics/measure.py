@@ -1,0 +1,74 @@
+"""Episodes in, rows of the results table out."""
+
+from collections.abc import Sequence
+from functools import cache
+from typing import Any
+
+from benchnav.arena.agents import Role
+from benchnav.episode.episode import Episode
+from benchnav.errors import PluginError
+from benchnav.metrics.metric import Metric, evaluate
+from benchnav.plugins import METRICS
+
+
+def load_metric(name: str) -> Metric:
+    """The registered metric of this name.
+
+    Raises PluginError where the name stands for something else, and what the registry
+    raises where there is no such name or it cannot be imported.
+    """
+    metric = METRICS.load(name)
+    if not isinstance(metric, Metric):
+        raise PluginError(
+            f"The metric {name!r} must be a benchnav.metrics.metric.Metric."
+            f" Got {type(metric).__name__} from {METRICS.source(name).value}."
+        )
+    if ":" not in name and metric.name != name:
+        raise PluginError(
+            f"The metric registered as {name!r} must carry that name. Got {metric.name!r}"
+            f" from {METRICS.source(name).value}."
+        )
+    return metric
+
+
+def all_metrics() -> tuple[Metric, ...]:
+    """Every registered metric, by name."""
+    return tuple(load_metric(name) for name in METRICS.names())
+
+
+@cache
+def _no_metrics_twice(names: tuple[str, ...]) -> None:
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise PluginError(f"Metrics must have different names. Got {', '.join(twice)} twice.")
+
+
+def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]:
+    """Rows of `benchnav.store.results.RESULTS`: each metric for each role that is evaluated.
+
+    Background agents are in the world, but never scored. Raises PluginError, naming the
+    metric and the episode, where a metric raises or answers another shape.
+    """
+    _no_metrics_twice(tuple(metric.name for metric in metrics))
+    agents, who, clock = episode.world.agents, episode.identity, episode.world.clock
+    rows: list[dict[str, Any]] = []
+    for role in Role:
+        members = agents.evaluated & (agents.role == role)
+        if not members.any():
+            continue
+        common = {
+            "navigator": who.navigator, "scenario": who.scenario,
+            "scenario_hash": who.scenario_hash, "track": who.track, "split": who.split,
+            "seed": who.seed, "role": role.name.lower(), "agents": int(members.sum()),
+            "failure": episode.failure, "horizon": clock.horizon, "dt": clock.dt,
+        }  # fmt: skip
+        for metric in metrics:
+            try:
+                value, defined = evaluate(metric, episode, members)
+            except Exception as error:
+                raise PluginError(
+                    f"The metric {metric.name!r} failed on {who.scenario} seed {who.seed} of"
+                    f" {who.navigator!r}: {type(error).__name__}: {error}."
+                ) from error
+            rows.append({**common, "metric": metric.name, "value": value, "defined": defined})
+    return rows

@@ -1,0 +1,135 @@
+"""Safety: collisions, and how little was missing."""
+
+import numpy as np
+
+from benchnav.arena.solid import Kind
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.episode.episode import Episode
+from benchnav.metrics.analysis import analyse
+from benchnav.metrics.encounters import TTC_CAP
+from benchnav.metrics.metric import Metric
+from benchnav.metrics.success import OWN, rate
+
+INTIMATE = 0.45  # [m] Hall 1966: the far edge of intimate distance
+PERSONAL = 1.2  # [m] Hall 1966: the far edge of personal distance
+
+
+def collided(episode: Episode) -> FloatArray:
+    """(A,) 1 where the agent was charged with at least one collision event."""
+    return (_events(episode, episode.contacts.charged) > 0).astype(np.float64)
+
+
+def collisions_wall(episode: Episode) -> FloatArray:
+    """(A,) charged events with walls."""
+    return _of_kind(episode, Kind.WALL)
+
+
+def collisions_static(episode: Episode) -> FloatArray:
+    """(A,) charged events with static obstacles."""
+    return _of_kind(episode, Kind.STATIC)
+
+
+def collisions_dynamic(episode: Episode) -> FloatArray:
+    """(A,) charged events with dynamic obstacles."""
+    return _of_kind(episode, Kind.DYNAMIC)
+
+
+def collisions_agent(episode: Episode) -> FloatArray:
+    """(A,) charged events with other agents."""
+    return _of_kind(episode, Kind.AGENT)
+
+
+def contact_time(episode: Episode) -> FloatArray:
+    """(A,) [s] in charged contact with at least one partner: overlapping events count once."""
+    c = episode.contacts
+    total = np.zeros(len(episode.world.agents))
+    reached = np.zeros(len(total))
+    for n in np.flatnonzero(c.charged)[np.argsort(c.start[c.charged], kind="stable")]:
+        a = c.agent[n]
+        total[a] += max(0.0, c.end[n] - max(c.start[n], reached[a]))
+        reached[a] = max(reached[a], c.end[n])
+    return total
+
+
+def min_clearance(episode: Episode) -> FloatArray:
+    """(A,) [m] smallest gap to anything that can be hit; NaN where there is nothing.
+
+    Negative in overlap. Exact for motion that is straight between states.
+    """
+    clearance = analyse(episode).encounters.clearance
+    return np.where(np.isfinite(clearance), clearance, np.nan)
+
+
+def min_time_to_collision(episode: Episode) -> FloatArray:
+    """(A,) [s] smallest time to a touch if from some instant on all velocities stayed as they were.
+
+    Towards walls, obstacles and agents alike; at most 5 s, which is also the value of
+    an agent that is never on a collision course that is nearer than that.
+    """
+    return analyse(episode).encounters.time_to_collision
+
+
+def personal_space_intimate(episode: Episode) -> FloatArray:
+    """(A,) [s] with less than 0.45 m between the agent and another one, rim to rim."""
+    return _time_within(episode, INTIMATE)
+
+
+def personal_space_personal(episode: Episode) -> FloatArray:
+    """(A,) [s] with less than 1.2 m between the agent and another one, rim to rim."""
+    return _time_within(episode, PERSONAL)
+
+
+def _events(episode: Episode, chosen: BoolArray) -> FloatArray:
+    count = np.bincount(episode.contacts.agent[chosen], minlength=len(episode.world.agents))
+    return count.astype(np.float64)
+
+
+def _of_kind(episode: Episode, kind: Kind) -> FloatArray:
+    return _events(episode, episode.contacts.charged & (episode.contacts.kind == kind))
+
+
+def _time_within(episode: Episode, distance: float) -> FloatArray:
+    """(A,) [s]: the gap to the nearest agent is taken as linear between states."""
+    found = analyse(episode)
+    gap = found.encounters.gap - distance
+    before, after = gap[:, :-1], gap[:, 1:]
+    inside = np.where((before < 0.0) & (after < 0.0), 1.0, 0.0)
+    crosses = (before < 0.0) != (after < 0.0)
+    deeper = np.minimum(before, after)
+    share = np.where(crosses, deeper / np.where(crosses, -np.abs(after - before), 1.0), inside)
+    total: FloatArray = (share * found.trajectories.duration).sum(axis=1)
+    return total
+
+
+COLLIDED = rate("collided", "Charged with at least one collision", "lower", collided)
+_EVENTS = [
+    ("collisions_wall", "Collision events with walls", collisions_wall),
+    ("collisions_static", "Collision events with static obstacles", collisions_static),
+    ("collisions_dynamic", "Collision events with dynamic obstacles", collisions_dynamic),
+    ("collisions_agent", "Collision events with other agents", collisions_agent),
+]
+COLLISIONS_WALL, COLLISIONS_STATIC, COLLISIONS_DYNAMIC, COLLISIONS_AGENT = (
+    Metric(name, title, "", "lower", 0.0, np.inf, OWN, function)
+    for name, title, function in _EVENTS
+)
+CONTACT_TIME = Metric(
+    "contact_time", "Time in collision", "s", "lower", 0.0, np.inf, OWN, contact_time
+)
+MIN_CLEARANCE = Metric(
+    "min_clearance", "Smallest gap to anything that can be hit", "m", "higher",
+    -np.inf, np.inf, OWN, min_clearance,
+)  # fmt: skip
+MIN_TIME_TO_COLLISION = Metric(
+    "min_time_to_collision", "Smallest time to a collision at constant velocities, up to 5 s", "s",
+    "higher", 0.0, TTC_CAP, "Hayward 1972, Near-miss determination",
+    min_time_to_collision,
+)  # fmt: skip
+_HALL = "Hall 1966, The Hidden Dimension"
+PERSONAL_SPACE_INTIMATE = Metric(
+    "personal_space_intimate", "Time with another agent nearer than 0.45 m, rim to rim", "s",
+    "lower", 0.0, np.inf, _HALL, personal_space_intimate,
+)  # fmt: skip
+PERSONAL_SPACE_PERSONAL = Metric(
+    "personal_space_personal", "Time with another agent nearer than 1.2 m, rim to rim", "s",
+    "lower", 0.0, np.inf, _HALL, personal_space_personal,
+)  # fmt: skip

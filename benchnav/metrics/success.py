@@ -1,0 +1,97 @@
+"""Success: what became of every agent. All are rates over the agents, failures included."""
+
+import math
+from collections.abc import Callable
+from typing import Literal
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.episode.episode import Episode
+from benchnav.metrics.analysis import analyse
+from benchnav.metrics.metric import Metric
+from benchnav.metrics.trajectory import positions_at
+
+STUCK_WINDOW = 10.0  # [s]
+OWN = "own definition"
+
+
+def success(episode: Episode) -> FloatArray:
+    """(A,) 1 where the agent arrived and no charged contact had started before.
+
+    A contact that starts at the very instant of arrival does not count: the agent had
+    arrived. An agent whose navigator failed in the episode does not succeed.
+    """
+    return analyse(episode).success.astype(np.float64)
+
+
+def arrival(episode: Episode) -> FloatArray:
+    """(A,) 1 where the agent touched its goal disc before the horizon, hit or not."""
+    return analyse(episode).arrived.astype(np.float64)
+
+
+def timeout(episode: Episode) -> FloatArray:
+    """(A,) 1 where the agent was still on its way when the record ends at the horizon."""
+    found = analyse(episode)
+    return (found.active_at_end & ~found.failed).astype(np.float64)
+
+
+def stuck(episode: Episode) -> FloatArray:
+    """(A,) 1 where the agent timed out and was within one radius of its last place for 10 s.
+
+    NaN for all where the horizon is shorter than that.
+    """
+    found = analyse(episode)
+    if episode.world.clock.horizon < STUCK_WINDOW:
+        return np.full(len(found.arrival), math.nan)
+    t = found.trajectories
+    start = max(0.0, float(t.end.max(initial=0.0)) - STUCK_WINDOW)
+    states = np.arange(t.position.shape[1]) * t.dt
+    away = np.hypot(*(t.position - t.position[:, -1:]).transpose(2, 0, 1))
+    recent = np.where(states >= start, away, 0.0).max(axis=1)
+    first = np.hypot(*(positions_at(t, np.array([start])) - t.position[:, -1:]).transpose(2, 0, 1))
+    still: BoolArray = np.maximum(recent, first[:, 0]) < episode.world.agents.radius
+    return (still & found.active_at_end & ~found.failed).astype(np.float64)
+
+
+def failed(episode: Episode) -> FloatArray:
+    """(A,) 1 where the agent's navigator failed in this episode."""
+    return analyse(episode).failed.astype(np.float64)
+
+
+def success_time(episode: Episode) -> FloatArray:
+    """(A,) [s] when the agent succeeded; inf where it did not. Input of `success_by_horizon`."""
+    found = analyse(episode)
+    return np.where(found.success, found.arrival, math.inf)
+
+
+def success_by_horizon(times: FloatArray, horizons: FloatArray) -> FloatArray:
+    """Success against horizon: the cumulative incidence of success.
+
+    ``times`` (N,) [s] are the success times of *all* agents that are compared, inf for
+    those that never succeeded: failures stay in the denominator, so the curve rises to
+    the success rate and not to 1. Nobody is lost from sight before the horizon of the
+    episodes, so no correction for censoring is due up to there.
+
+    Returns (H,) shares for ``horizons`` (H,) [s]; NaN without agents.
+    """
+    if len(times) == 0:
+        return np.full(len(horizons), math.nan)
+    ordered = np.sort(times)
+    share: FloatArray = np.searchsorted(ordered, horizons, side="right") / len(times)
+    return share
+
+
+Function = Callable[[Episode], FloatArray]
+
+
+def rate(name: str, title: str, better: Literal["higher", "lower"], function: Function) -> Metric:
+    """A share of agents, defined by this project."""
+    return Metric(name, title, "", better, 0.0, 1.0, OWN, function, rate=True)
+
+
+SUCCESS = rate("success", "Arrived, with no collision before arriving", "higher", success)
+ARRIVAL = rate("arrival", "Came within goal tolerance before the horizon", "higher", arrival)
+TIMEOUT = rate("timeout", "Still on its way at the horizon", "lower", timeout)
+STUCK = rate("stuck", "Timed out within one radius of its last place for 10 s", "lower", stuck)
+FAILED = rate("failed", "Its navigator failed", "lower", failed)
