@@ -1,0 +1,133 @@
+"""Capsules sorted into the cells of a uniform grid: is a motion of a disc clear of all?"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.geometry.capsule import nearest_on_segment
+from benchnav.geometry.sweep import segment_distance2
+
+SLACK = 1e-8  # [m] of overlap that counts as touching: rounding must not close a passage
+_MAX_SIDE = 512  # cells along an axis
+
+
+class CapsuleGrid(NamedTuple):
+    """Capsules grown by a disc's radius; what does not reach into a cell is not listed there."""
+
+    capsules: FloatArray  # (P, 5)
+    reach: FloatArray  # (P,) [m] radius of the capsule + radius of the disc
+    start: IntArray  # (nx ny + 1,) first item of each cell
+    item: IntArray  # capsule indices by cell
+    x: float  # [m] lower left corner of the grid
+    y: float
+    side: float  # [m] of a cell
+    nx: int
+    ny: int
+
+
+def capsule_grid(capsules: FloatArray, radius: float) -> CapsuleGrid:
+    """The grid of capsules (P, 5) for a disc of ``radius`` [m]."""
+    capsules = np.ascontiguousarray(capsules, np.float64).reshape(-1, 5)
+    reach = capsules[:, 4] + radius
+    if len(capsules) == 0:
+        empty = np.zeros(0, np.int64)
+        return CapsuleGrid(capsules, reach, np.zeros(2, np.int64), empty, 0.0, 0.0, 1.0, 1, 1)
+    ends = capsules[:, :4].reshape(-1, 2, 2)
+    low = (ends.min(axis=1) - reach[:, None]).min(axis=0)
+    high = (ends.max(axis=1) + reach[:, None]).max(axis=0)
+    wide, tall = high - low
+    side = max(math.sqrt(wide * tall / len(capsules)), max(wide, tall) / (_MAX_SIDE - 1))
+    nx, ny = int(wide / side) + 1, int(tall / side) + 1
+    x, y = float(low[0]), float(low[1])
+    start, item = _sorted(capsules, reach, x, y, side, nx, ny)
+    return CapsuleGrid(capsules, reach, start, item, x, y, side, nx, ny)
+
+
+@njit(cache=True)
+def _sorted(
+    capsules: FloatArray, reach: FloatArray, x: float, y: float, side: float, nx: int, ny: int
+) -> tuple[IntArray, IntArray]:
+    """Counting sort of capsules into every cell that they reach, rising within a cell."""
+    start = np.zeros(nx * ny + 1, np.int64)
+    item = np.zeros(0, np.int64)
+    for fill in range(2):
+        for p in range(len(capsules)):
+            x0, y0, x1, y1 = capsules[p, 0], capsules[p, 1], capsules[p, 2], capsules[p, 3]
+            far = reach[p] + 0.7072 * side
+            i0 = max(0, int((min(x0, x1) - reach[p] - x) / side))
+            i1 = min(nx - 1, int((max(x0, x1) + reach[p] - x) / side))
+            j0 = max(0, int((min(y0, y1) - reach[p] - y) / side))
+            j1 = min(ny - 1, int((max(y0, y1) + reach[p] - y) / side))
+            for i in range(i0, i1 + 1):
+                for j in range(j0, j1 + 1):
+                    cx, cy = x + (i + 0.5) * side, y + (j + 0.5) * side
+                    qx, qy = nearest_on_segment(cx, cy, x0, y0, x1, y1)
+                    if (cx - qx) * (cx - qx) + (cy - qy) * (cy - qy) <= far * far:
+                        k = i * ny + j
+                        if fill == 0:
+                            start[k + 1] += 1
+                        else:
+                            item[start[k]] = p
+                            start[k] += 1
+        if fill == 0:
+            for k in range(nx * ny):
+                start[k + 1] += start[k]
+            item = np.zeros(start[nx * ny], np.int64)
+    for k in range(nx * ny, 0, -1):
+        start[k] = start[k - 1]
+    start[0] = 0
+    return start, item
+
+
+@njit(cache=True)
+def is_clear(grid: CapsuleGrid, ax: float, ay: float, bx: float, by: float) -> bool:
+    """True where the disc may go straight from a to b, touching allowed."""
+    if ax > bx:
+        ax, ay, bx, by = bx, by, ax, ay
+    side, wide = grid.side, bx - ax
+    i0 = max(0, math.floor((ax - grid.x) / side - 1e-9))
+    i1 = min(grid.nx - 1, math.floor((bx - grid.x) / side + 1e-9))
+    for i in range(i0, i1 + 1):
+        # the piece of ab over this column of cells
+        t0, t1 = 0.0, 1.0
+        if wide > 0.0:
+            t0 = min(max((grid.x + i * side - ax) / wide - 1e-9, 0.0), 1.0)
+            t1 = min(max((grid.x + (i + 1) * side - ax) / wide + 1e-9, 0.0), 1.0)
+        y0, y1 = ay + t0 * (by - ay), ay + t1 * (by - ay)
+        j0 = max(0, math.floor((min(y0, y1) - grid.y) / side - 1e-9))
+        j1 = min(grid.ny - 1, math.floor((max(y0, y1) - grid.y) / side + 1e-9))
+        for j in range(j0, j1 + 1):
+            cell = i * grid.ny + j
+            for k in range(grid.start[cell], grid.start[cell + 1]):
+                p = grid.item[k]
+                reach = grid.reach[p] - SLACK
+                c = grid.capsules[p]
+                if segment_distance2(ax, ay, bx, by, c[0], c[1], c[2], c[3]) < reach * reach:
+                    return False
+    return True
+
+
+@njit(cache=True)
+def nearby(grid: CapsuleGrid, x: float, y: float, radius: float) -> IntArray:
+    """Capsules that may reach within ``radius`` of a point: all that do, and more, some twice."""
+    side = grid.side
+    i0 = max(0, math.floor((x - radius - grid.x) / side))
+    i1 = min(grid.nx - 1, math.floor((x + radius - grid.x) / side))
+    j0 = max(0, math.floor((y - radius - grid.y) / side))
+    j1 = min(grid.ny - 1, math.floor((y + radius - grid.y) / side))
+    count = 0
+    for i in range(i0, i1 + 1):
+        for j in range(j0, j1 + 1):
+            count += grid.start[i * grid.ny + j + 1] - grid.start[i * grid.ny + j]
+    found = np.empty(count, np.int64)
+    count = 0
+    for i in range(i0, i1 + 1):
+        for j in range(j0, j1 + 1):
+            cell = i * grid.ny + j
+            for k in range(grid.start[cell], grid.start[cell + 1]):
+                found[count] = grid.item[k]
+                count += 1
+    return found

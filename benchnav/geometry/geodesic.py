@@ -1,0 +1,180 @@
+"""Shortest paths of a disc among capsules, exact to rounding.
+
+A shortest path of a disc's centre is made of straight motions that touch free
+arcs, and of the arcs between them (the generalised visibility graph, Latombe
+1991, chapter 4): the tangents of two arcs are found once, a query adds those from
+its start and to its goal and searches.
+
+It ends where the centre touches the goal disc, at the nearest point of it that
+can be reached: straight towards the goal's centre, or, where something stands in
+the goal disc, where its rim meets the boundary of free space.
+"""
+
+import math
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from benchnav.arrays import FloatArray
+from benchnav.geometry.capsule_grid import SLACK, capsule_grid, is_clear
+from benchnav.geometry.free_arc import Arcs, free_arcs
+from benchnav.geometry.geodesic_search import Found, Tangents, search, tangents
+from benchnav.geometry.rim import rim_points
+from benchnav.geometry.tangent import bitangents, point_tangents
+
+_BEND = math.radians(10.0)  # a waypoint of a polyline around an arc turns by at most this
+
+
+class _Route(NamedTuple):
+    length: float  # [m], NaN where there is no path
+    end: FloatArray  # (2,) [m]
+    leave: FloatArray | None = None  # (3,) link from the start; None: straight to the end
+    arrive: FloatArray | None = None  # (3,) link to the end
+    found: Found | None = None
+
+
+class FreeSpace:
+    """Where the centre of a disc of ``radius`` [m] may be among capsules (P, 5).
+
+    Loops must have what is solid on their left. Touching is allowed, and so is
+    overlap of up to 1e-8 m. Tangents are found when a query first needs them.
+
+    Raises:
+        ValueError: the radius is not above 1e-8.
+    """
+
+    def __init__(self, capsules: FloatArray, radius: float) -> None:
+        if not SLACK < radius < math.inf:
+            raise ValueError(f"The radius must be > {SLACK} m; got {radius}.")
+        self.radius = float(radius)
+        self._grid = capsule_grid(capsules, self.radius)
+
+    @cached_property
+    def _arcs(self) -> Arcs:
+        return free_arcs(self._grid)
+
+    @cached_property
+    def _graph(self) -> Tangents:
+        return tangents(self._arcs, bitangents(self._grid, self._arcs))
+
+    def is_free(self, place: FloatArray) -> bool:
+        """True where the disc at ``place`` (2,) [m] overlaps nothing."""
+        x, y = float(place[0]), float(place[1])
+        return bool(is_clear(self._grid, x, y, x, y))
+
+    def length(self, start: FloatArray, goal: FloatArray, tolerance: float = 0.0) -> float:
+        """Length [m] of the shortest path from ``start`` (2,) to the disc around ``goal`` (2,).
+
+        ``tolerance`` [m] is the goal disc's radius. NaN where there is no path.
+        """
+        return self._route(start, goal, tolerance).length
+
+    def path(self, start: FloatArray, goal: FloatArray, tolerance: float = 0.0) -> FloatArray:
+        """The same path as waypoints (W, 2) [m]; (0, 2) where there is none.
+
+        Arcs become polylines around them, so that no corner is cut; they are longer
+        than the arc by at most 0.3 %.
+        """
+        route = self._route(start, goal, tolerance)
+        if math.isnan(route.length):
+            return np.zeros((0, 2))
+        points = [np.asarray(start, np.float64)]
+        if route.leave is not None and route.arrive is not None and route.found is not None:
+            points += self._around(route.leave, route.arrive, route.found)
+        points.append(route.end)
+        line = np.array(points)
+        moved = np.hypot(*np.diff(line, axis=0).T) > 1e-9
+        kept: FloatArray = line[np.concatenate([[True], moved])]
+        return kept
+
+    def _route(self, start: FloatArray, goal: FloatArray, tolerance: float) -> _Route:
+        sx, sy, gx, gy = float(start[0]), float(start[1]), float(goal[0]), float(goal[1])
+        away = math.hypot(gx - sx, gy - sy)
+        nowhere = _Route(math.nan, np.array([gx, gy]))
+        if not is_clear(self._grid, sx, sy, sx, sy):
+            return nowhere
+        if away <= tolerance:
+            return _Route(0.0, np.array([sx, sy]))
+        share = (away - tolerance) / away
+        ex, ey = sx + share * (gx - sx), sy + share * (gy - sy)
+        if is_clear(self._grid, sx, sy, ex, ey):
+            return _Route(away - tolerance, np.array([ex, ey]))
+        arrive, ends = self._arrivals(gx, gy, tolerance)
+        best = nowhere
+        for x, y in ends[len(arrive) :]:
+            straight = math.hypot(x - sx, y - sy)
+            if not straight >= best.length and is_clear(self._grid, sx, sy, x, y):
+                best = _Route(straight, np.array([x, y]))
+        leave = point_tangents(self._grid, self._arcs, sx, sy, 0.0)
+        if not len(leave) or not len(arrive):
+            return best
+        found = search(self._arcs, self._graph, leave, arrive, gx, gy, tolerance)
+        if found.length == math.inf or found.length >= best.length:
+            return best
+        first, last = found.first, found.last
+        return _Route(found.length, ends[last], leave[first], arrive[last], found)
+
+    def _arrivals(self, x: float, y: float, tolerance: float) -> tuple[FloatArray, FloatArray]:
+        """Links (L, 3) to the goal disc; where each ends (L + E, 2), and the E rim points."""
+        links = point_tangents(self._grid, self._arcs, x, y, tolerance)
+        touch = self._rim(links)
+        share = tolerance / np.maximum(links[:, 2:] + tolerance, 1e-300)
+        ends = [(x, y) + share * (touch - (x, y))]
+        rim = rim_points(self._grid, x, y, tolerance) if tolerance > 0.0 else np.zeros((0, 2))
+        more = [point_tangents(self._grid, self._arcs, px, py, 0.0) for px, py in rim]
+        ends += [np.tile(point, (len(m), 1)) for point, m in zip(rim, more, strict=True)]
+        return np.vstack([links, *more]), np.vstack([*ends, rim])
+
+    def _rim(self, links: FloatArray) -> FloatArray:
+        """(L, 2) points on arcs of links (L, 3), or of anything that begins with arc, angle."""
+        arc = links[:, 0].astype(np.int64)
+        turn = self._arcs.low[arc] + links[:, 1]
+        out = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        return np.asarray(self._arcs.center[arc] + self._arcs.radius[arc, None] * out)
+
+    def _around(self, leave: FloatArray, arrive: FloatArray, found: Found) -> list[FloatArray]:
+        graph, nodes = self._graph, found.nodes
+        places = [leave[:2], *np.column_stack([graph.arc[nodes], graph.angle[nodes]]), arrive[:2]]
+        straight = np.zeros(len(places) - 1, bool)
+        straight[1:-1] = graph.other[nodes[:-1]] == nodes[1:]
+        points = [self._rim(places[0][None])[0]]
+        for here, there, jump in zip(places[:-1], places[1:], straight, strict=True):
+            if not jump and here[1] != there[1]:
+                points += list(self._bent(int(here[0]), here[1], there[1]))
+            points.append(self._rim(there[None])[0])
+        return points
+
+    def _bent(self, arc: int, begin: float, end: float) -> FloatArray:
+        """(N, 2) corners of the polyline around a piece of an arc."""
+        count = math.ceil(abs(end - begin) / _BEND)
+        step = (end - begin) / count
+        turn = self._arcs.low[arc] + begin + step * (np.arange(count) + 0.5)
+        reach = self._arcs.radius[arc] / math.cos(0.5 * step)
+        out = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+        return np.asarray(self._arcs.center[arc] + reach * out)
+
+
+def geodesic_lengths(
+    capsules: FloatArray, start: FloatArray, goal: FloatArray, radius: FloatArray, tolerance: float
+) -> FloatArray:
+    """(A,) lengths [m] of the shortest paths of A discs among capsules (P, 5); NaN: no path.
+
+    Args:
+        capsules: what stands, solid to the left of every loop.
+        start: (A, 2) [m].
+        goal: (A, 2) [m].
+        radius: (A,) [m] of the discs; equal ones share their graph.
+        tolerance: [m] a path ends this far from its goal.
+
+    Raises:
+        ValueError: a radius is not above 1e-8.
+    """
+    spaces: dict[float, FreeSpace] = {}
+    lengths = np.empty(len(start))
+    for a in range(len(start)):
+        size = float(radius[a])
+        if size not in spaces:
+            spaces[size] = FreeSpace(capsules, size)
+        lengths[a] = spaces[size].length(start[a], goal[a], tolerance)
+    return lengths

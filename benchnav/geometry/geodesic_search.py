@@ -1,0 +1,194 @@
+"""A* over tangents and arcs.
+
+Nodes are points where a tangent touches an arc. Neighbours of a node: the other
+end of its tangent, and the nodes before and after it on its arc. The search ends
+on links (rows of arc, angle, length), straight motions from the start and to the
+goal that touch arcs between nodes.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.geometry.free_arc import TWO_PI, Arcs
+
+
+class Tangents(NamedTuple):
+    """Nodes sorted by arc, then by angle."""
+
+    first: IntArray  # (arcs + 1,) first node of each arc
+    arc: IntArray  # (N,)
+    angle: FloatArray  # (N,) [rad] from the arc's beginning
+    point: FloatArray  # (N, 2) [m]
+    other: IntArray  # (N,) node at the tangent's other end
+    length: FloatArray  # (N,) [m] of the tangent
+
+
+class Found(NamedTuple):
+    """A shortest path: length [m] (inf: none), first and last link, nodes from start to goal."""
+
+    length: float
+    first: int
+    last: int
+    nodes: IntArray
+
+
+def tangents(arcs: Arcs, rows: FloatArray) -> Tangents:
+    """The graph of bitangents (M, 5); a full circle's end is joined to its beginning."""
+    full = np.flatnonzero(arcs.width >= TWO_PI).astype(np.float64)
+    zero = np.zeros(len(full))
+    seams = np.column_stack([full, zero, full, zero + TWO_PI, zero])
+    rows = np.vstack([rows, seams])
+    arc = np.concatenate([rows[:, 0], rows[:, 2]]).astype(np.int64)
+    angle = np.concatenate([rows[:, 1], rows[:, 3]])
+    order = np.lexsort((angle, arc))
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    other = rank[(order + len(rows)) % max(len(order), 1)]
+    arc, angle = arc[order], angle[order]
+    turn = arcs.low[arc] + angle
+    rim = np.stack([np.cos(turn), np.sin(turn)], axis=1) * arcs.radius[arc, None]
+    first = np.searchsorted(arc, np.arange(len(arcs.radius) + 1))
+    length = np.tile(rows[:, 4], 2)[order]
+    return Tangents(first, arc, angle, arcs.center[arc] + rim, other, length)
+
+
+@njit(cache=True)
+def search(
+    arcs: Arcs, graph: Tangents, leave: FloatArray, arrive: FloatArray,
+    goal_x: float, goal_y: float, tolerance: float,
+) -> Found:  # fmt: skip
+    """The shortest path that leaves by one link (·, 3) and arrives by another."""
+    size = len(graph.arc)
+    best, first, last = _on_one_arc(arcs, leave, arrive)
+    node = -1
+    ending, ending_link = _beside(arcs, graph, arrive)
+    cost, link = _beside(arcs, graph, leave)
+    parent = -2 - link  # -1: none; below that: a link from the start
+    key, item = np.empty(4 * size + 1), np.empty(4 * size + 1, np.int64)
+    waiting = 0
+    for n in range(size):
+        if link[n] >= 0:
+            bound = cost[n] + _least(graph, n, goal_x, goal_y, tolerance)
+            waiting = _push(key, item, waiting, bound, n)
+    done = np.zeros(size, np.bool_)
+    while waiting > 0 and key[0] < best:
+        n = item[0]
+        waiting = _pop(key, item, waiting)
+        if done[n]:
+            continue
+        done[n] = True
+        if cost[n] + ending[n] < best:
+            best, last, node = cost[n] + ending[n], ending_link[n], n
+        k = graph.arc[n]
+        for way in range(-1, 2):  # the node before on the arc, across the tangent, the node after
+            m = n + way if way != 0 else graph.other[n]
+            if way != 0 and (m < graph.first[k] or m >= graph.first[k + 1]):
+                continue
+            turn = graph.angle[m] - graph.angle[n]
+            through = cost[n] + (graph.length[n] if way == 0 else arcs.radius[k] * abs(turn))
+            if through < cost[m]:
+                cost[m], parent[m] = through, n
+                bound = through + _least(graph, m, goal_x, goal_y, tolerance)
+                waiting = _push(key, item, waiting, bound, m)
+    return _found(parent, best, first, last, node)
+
+
+@njit(cache=True)
+def _on_one_arc(arcs: Arcs, leave: FloatArray, arrive: FloatArray) -> tuple[float, int, int]:
+    """The shortest path of one arc between two links: (length, first, last); inf: none."""
+    best, first, last = math.inf, -1, -1
+    for a in range(len(leave)):
+        for b in range(len(arrive)):
+            if leave[a, 0] == arrive[b, 0]:
+                turn = abs(leave[a, 1] - arrive[b, 1])
+                way = leave[a, 2] + arcs.radius[int(leave[a, 0])] * turn + arrive[b, 2]
+                if way < best:
+                    best, first, last = way, a, b
+    return best, first, last
+
+
+@njit(cache=True)
+def _beside(arcs: Arcs, graph: Tangents, links: FloatArray) -> tuple[FloatArray, IntArray]:
+    """(N,) length from each node through the better link next to it on its arc; (N,) that link.
+
+    inf and -1 where no link is next to it.
+    """
+    length, link = np.full(len(graph.arc), math.inf), np.full(len(graph.arc), -1)
+    for a in range(len(links)):
+        k = int(links[a, 0])
+        at = _after(graph, k, links[a, 1])
+        for n in range(max(at - 1, graph.first[k]), min(at + 1, graph.first[k + 1])):
+            way = links[a, 2] + arcs.radius[k] * abs(links[a, 1] - graph.angle[n])
+            if way < length[n]:
+                length[n], link[n] = way, a
+    return length, link
+
+
+@njit(cache=True)
+def _found(parent: IntArray, best: float, first: int, last: int, node: int) -> Found:
+    count, n = 0, node
+    while n >= 0:
+        n = parent[n]
+        count += 1
+    if node >= 0:
+        first = -2 - n
+    nodes = np.empty(count, np.int64)
+    n = node
+    for k in range(count - 1, -1, -1):
+        nodes[k] = n
+        n = parent[n]
+    return Found(best, first, last, nodes)
+
+
+@njit(cache=True)
+def _least(graph: Tangents, n: int, x: float, y: float, tolerance: float) -> float:
+    """A path from node n to the goal is at least this long [m]."""
+    dx, dy = graph.point[n, 0] - x, graph.point[n, 1] - y
+    return max(0.0, math.sqrt(dx * dx + dy * dy) - tolerance)
+
+
+@njit(cache=True)
+def _after(graph: Tangents, arc: int, angle: float) -> int:
+    """The first node of an arc that lies beyond an angle."""
+    low, high = graph.first[arc], graph.first[arc + 1]
+    while low < high:
+        mid = (low + high) // 2
+        if graph.angle[mid] < angle:
+            low = mid + 1
+        else:
+            high = mid
+    return int(low)
+
+
+@njit(cache=True)
+def _push(key: FloatArray, item: IntArray, count: int, value: float, what: int) -> int:
+    at = count
+    while at > 0 and key[(at - 1) // 2] > value:
+        key[at], item[at] = key[(at - 1) // 2], item[(at - 1) // 2]
+        at = (at - 1) // 2
+    key[at], item[at] = value, what
+    return count + 1
+
+
+@njit(cache=True)
+def _pop(key: FloatArray, item: IntArray, count: int) -> int:
+    """Removes the least key; returns how many are left."""
+    count -= 1
+    value, what = key[count], item[count]
+    at = 0
+    while True:
+        child = 2 * at + 1
+        if child >= count:
+            break
+        if child + 1 < count and key[child + 1] < key[child]:
+            child += 1
+        if key[child] >= value:
+            break
+        key[at], item[at] = key[child], item[child]
+        at = child
+    key[at], item[at] = value, what
+    return count

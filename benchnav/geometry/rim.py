@@ -1,0 +1,75 @@
+"""Where the rim of a goal disc meets the boundary of free space."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from benchnav.arrays import FloatArray
+from benchnav.geometry.capsule_grid import CapsuleGrid, is_clear, nearby
+
+
+@njit(cache=True)
+def rim_points(grid: CapsuleGrid, x: float, y: float, radius: float) -> FloatArray:
+    """(E, 2) free points [m] at ``radius`` from (x, y) that touch a capsule."""
+    near = nearby(grid, x, y, radius)
+    points = np.empty((8 * len(near), 2))
+    count = 0
+    for p in near:
+        c, reach = grid.capsules[p], grid.reach[p]
+        for end in range(2):
+            count = _on_circle(points, count, x, y, radius, c[2 * end], c[2 * end + 1], reach)
+        for side in range(2):
+            count = _on_edge(points, count, x, y, radius, c, reach if side == 0 else -reach)
+    kept = 0
+    for k in range(count):
+        px, py = points[k, 0], points[k, 1]
+        if is_clear(grid, px, py, px, py):
+            points[kept, 0], points[kept, 1] = px, py
+            kept += 1
+    return points[:kept]
+
+
+@njit(cache=True)
+def _on_circle(
+    points: FloatArray, count: int,
+    x: float, y: float, radius: float, cx: float, cy: float, reach: float,
+) -> int:  # fmt: skip
+    """Appends where the rim crosses the circle around c."""
+    dx, dy = cx - x, cy - y
+    d = math.sqrt(dx * dx + dy * dy)
+    if d == 0.0:
+        return count
+    along = (radius * radius + d * d - reach * reach) / (2.0 * d)
+    if abs(along) > radius:
+        return count
+    across = math.sqrt(radius * radius - along * along)
+    ex, ey = dx / d, dy / d
+    points[count] = x + along * ex - across * ey, y + along * ey + across * ex
+    points[count + 1] = x + along * ex + across * ey, y + along * ey - across * ex
+    return count + 2
+
+
+@njit(cache=True)
+def _on_edge(
+    points: FloatArray, count: int,
+    x: float, y: float, radius: float, c: FloatArray, offset: float,
+) -> int:  # fmt: skip
+    """Appends where the rim crosses the segment of c, moved by ``offset`` to its left."""
+    dx, dy = c[2] - c[0], c[3] - c[1]
+    d = math.sqrt(dx * dx + dy * dy)
+    if d == 0.0:
+        return count
+    tx, ty = dx / d, dy / d
+    ox, oy = c[0] - ty * offset, c[1] + tx * offset
+    along = tx * (x - ox) + ty * (y - oy)
+    off = tx * (y - oy) - ty * (x - ox)
+    if abs(off) > radius:
+        return count
+    half = math.sqrt(radius * radius - off * off)
+    for sign in range(2):
+        t = along - half if sign == 0 else along + half
+        if 0.0 <= t <= d:
+            points[count] = ox + t * tx, oy + t * ty
+            count += 1
+    return count

@@ -1,0 +1,107 @@
+"""Straight motions that touch free arcs: from arc to arc, and from a point to arcs."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from benchnav.arrays import FloatArray
+from benchnav.geometry.capsule_grid import CapsuleGrid, is_clear
+from benchnav.geometry.free_arc import TWO_PI, Arcs
+
+_ON_ARC = 1e-12  # slack of the cosine that tells whether an arc reaches to a point of tangency
+
+
+@njit(cache=True, inline="always")
+def _on_arc(arcs: Arcs, k: int, ux: float, uy: float) -> bool:
+    cosine: float = ux * arcs.middle[k, 0] + uy * arcs.middle[k, 1]
+    least: float = arcs.spread[k] - _ON_ARC
+    return cosine >= least
+
+
+@njit(cache=True)
+def _angle_on(arcs: Arcs, k: int, ux: float, uy: float) -> float:
+    """[rad] from the beginning of arc k to the direction u, which lies on it."""
+    turn: float = (math.atan2(uy, ux) - arcs.low[k]) % TWO_PI
+    width: float = arcs.width[k]
+    if turn <= width:
+        return turn
+    return 0.0 if turn - width > 0.5 * (TWO_PI - width) else width
+
+
+@njit(cache=True)
+def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
+    """(M, 5) arc i, angle on i, arc j, angle on j, length of all free tangents of two arcs."""
+    rows = np.empty((256, 5))
+    count = 0
+    for i in range(len(arcs.radius)):
+        for j in range(i):
+            dx = arcs.center[j, 0] - arcs.center[i, 0]
+            dy = arcs.center[j, 1] - arcs.center[i, 1]
+            d2 = dx * dx + dy * dy
+            if d2 < 1e-24:
+                continue
+            d = math.sqrt(d2)
+            ex, ey = dx / d, dy / d
+            for which in range(4):
+                inner = 1.0 if which < 2 else -1.0  # the tangent passes between the two arcs
+                k = (arcs.radius[i] + inner * arcs.radius[j]) / d
+                if abs(k) > 1.0:
+                    continue
+                across = math.sqrt(1.0 - k * k) * (1.0 if which % 2 == 0 else -1.0)
+                ux, uy = k * ex - across * ey, k * ey + across * ex
+                if not _on_arc(arcs, i, ux, uy):
+                    continue
+                vx, vy = -inner * ux, -inner * uy
+                if not _on_arc(arcs, j, vx, vy):
+                    continue
+                ax = arcs.center[i, 0] + arcs.radius[i] * ux
+                ay = arcs.center[i, 1] + arcs.radius[i] * uy
+                bx = arcs.center[j, 0] + arcs.radius[j] * vx
+                by = arcs.center[j, 1] + arcs.radius[j] * vy
+                if not is_clear(grid, ax, ay, bx, by):
+                    continue
+                if count == len(rows):
+                    longer = np.empty((2 * count, 5))
+                    longer[:count] = rows
+                    rows = longer
+                length = math.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
+                rows[count, 0], rows[count, 1] = i, _angle_on(arcs, i, ux, uy)
+                rows[count, 2], rows[count, 3] = j, _angle_on(arcs, j, vx, vy)
+                rows[count, 4] = length
+                count += 1
+    return rows[:count]
+
+
+@njit(cache=True)
+def point_tangents(grid: CapsuleGrid, arcs: Arcs, px: float, py: float, short: float) -> FloatArray:
+    """(L, 3) arc, angle on it, length of the free tangents from a point.
+
+    The motion ends ``short`` [m] before the point and need be free only so far;
+    tangents that are no longer than that are left out.
+    """
+    rows = np.empty((2 * len(arcs.radius), 3))
+    count = 0
+    for k in range(len(arcs.radius)):
+        dx, dy = px - arcs.center[k, 0], py - arcs.center[k, 1]
+        d = math.sqrt(dx * dx + dy * dy)
+        radius = arcs.radius[k]
+        if d < radius - 1e-7:
+            continue
+        cosine = min(radius / d, 1.0)
+        length = math.sqrt(max(d * d - radius * radius, 0.0))
+        if short > 0.0 and length <= short:
+            continue
+        ex, ey = dx / d, dy / d
+        for side in range(2):
+            sine = math.sqrt(1.0 - cosine * cosine) * (1.0 if side == 0 else -1.0)
+            ux, uy = cosine * ex - sine * ey, cosine * ey + sine * ex
+            if not _on_arc(arcs, k, ux, uy):
+                continue
+            ax, ay = arcs.center[k, 0] + radius * ux, arcs.center[k, 1] + radius * uy
+            part = (length - short) / length if length > 0.0 else 0.0
+            if is_clear(grid, ax, ay, ax + part * (px - ax), ay + part * (py - ay)):
+                rows[count, 0], rows[count, 1] = k, _angle_on(arcs, k, ux, uy)
+                rows[count, 2] = length - short
+                count += 1
+    return rows[:count]
