@@ -1,0 +1,94 @@
+"""Angles and rotations from correctly rounded operations only.
+
+libm's sine differs between machines; these use +, -, ×, ÷ and floor in a fixed
+order, so that a simulated state is the same bits everywhere. Errors are below
+4e-16 (sine, cosine) and 4e-16 relative (arctangent) of the true value.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+TWO_PI = 2.0 * math.pi
+_HALF_PI = 0.5 * math.pi
+# pi/2 in three parts (Cody & Waite 1980): k times the first is exact for small k
+_HALF_PI_A = 1.5707963267341256
+_HALF_PI_B = 6.077100506303966e-11
+_HALF_PI_C = 2.0222662487959506e-21
+_TAN_PI_8 = math.sqrt(2.0) - 1.0
+
+
+@njit(cache=True, inline="always")
+def wrap(angle: float) -> float:
+    """The angle [rad] in [-pi, pi)."""
+    return angle - TWO_PI * math.floor((angle + math.pi) / TWO_PI)
+
+
+@njit(cache=True)
+def cos_sin(angle: float) -> tuple[float, float]:
+    """(cos, sin) of an angle [rad] of moderate size, by Taylor series on [-pi/4, pi/4]."""
+    k = math.floor(angle / _HALF_PI + 0.5)
+    x = ((angle - k * _HALF_PI_A) - k * _HALF_PI_B) - k * _HALF_PI_C
+    z = x * x
+    s = -1.0 / 1307674368000.0
+    s = s * z + 1.0 / 6227020800.0
+    s = s * z - 1.0 / 39916800.0
+    s = s * z + 1.0 / 362880.0
+    s = s * z - 1.0 / 5040.0
+    s = s * z + 1.0 / 120.0
+    s = s * z - 1.0 / 6.0
+    s = x + x * z * s
+    c = 1.0 / 20922789888000.0
+    c = c * z - 1.0 / 87178291200.0
+    c = c * z + 1.0 / 479001600.0
+    c = c * z - 1.0 / 3628800.0
+    c = c * z + 1.0 / 40320.0
+    c = c * z - 1.0 / 720.0
+    c = c * z + 1.0 / 24.0
+    c = 1.0 - 0.5 * z + z * z * c
+    quadrant = int(k) % 4
+    if quadrant == 0:
+        return c, s
+    if quadrant == 1:
+        return -s, c
+    if quadrant == 2:
+        return -c, -s
+    return s, -c
+
+
+@njit(cache=True)
+def angle_of(x: float, y: float) -> float:
+    """Direction [rad] of the vector (x, y) in [-pi, pi]; 0 for the zero vector."""
+    ax, ay = abs(x), abs(y)
+    if ax == 0.0 and ay == 0.0:
+        return 0.0
+    swapped = ay > ax
+    t = ax / ay if swapped else ay / ax
+    base = 0.0
+    if t > _TAN_PI_8:
+        base = 0.25 * math.pi
+        t = (t - 1.0) / (t + 1.0)
+    a = base + _arctan_small(t)
+    if swapped:
+        a = _HALF_PI - a
+    if x < 0.0:
+        a = math.pi - a
+    return -a if y < 0.0 else a
+
+
+@njit(cache=True)
+def _arctan_small(t: float) -> float:
+    """arctan on |t| ≤ tan(pi/8): Euler's series, whose terms shrink by t²/(1+t²) ≤ 0.147."""
+    q = t * t / (1.0 + t * t)
+    total = 1.0
+    for n in range(20, 0, -1):
+        total = 1.0 + total * q * (2.0 * n) / (2.0 * n + 1.0)
+    return total * t / (1.0 + t * t)
+
+
+def rotated(points: np.ndarray, angle: float) -> np.ndarray:
+    """(…, 2) points turned counter-clockwise by ``angle`` [rad] about the origin."""
+    c, s = cos_sin(angle)
+    x, y = points[..., 0], points[..., 1]
+    return np.stack([c * x - s * y, s * x + c * y], axis=-1)

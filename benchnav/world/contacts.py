@@ -1,0 +1,193 @@
+"""What a touch does: the ledger of collision events, and the response of the bodies."""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from benchnav.arena.world import ContactRule
+from benchnav.arrays import AnyArray, IntArray
+from benchnav.episode.episode import Status
+from benchnav.world.fixed import cell_at
+from benchnav.world.touch import AGENT, BODY, FIXED, GOAL, from_agent, from_body, from_fixed
+
+RELEASE = 0.01  # [m] a contact lasts until the gap is wider: sliding bodies part by a sagitta
+MAX_HITS = 8  # touches of one agent within a substep, after which it is wedged and stands
+
+_ACTIVE, _ARRIVED, _ENDED = int(Status.ACTIVE), int(Status.ARRIVED), int(Status.ENDED)
+_STOP, _END = int(ContactRule.STOP), int(ContactRule.END)
+
+
+@njit(cache=True)
+def touch(
+    i: int, time: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    capsules: AnyArray, opened: AnyArray, closed: AnyArray,
+) -> int:  # fmt: skip
+    """Agent i meets the partner in its code now: record and respond. Returns another agent or -1."""
+    a = agents[i]
+    which, k = a.code % 4, a.code // 4
+    if which == GOAL:
+        a.arrival = time
+        _finish(i, _ARRIVED, world.vanish_on_arrival, time, world, a, opened[i], closed)
+        return -1
+    if which == AGENT:
+        _touch_agent(i, k, time, world, agents, opened, closed)
+        return int(k)
+    ux, uy = 0.0, 0.0
+    code = a.code
+    if which == FIXED:
+        dx, dy, _ = from_fixed(a, capsules[k])
+        code = 4 * capsules[k].solid + FIXED
+    else:
+        dx, dy, _ = from_body(a, bodies[k], shapes)
+        ux, uy = bodies[k].vx, bodies[k].vy
+    nx, ny = _unit(dx, dy)
+    closing = (ux - a.vx) * nx + (uy - a.vy) * ny
+    a.hits += 1
+    _record(i, code, time, closing, True, world, a, opened[i], closed)
+    _respond(i, nx, ny, closing, time, world, a, opened[i], closed)
+    return -1
+
+
+@njit(cache=True)
+def _touch_agent(
+    i: int, j: int, time: float, world: Any, agents: AnyArray, opened: AnyArray, closed: AnyArray
+) -> None:
+    """Each gives up only its own motion towards the other: nobody is pushed by an agent."""
+    a, b = agents[i], agents[j]
+    dx, dy, _ = from_agent(a, b)
+    nx, ny = _unit(dx, dy)
+    own, other = a.vx * nx + a.vy * ny, b.vx * nx + b.vy * ny
+    active = b.status == _ACTIVE
+    a.hits += 1
+    b.hits += 1
+    _record(i, 4 * j + AGENT, time, other - own, True, world, a, opened[i], closed)
+    charged = active or world.charge_both
+    _record(j, 4 * i + AGENT, time, other - own, charged, world, b, opened[j], closed)
+    give_i = max(min(other, 0.0) - own, 0.0)
+    give_j = max(other - max(own, 0.0), 0.0)
+    if active:
+        _respond(j, -nx, -ny, give_j, time, world, b, opened[j], closed)
+    _respond(i, nx, ny, give_i, time, world, a, opened[i], closed)
+
+
+@njit(cache=True)
+def _unit(dx: float, dy: float) -> tuple[float, float]:
+    length = math.sqrt(dx * dx + dy * dy)
+    return (dx / length, dy / length) if length > 0.0 else (1.0, 0.0)
+
+
+@njit(cache=True)
+def _respond(
+    i: int, nx: float, ny: float, give: float, time: float, world: Any, a: Any, opened: AnyArray,
+    closed: AnyArray,
+) -> None:  # fmt: skip
+    """Apply the contact rule to agent a; SLIDE adds ``give`` [m/s] along the normal (nx, ny)."""
+    if world.contact == _END:
+        _finish(i, _ENDED, world.vanish_on_end, time, world, a, opened, closed)
+    elif world.contact == _STOP or a.hits >= MAX_HITS:
+        a.vx = 0.0
+        a.vy = 0.0
+        a.halted = a.halted or world.contact == _STOP
+    else:
+        a.vx += give * nx
+        a.vy += give * ny
+
+
+@njit(cache=True)
+def _finish(
+    i: int, status: int, vanish: bool, time: float, world: Any, a: Any, opened: AnyArray,
+    closed: AnyArray,
+) -> None:  # fmt: skip
+    """The attempt of agent a is over: it stands, or vanishes, and its contacts end."""
+    a.status = status
+    a.vx = 0.0
+    a.vy = 0.0
+    if vanish:
+        a.present = False
+    _close_all(i, time, world, a, opened, closed)
+
+
+@njit(cache=True)
+def _record(
+    i: int, code: int, time: float, closing: float, charged: bool, world: Any, a: Any,
+    opened: AnyArray, closed: AnyArray,
+) -> None:  # fmt: skip
+    """Open an event unless this contact is going on; a full table closes its oldest."""
+    free, oldest = -1, 0
+    for slot in range(len(opened)):
+        if opened[slot].code == code:
+            return
+        if opened[slot].code < 0 and free < 0:
+            free = slot
+        if opened[slot].start < opened[oldest].start:
+            oldest = slot
+    if free < 0:
+        free = oldest
+        _close(i, time, world, opened[free], closed)
+    event = opened[free]
+    event.code, event.start, event.closing = code, time, closing
+    event.penetration, event.charged = 0.0, charged
+    a.open = True
+
+
+@njit(cache=True)
+def _close(i: int, time: float, world: Any, event: Any, closed: AnyArray) -> None:
+    """Move an open contact to the list of closed ones."""
+    row = closed[world.closed]
+    row.agent, row.code, row.start, row.end = i, event.code, event.start, time
+    row.penetration, row.closing, row.charged = event.penetration, event.closing, event.charged
+    world.closed += 1
+    event.code = -1
+
+
+@njit(cache=True)
+def _close_all(
+    i: int, time: float, world: Any, a: Any, opened: AnyArray, closed: AnyArray
+) -> None:
+    for slot in range(len(opened)):
+        if opened[slot].code >= 0:
+            _close(i, time, world, opened[slot], closed)
+    a.open = False
+
+
+@njit(cache=True)
+def follow_up(
+    time: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
+) -> None:  # fmt: skip
+    """After a substep: deepen the overlaps that last, close the contacts that are over."""
+    for i in range(world.agents):
+        a = agents[i]
+        if not a.open:
+            continue
+        a.open = False
+        for slot in range(opened.shape[1]):
+            event = opened[i, slot]
+            if event.code < 0:
+                continue
+            gap = _gap(a, event.code, world, agents, bodies, shapes, capsules, start, item)
+            if gap > RELEASE or not a.present:
+                _close(i, time, world, event, closed)
+            else:
+                event.penetration = max(event.penetration, -gap)
+                a.open = True
+
+
+@njit(cache=True)
+def _gap(
+    a: Any, code: int, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    capsules: AnyArray, start: IntArray, item: IntArray,
+) -> float:  # fmt: skip
+    """Between agent a and a recorded partner [m]; negative: overlap; inf if it is gone or far."""
+    k = code // 4
+    if code % 4 == AGENT:
+        return from_agent(a, agents[k])[2] if agents[k].present else math.inf
+    if code % 4 == BODY:
+        return from_body(a, bodies[k], shapes)[2]
+    gap = math.inf
+    cell = cell_at(world, a.x, a.y)
+    for at in range(start[cell], start[cell + 1]):
+        if capsules[item[at]].solid == k:
+            gap = min(gap, from_fixed(a, capsules[item[at]])[2])
+    return gap

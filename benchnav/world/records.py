@@ -1,0 +1,77 @@
+"""The state of a batch of worlds, as a few arrays of records.
+
+A kernel handles one record (an agent, a body, a capsule) and gets it as a pointer;
+passing sixty plain arrays through every call made the step a hundred times slower
+and its compilation longer. Outside the kernels, `field` gives plain array views.
+"""
+
+import numpy as np
+
+from benchnav.arrays import AnyArray
+
+OPEN_CONTACTS = 8  # that an agent can have at once; one more closes the oldest
+
+
+def _record(**fields: str) -> np.dtype[np.void]:
+    return np.dtype(list(fields.items()), align=True)
+
+
+# one world: its clock, rules, and where its part of the flat arrays lies
+WORLD = _record(
+    dt="f8", h="f8", tolerance="f8", reach="f8", origin_x="f8", origin_y="f8", side="f8",
+    substeps="i8", steps="i8", steps_done="i8", revision="i8", contact="i8", nx="i8", ny="i8",
+    grid="i8", first="i8", last="i8", agents="i8", bodies="i8", closed="i8",
+    vanish_on_arrival="?", vanish_on_end="?", charge_both="?", running="?",
+)  # fmt: skip
+
+# (B, A), padding has present = False
+AGENT = _record(
+    x="f8", y="f8", vx="f8", vy="f8", heading="f8", goal_x="f8", goal_y="f8", arrival="f8",
+    radius="f8", max_speed="f8", max_turn_rate="f8", preferred_speed="f8",
+    drive_0="f8", drive_1="f8", tau="f8", code="i8", home="i8", hits="i8", ci="i8", cj="i8",
+    team="i8", status="i1", present="?", unicycle="?", evaluated="?", halted="?", open="?",
+)  # fmt: skip
+
+# (B, M): dynamic obstacles and static obstacles that are re-placed
+BODY = _record(
+    x="f8", y="f8", vx="f8", vy="f8", bound="f8", phase="f8",
+    first="i8", last="i8", law_first="i8", law_last="i8",
+    law="i1", kind="i1", periodic="?", placed="?",
+)  # fmt: skip
+
+# fixed ones in the world's frame, those of bodies in the body's frame
+CAPSULE = _record(
+    x0="f8", y0="f8", x1="f8", y1="f8", r="f8", solid="i8", before="i8", after="i8", kind="i1"
+)
+
+# a corner point of a motion law: position at a time
+KNOT = _record(t="f8", x="f8", y="f8")
+
+# an event that is going on (B, A, OPEN_CONTACTS; code -1: free) or over (B, N)
+CONTACT = _record(
+    code="i8", agent="i8", start="f8", end="f8", penetration="f8", closing="f8", charged="?"
+)
+
+
+def field(records: AnyArray, name: str, width: int = 1) -> AnyArray:
+    """A view of ``width`` neighbouring fields of equal type as a last axis (none if 1)."""
+    kind, offset = records.dtype.fields[name][:2]  # type: ignore[index]
+    if width == 1:
+        view: AnyArray = records[name]
+        return view
+    return np.ndarray(
+        (*records.shape, width), kind, records.data, offset, (*records.strides, kind.itemsize)
+    )
+
+
+def capsule_records(
+    capsules: AnyArray, before: AnyArray, after: AnyArray, solid: int, kind: int, shift: int
+) -> AnyArray:
+    """CAPSULE records of one solid; ``shift`` is added to the indices along its loops."""
+    out = np.zeros(len(capsules), CAPSULE)
+    for k, name in enumerate(("x0", "y0", "x1", "y1", "r")):
+        out[name] = capsules[:, k]
+    out["before"] = np.where(before >= 0, before + shift, -1)
+    out["after"] = np.where(after >= 0, after + shift, -1)
+    out["solid"], out["kind"] = solid, kind
+    return out

@@ -1,0 +1,188 @@
+"""A batch of worlds that is stepped together."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from benchnav.arena.agents import Dynamics
+from benchnav.arena.solid import Kind
+from benchnav.arena.world import Afterwards, Charge, World
+from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
+from benchnav.episode.episode import Contacts, Status
+from benchnav.geometry.hash_grid import hash_tables
+from benchnav.threads import run_rows
+from benchnav.world.bodies import body_at, stack_bodies, top_speed
+from benchnav.world.fixed import stack_fixed
+from benchnav.world.records import AGENT as AGENT_RECORD
+from benchnav.world.records import CONTACT, OPEN_CONTACTS, WORLD, field
+from benchnav.world.step import step_worlds
+from benchnav.world.touch import AGENT, BODY
+
+
+class Simulation:
+    """State of B worlds of up to A agents and M bodies; padding is never `present`.
+
+    All worlds of a batch share one clock and one set of rules. `records` and the
+    views below are the live state: copy what must not change.
+    """
+
+    def __init__(self, worlds: Sequence[World]) -> None:
+        self.worlds = tuple(worlds)
+        first = self.worlds[0]
+        if any(w.clock != first.clock or w.rules != first.rules for w in self.worlds):
+            raise ValueError("The worlds of a batch must share their clock and rules.")
+        self.agents = _agent_records(self.worlds)
+        self.bodies, self.shapes, self.knots = stack_bodies(self.worlds)
+        self.records = _world_records(self.worlds, self.agents)
+        margin = 0.5 * float(self.records["reach"].max())  # a radius and a substep's motion
+        self.capsules, self.start, self.item = stack_fixed(self.worlds, self.records, margin)
+        self._opened = np.zeros((self.B, self.A, OPEN_CONTACTS), CONTACT)
+        self._opened["code"] = -1
+        room = 32 + 2 * OPEN_CONTACTS * self.A * (first.clock.substeps + 1)
+        self._closed = np.zeros((self.B, room), CONTACT)
+        self._kept: list[list[AnyArray]] = [[] for _ in self.worlds]
+        self._hashed, self._sorted = hash_tables(self.B, self.A)
+        self._near = np.zeros((self.B, self.A), np.int64)
+        self._views()
+        self._place_bodies()
+
+    def _views(self) -> None:
+        agents, bodies, records = self.agents, self.bodies, self.records
+        self.position: FloatArray = field(agents, "x", 2)  # (B, A, 2) [m]
+        self.velocity: FloatArray = field(agents, "vx", 2)  # (B, A, 2) [m/s], after contacts
+        self.heading: FloatArray = field(agents, "heading")  # (B, A) [rad] in [-pi, pi)
+        self.goal: FloatArray = field(agents, "goal_x", 2)  # (B, A, 2) [m]
+        self.status: ByteArray = field(agents, "status")  # (B, A) of Status
+        self.present: BoolArray = field(agents, "present")  # (B, A) False: padding or vanished
+        self.arrival: FloatArray = field(agents, "arrival")  # (B, A) [s], NaN: not arrived
+        self.body_position: FloatArray = field(bodies, "x", 2)  # (B, M, 2) [m]
+        self.body_velocity: FloatArray = field(bodies, "vx", 2)  # (B, M, 2) [m/s]
+        self.steps_done: IntArray = field(records, "steps_done")  # (B,)
+        self.running: BoolArray = field(records, "running")  # (B,)
+        self.revision: IntArray = field(records, "revision")  # (B,) static obstacles re-placed
+
+    def _place_bodies(self) -> None:
+        """Bodies at t = 0, with the velocity that they are about to have."""
+        for b, world in enumerate(self.worlds):
+            for m in range(len(world.bodies)):
+                here = np.array(body_at(self.bodies[b, m], self.knots, 0.0))
+                soon = np.array(body_at(self.bodies[b, m], self.knots, self.records["h"][b]))
+                self.body_position[b, m] = here
+                self.body_velocity[b, m] = (soon - here) / self.records["h"][b]
+
+    @property
+    def B(self) -> int:
+        """Worlds."""
+        return len(self.worlds)
+
+    @property
+    def A(self) -> int:
+        """Agents of the largest world."""
+        return int(self.agents.shape[1])
+
+    @property
+    def M(self) -> int:
+        """Bodies of the largest world."""
+        return int(self.bodies.shape[1])
+
+    def world(self, b: int) -> World:
+        """The drawn world that row b started from."""
+        return self.worlds[b]
+
+    def step(self, command: FloatArray, twist: BoolArray) -> FloatArray:
+        """Advance all running worlds by one decision.
+
+        Args:
+            command: (B, A, 2) finite planar velocities [m/s] or twists [m/s, rad/s].
+            twist: (B, A) which of the two each agent's command is.
+
+        Returns:
+            (B, A, 2) the commands as executed, within the limits.
+        """
+        executed = np.zeros((self.B, self.A, 2))
+        self._drain(32)
+        run_rows(
+            step_worlds, self.B, np.ascontiguousarray(command, np.float64),
+            np.ascontiguousarray(twist), executed, self.records, self.agents, self.bodies,
+            self.shapes, self.knots, self.capsules, self.start, self.item, self._opened,
+            self._closed, self._hashed, self._sorted, self._near,
+        )  # fmt: skip
+        return executed
+
+    def fail(self, b: int, agents: IntArray) -> None:
+        """The navigator of ``agents`` failed in world b: they stand, and their attempt is over."""
+        active = agents[self.status[b, agents] == int(Status.ACTIVE)]
+        self.status[b, active] = int(Status.FAILED)
+        self.velocity[b, active] = 0.0
+        left = (self.status[b] == int(Status.ACTIVE)) & self.present[b]
+        self.running[b] = bool(self.running[b] and (left & self.agents["evaluated"][b]).any())
+
+    def contacts(self, b: int) -> Contacts:
+        """The collision events of world b so far; open ones end now."""
+        self._drain(0)
+        agent, slot = np.nonzero(self._opened["code"][b] >= 0)
+        going_on = self._opened[b, agent, slot]
+        going_on["agent"] = agent
+        going_on["end"] = self.records["steps_done"][b] * self.records["dt"][b]
+        rows = np.concatenate([*self._kept[b], going_on])
+        rows = rows[np.lexsort((rows["code"], rows["start"], rows["agent"]))]
+        kind, partner = _partners(self.worlds[b], rows["code"])
+        return Contacts(
+            rows["agent"].copy(), kind, partner, rows["start"].copy(), rows["end"].copy(),
+            rows["penetration"].copy(), rows["closing"].copy(), rows["charged"].copy(),
+        )  # fmt: skip
+
+    def _drain(self, above: int) -> None:
+        """Empty the kernels' event lists that hold more than ``above``."""
+        for b in np.flatnonzero(self.records["closed"] > above):
+            self._kept[b].append(self._closed[b, : self.records["closed"][b]].copy())
+            self.records["closed"][b] = 0
+
+
+def _partners(world: World, codes: IntArray) -> tuple[ByteArray, IntArray]:
+    """(kind, partner) of recorded codes, as `Contacts` has them."""
+    which, k = codes % 4, codes // 4
+    kind = np.full(len(codes), int(Kind.AGENT), np.int8)
+    for row in np.flatnonzero(which != AGENT):
+        body = which[row] == BODY
+        solid = world.bodies[k[row]].solid if body else world.solids[k[row]]
+        kind[row] = int(solid.kind)
+    return kind, np.where(which == BODY, -1 - k, k)
+
+
+def _agent_records(worlds: Sequence[World]) -> AnyArray:
+    """(B, A) AGENT records of worlds that have not started."""
+    most = max(len(world.agents) for world in worlds)
+    records = np.zeros((len(worlds), most), AGENT_RECORD)
+    records["arrival"], records["tau"] = np.nan, np.inf
+    plain = ("heading", "radius", "max_speed", "max_turn_rate", "preferred_speed", "team")
+    for row, world in zip(records, worlds, strict=True):
+        agents, n = world.agents, len(world.agents)
+        row = row[:n]
+        row["x"], row["y"] = agents.start[:, 0], agents.start[:, 1]
+        row["goal_x"], row["goal_y"] = agents.goal[:, 0], agents.goal[:, 1]
+        for name in plain:
+            row[name] = getattr(agents, name)
+        row["unicycle"] = agents.dynamics == int(Dynamics.UNICYCLE)
+        row["evaluated"], row["present"] = agents.evaluated, True
+    return records
+
+
+def _world_records(worlds: Sequence[World], agents: AnyArray) -> AnyArray:
+    """(B,) WORLD records; `stack_fixed` adds the grids' frames."""
+    records = np.zeros(len(worlds), WORLD)
+    speed = max(float(agents["max_speed"].max()), top_speed(worlds))
+    for row, world in zip(records, worlds, strict=True):
+        clock, rules = world.clock, world.rules
+        row["dt"], row["h"] = clock.dt, clock.dt / clock.substeps
+        row["substeps"], row["steps"] = clock.substeps, clock.steps
+        row["tolerance"], row["contact"] = rules.goal_tolerance, int(rules.contact)
+        row["vanish_on_arrival"] = rules.on_arrival == Afterwards.VANISH
+        row["vanish_on_end"] = rules.on_end == Afterwards.VANISH
+        row["charge_both"] = rules.charge == Charge.BOTH
+        row["agents"], row["bodies"] = len(world.agents), len(world.bodies)
+        row["running"] = bool(world.agents.evaluated.any())
+        # no pair farther apart than this can touch within a substep
+        reach = 2.0 * float(agents["radius"].max()) + 2.0 * speed * float(row["h"])
+        row["reach"] = 1.001 * reach + 1e-6
+    return records

@@ -1,0 +1,256 @@
+"""One decision of every running world: reads t, writes t + dt.
+
+Within a substep all bodies move straight, so every touch has a closed-form time.
+The world is advanced from touch to touch, earliest first (ties by agent index,
+then by the order in `touch.find_next`): nothing tunnels at any speed, and no
+result depends on how worlds are batched or shared between threads.
+"""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from benchnav.arena.solid import Kind
+from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from benchnav.episode.episode import Status
+from benchnav.geometry.hash_grid import fill
+from benchnav.geometry.rotation import angle_of, wrap
+from benchnav.world.bodies import body_at
+from benchnav.world.contacts import MAX_HITS, follow_up, touch
+from benchnav.world.dynamics import limited, planar_velocity
+from benchnav.world.fixed import cell_at
+from benchnav.world.touch import BRUTE_FORCE, find_next
+
+_ACTIVE = int(Status.ACTIVE)
+_STATIC = int(Kind.STATIC)
+
+
+@njit(cache=True, nogil=True)
+def step_worlds(
+    low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
+    worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
+    capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
+    hashed: IntArray, sorted_: IntArray, near: IntArray,
+) -> None:  # fmt: skip
+    """Advance the running worlds of rows low:high; ``executed`` gets the commands within limits."""
+    for b in range(low, high):
+        if worlds[b].running:
+            step_world(
+                command[b], twist[b], executed[b], worlds[b], agents[b], bodies[b], shapes, knots,
+                capsules, start, item, opened[b], closed[b], hashed[b], sorted_[b], near[b],
+            )  # fmt: skip
+
+
+@njit(cache=True)
+def step_world(
+    command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
+    bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
+    item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray, sorted_: IntArray,
+    near: IntArray,
+) -> None:  # fmt: skip
+    """One world: arrays over its agents (A,), bodies (M,) and contacts (A, 8)."""
+    relocate(world.steps_done * world.dt, world, agents, bodies, knots)
+    obey(command, twist, executed, world, agents)
+    for s in range(world.substeps):
+        tick = world.steps_done * world.substeps + s
+        begin, end = tick * world.h, (tick + 1) * world.h
+        aim_bodies(begin, end, world, bodies, knots)
+        aim_agents(world, agents)
+        find_all(
+            world, agents, bodies, shapes, capsules, start, item, hashed, sorted_, near
+        )
+        advance(
+            begin, world, agents, bodies, shapes, capsules, start, item, opened, closed,
+            hashed, sorted_, near,
+        )  # fmt: skip
+        land_bodies(end, world, bodies, knots)
+        turn(world, agents)
+        follow_up(
+            end, world, agents, bodies, shapes, capsules, start, item, opened, closed
+        )
+    world.steps_done += 1
+    world.running = goes_on(world, agents)
+
+
+@njit(cache=True)
+def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots: AnyArray) -> None:
+    """Re-place the static obstacles whose time has come and whose new place is free.
+
+    Free: no agent and no dynamic obstacle comes within its circumscribed circle there.
+    """
+    for m in range(world.bodies):
+        body = bodies[m]
+        if body.kind != _STATIC or body.placed or time < knots[body.law_last - 1].t:
+            continue
+        x, y = knots[body.law_last - 1].x, knots[body.law_last - 1].y
+        free = True
+        for i in range(world.agents):
+            a = agents[i]
+            if a.present and _within(a.x - x, a.y - y, body.bound + a.radius):
+                free = False
+        for k in range(world.bodies):
+            other = bodies[k]
+            if other.kind != _STATIC and _within(other.x - x, other.y - y, body.bound + other.bound):
+                free = False
+        if free:
+            body.placed = True
+            world.revision += 1
+
+
+@njit(cache=True)
+def _within(dx: float, dy: float, reach: float) -> bool:
+    return bool(dx * dx + dy * dy < reach * reach)
+
+
+@njit(cache=True)
+def obey(
+    command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray
+) -> None:
+    """Commands within limits."""
+    for i in range(world.agents):
+        a = agents[i]
+        a.halted = False
+        a.drive_0, a.drive_1 = 0.0, 0.0
+        if a.status == _ACTIVE and a.present:
+            a.drive_0, a.drive_1 = limited(
+                command[i, 0], command[i, 1], twist[i], a.unicycle, a.heading, a.max_speed,
+                a.max_turn_rate, world.dt,
+            )  # fmt: skip
+        executed[i, 0], executed[i, 1] = a.drive_0, a.drive_1
+
+
+@njit(cache=True)
+def aim_bodies(begin: float, end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
+    """Velocities that carry the bodies straight to where their laws put them."""
+    for m in range(world.bodies):
+        body = bodies[m]
+        x0, y0 = body_at(body, knots, begin)
+        x1, y1 = body_at(body, knots, end)
+        body.x, body.y = x0, y0
+        body.vx, body.vy = (x1 - x0) / world.h, (y1 - y0) / world.h
+
+
+@njit(cache=True)
+def aim_agents(world: Any, agents: AnyArray) -> None:
+    """Velocities of this substep."""
+    for i in range(world.agents):
+        a = agents[i]
+        a.hits = 0
+        a.vx, a.vy = 0.0, 0.0
+        if a.status == _ACTIVE and a.present and not a.halted:
+            a.vx, a.vy = planar_velocity(a.drive_0, a.drive_1, a.unicycle, a.heading, world.h)
+
+
+@njit(cache=True)
+def find_all(
+    world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
+    start: IntArray, item: IntArray, hashed: IntArray, sorted_: IntArray, near: IntArray,
+) -> None:  # fmt: skip
+    """The next touch of every agent."""
+    if len(agents) > BRUTE_FORCE:
+        fill(agents, hashed, sorted_, world.reach)
+    for i in range(world.agents):
+        a = agents[i]
+        a.tau = math.inf
+        if a.status == _ACTIVE and a.present:
+            a.home = cell_at(world, a.x, a.y)
+            find_next(
+                i, world.h, world.tolerance, agents, bodies, shapes, capsules, start, item, hashed,
+                sorted_, near, world.bodies,
+            )  # fmt: skip
+
+
+@njit(cache=True)
+def advance(
+    begin: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
+    hashed: IntArray, sorted_: IntArray, near: IntArray,
+) -> None:  # fmt: skip
+    """From touch to touch, to the end of the substep."""
+    left = world.h
+    while True:
+        i = earliest(world, agents)
+        if i < 0 or agents[i].tau > left:
+            break
+        elapsed = agents[i].tau
+        drift(elapsed, world, agents, bodies)
+        left -= elapsed
+        now = begin + (world.h - left)
+        j = touch(i, now, world, agents, bodies, shapes, capsules, opened, closed)
+        for k in range(world.agents):
+            a = agents[k]
+            if k != i and k != j and not _affected(a, i, j, world.reach, agents):
+                continue
+            a.tau = math.inf
+            # a wedged agent is let be until the next substep
+            if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
+                find_next(
+                    k, left, world.tolerance, agents, bodies, shapes, capsules, start, item,
+                    hashed, sorted_, near, world.bodies,
+                )  # fmt: skip
+    drift(left, world, agents, bodies)
+
+
+@njit(cache=True)
+def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
+    """Could the next touch of a be with i or j, now that they move otherwise?"""
+    if _within(a.x - agents[i].x, a.y - agents[i].y, reach):
+        return True
+    return j >= 0 and _within(a.x - agents[j].x, a.y - agents[j].y, reach)
+
+
+@njit(cache=True)
+def earliest(world: Any, agents: AnyArray) -> int:
+    """The agent whose next touch comes first; -1 if there is none."""
+    best, who = math.inf, -1
+    for i in range(world.agents):
+        if agents[i].tau < best:
+            best, who = agents[i].tau, i
+    return who
+
+
+@njit(cache=True)
+def drift(t: float, world: Any, agents: AnyArray, bodies: AnyArray) -> None:
+    """Everything moves straight for t seconds."""
+    for i in range(world.agents):
+        a = agents[i]
+        a.x += a.vx * t
+        a.y += a.vy * t
+        a.tau -= t
+    for m in range(world.bodies):
+        body = bodies[m]
+        body.x += body.vx * t
+        body.y += body.vy * t
+
+
+@njit(cache=True)
+def land_bodies(time: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
+    """Bodies are where their laws say, free of accumulated rounding."""
+    for m in range(world.bodies):
+        body = bodies[m]
+        body.x, body.y = body_at(body, knots, time)
+
+
+@njit(cache=True)
+def turn(world: Any, agents: AnyArray) -> None:
+    """Unicycles turn at their rate; holonomic agents look where they are told to go."""
+    for i in range(world.agents):
+        a = agents[i]
+        if a.status != _ACTIVE or not a.present:
+            continue
+        if a.unicycle:
+            a.heading = wrap(a.heading + a.drive_1 * world.h)
+        elif a.drive_0 != 0.0 or a.drive_1 != 0.0:
+            a.heading = wrap(angle_of(a.drive_0, a.drive_1))
+
+
+@njit(cache=True)
+def goes_on(world: Any, agents: AnyArray) -> bool:
+    """True while an evaluated agent is active and the horizon is ahead."""
+    if world.steps_done >= world.steps:
+        return False
+    for i in range(world.agents):
+        if agents[i].evaluated and agents[i].present and agents[i].status == _ACTIVE:
+            return True
+    return False

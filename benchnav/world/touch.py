@@ -1,0 +1,141 @@
+"""Which partner a moving agent touches next, and the geometry of a touch.
+
+Partner codes: 4k + 0 own goal, 4k + 1 agent k, 4k + 2 fixed capsule k (recorded as
+its solid), 4k + 3 body k.
+"""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from benchnav.arrays import AnyArray, IntArray
+from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
+from benchnav.geometry.hash_grid import bucket
+
+GOAL, AGENT, FIXED, BODY = 0, 1, 2, 3
+BRUTE_FORCE = 24  # agents up to which all pairs are cheaper than a grid
+
+
+@njit(cache=True)
+def candidates(i: int, agents: AnyArray, hashed: IntArray, item: IntArray, near: IntArray) -> int:
+    """Lists in ``near`` (A,) the agents that i could touch in this substep; returns their number."""
+    n = 0
+    if len(agents) <= BRUTE_FORCE:
+        for j in range(len(agents)):
+            if j != i and agents[j].present:
+                near[n] = j
+                n += 1
+        return n
+    a = agents[i]
+    size = len(hashed) - 1
+    for ci in range(a.ci - 1, a.ci + 2):
+        for cj in range(a.cj - 1, a.cj + 2):
+            k = bucket(ci, cj, size)
+            for at in range(hashed[k], hashed[k + 1]):
+                j = item[at]
+                other = agents[j]
+                if other.ci == ci and other.cj == cj and j != i and other.present:
+                    near[n] = j
+                    n += 1
+    return n
+
+
+@njit(cache=True)
+def goal_time(a: Any, tolerance: float) -> float:
+    """Time until agent a touches its goal disc; 0 inside it."""
+    fx, fy = a.x - a.goal_x, a.y - a.goal_y
+    if fx * fx + fy * fy <= tolerance * tolerance:
+        return 0.0
+    return disc_time(fx, fy, a.vx, a.vy, tolerance)
+
+
+@njit(cache=True)
+def pair_time(a: Any, b: Any) -> float:
+    """Time until agents a and b touch, moving as they do now."""
+    return disc_time(a.x - b.x, a.y - b.y, a.vx - b.vx, a.vy - b.vy, a.radius + b.radius)
+
+
+@njit(cache=True)
+def fixed_time(a: Any, c: Any) -> float:
+    """Time until agent a touches a fixed capsule."""
+    return capsule_time(a.x, a.y, a.vx, a.vy, a.radius + c.r, c.x0, c.y0, c.x1, c.y1)
+
+
+@njit(cache=True)
+def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
+    """Time until agent a touches a body; inf where it cannot within ``left`` [s]."""
+    fx, fy = a.x - body.x, a.y - body.y
+    wx, wy = a.vx - body.vx, a.vy - body.vy
+    far = math.sqrt(fx * fx + fy * fy) - a.radius - body.bound
+    if far > math.sqrt(wx * wx + wy * wy) * left:
+        return math.inf
+    best = math.inf
+    for q in range(body.first, body.last):
+        c = shapes[q]
+        t = capsule_time(fx, fy, wx, wy, a.radius + c.r, c.x0, c.y0, c.x1, c.y1)
+        best = min(best, t)
+    return best
+
+
+@njit(cache=True)
+def find_next(
+    i: int, left: float, tolerance: float, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, sorted_: IntArray,
+    near: IntArray, body_count: int,
+) -> None:  # fmt: skip
+    """Writes tau and code of active agent i: its next touch within ``left`` [s].
+
+    Of simultaneous touches the goal comes first, then fixed geometry, bodies, and
+    agents, each by index: a fixed order, so that nothing depends on how it was found.
+    """
+    a = agents[i]
+    best, code = math.inf, -1
+    t = goal_time(a, tolerance)
+    if t <= left:
+        best, code = t, GOAL
+    if a.vx != 0.0 or a.vy != 0.0:
+        for at in range(start[a.home], start[a.home + 1]):
+            t = fixed_time(a, capsules[item[at]])
+            if t < best and t <= left:
+                best, code = t, 4 * item[at] + FIXED
+    for m in range(body_count):
+        t = body_time(a, bodies[m], shapes, left)
+        if t < best and t <= left:
+            best, code = t, 4 * m + BODY
+    for k in range(candidates(i, agents, hashed, sorted_, near)):
+        j = near[k]
+        t = pair_time(a, agents[j])
+        if t <= left and (t < best or (t == best and code % 4 == AGENT and 4 * j + AGENT < code)):
+            best, code = t, 4 * j + AGENT
+    a.tau, a.code = best, code
+
+
+@njit(cache=True)
+def from_fixed(a: Any, c: Any) -> tuple[float, float, float]:
+    """(dx, dy, gap): from the capsule's nearest core point to agent a, and between the surfaces."""
+    qx, qy = nearest_on_segment(a.x, a.y, c.x0, c.y0, c.x1, c.y1)
+    dx, dy = a.x - qx, a.y - qy
+    return dx, dy, math.sqrt(dx * dx + dy * dy) - c.r - a.radius
+
+
+@njit(cache=True)
+def from_body(a: Any, body: Any, shapes: AnyArray) -> tuple[float, float, float]:
+    """As `from_fixed`, for the nearest of a body's capsules."""
+    gap, dx, dy = math.inf, 0.0, 0.0
+    fx, fy = a.x - body.x, a.y - body.y
+    for q in range(body.first, body.last):
+        c = shapes[q]
+        qx, qy = nearest_on_segment(fx, fy, c.x0, c.y0, c.x1, c.y1)
+        ex, ey = fx - qx, fy - qy
+        d = math.sqrt(ex * ex + ey * ey) - c.r - a.radius
+        if d < gap:
+            gap, dx, dy = d, ex, ey
+    return dx, dy, gap
+
+
+@njit(cache=True)
+def from_agent(a: Any, b: Any) -> tuple[float, float, float]:
+    """As `from_fixed`, for another agent."""
+    dx, dy = a.x - b.x, a.y - b.y
+    return dx, dy, math.sqrt(dx * dx + dy * dy) - a.radius - b.radius
