@@ -10,6 +10,7 @@ from numba import njit
 
 APPROACH = 1e-9  # [m/s] a closing speed below this is none: rounding must not touch again
 
+
 @njit(cache=True, inline="always")
 def nearest_on_segment(
     px: float, py: float, x0: float, y0: float, x1: float, y1: float

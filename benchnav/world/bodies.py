@@ -29,9 +29,7 @@ def stack_bodies(worlds: Sequence[World]) -> tuple[AnyArray, AnyArray, AnyArray]
             row, law = bodies[b, m], body.law
             before, after = edge_chain(body.solid)
             kind = int(body.solid.kind)
-            shapes.append(
-                capsule_records(body.solid.capsules, before, after, m, kind, shape_count)
-            )
+            shapes.append(capsule_records(body.solid.capsules, before, after, m, kind, shape_count))
             knots.append(_knots(body))
             row["first"], row["last"] = shape_count, shape_count + len(shapes[-1])
             row["law_first"], row["law_last"] = knot_count, knot_count + len(knots[-1])

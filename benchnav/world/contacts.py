@@ -142,9 +142,7 @@ def _close(i: int, time: float, world: Any, event: Any, closed: AnyArray) -> Non
 
 
 @njit(cache=True)
-def _close_all(
-    i: int, time: float, world: Any, a: Any, opened: AnyArray, closed: AnyArray
-) -> None:
+def _close_all(i: int, time: float, world: Any, a: Any, opened: AnyArray, closed: AnyArray) -> None:
     for slot in range(len(opened)):
         if opened[slot].code >= 0:
             _close(i, time, world, opened[slot], closed)

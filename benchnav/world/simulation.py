@@ -41,8 +41,9 @@ class Simulation:
         room = 32 + 2 * OPEN_CONTACTS * self.A * (first.clock.substeps + 1)
         self._closed = np.zeros((self.B, room), CONTACT)
         self._kept: list[list[AnyArray]] = [[] for _ in self.worlds]
-        self._hashed, self._sorted = hash_tables(self.B, self.A)
+        self.hashed, self.sorted = hash_tables(self.B, self.A)
         self._near = np.zeros((self.B, self.A), np.int64)
+        self.sees = _sees(self.worlds)
         self._views()
         self._place_bodies()
 
@@ -105,7 +106,7 @@ class Simulation:
             step_worlds, self.B, np.ascontiguousarray(command, np.float64),
             np.ascontiguousarray(twist), executed, self.records, self.agents, self.bodies,
             self.shapes, self.knots, self.capsules, self.start, self.item, self._opened,
-            self._closed, self._hashed, self._sorted, self._near,
+            self._closed, self.hashed, self.sorted, self._near,
         )  # fmt: skip
         return executed
 
@@ -148,6 +149,15 @@ def _partners(world: World, codes: IntArray) -> tuple[ByteArray, IntArray]:
         solid = world.bodies[k[row]].solid if body else world.solids[k[row]]
         kind[row] = int(solid.kind)
     return kind, np.where(which == BODY, -1 - k, k)
+
+
+def _sees(worlds: Sequence[World]) -> BoolArray:
+    """(B, teams, teams) which team senses which."""
+    most = max(len(world.teams) for world in worlds)
+    sees = np.ones((len(worlds), most, most), np.bool_)
+    for b, world in enumerate(worlds):
+        sees[b, : len(world.teams), : len(world.teams)] = world.sees
+    return sees
 
 
 def _agent_records(worlds: Sequence[World]) -> AnyArray:

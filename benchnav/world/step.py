@@ -57,18 +57,14 @@ def step_world(
         begin, end = tick * world.h, (tick + 1) * world.h
         aim_bodies(begin, end, world, bodies, knots)
         aim_agents(world, agents)
-        find_all(
-            world, agents, bodies, shapes, capsules, start, item, hashed, sorted_, near
-        )
+        find_all(world, agents, bodies, shapes, capsules, start, item, hashed, sorted_, near)
         advance(
             begin, world, agents, bodies, shapes, capsules, start, item, opened, closed,
             hashed, sorted_, near,
         )  # fmt: skip
         land_bodies(end, world, bodies, knots)
         turn(world, agents)
-        follow_up(
-            end, world, agents, bodies, shapes, capsules, start, item, opened, closed
-        )
+        follow_up(end, world, agents, bodies, shapes, capsules, start, item, opened, closed)
     world.steps_done += 1
     world.running = goes_on(world, agents)
 
@@ -91,7 +87,9 @@ def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots:
                 free = False
         for k in range(world.bodies):
             other = bodies[k]
-            if other.kind != _STATIC and _within(other.x - x, other.y - y, body.bound + other.bound):
+            if other.kind != _STATIC and _within(
+                other.x - x, other.y - y, body.bound + other.bound
+            ):
                 free = False
         if free:
             body.placed = True

@@ -1,0 +1,129 @@
+"""All sensors of some agents of a simulation, as the arrays of an observation."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
+from benchnav.arrays import AnyArray, FloatArray, IntArray
+from benchnav.geometry.hash_grid import fill
+from benchnav.navigation.navigator import Need
+from benchnav.navigation.observation import Edges, Neighbours, Rays
+from benchnav.sensors.edges import find_edges
+from benchnav.sensors.neighbours import find_neighbours
+from benchnav.sensors.rays import cast_rays
+from benchnav.threads import run_rows
+from benchnav.world.simulation import Simulation
+from benchnav.world.touch import BRUTE_FORCE
+
+LEAST = 64  # agents below which a second thread costs more than it saves
+
+
+@dataclass(frozen=True, eq=False)
+class Senses:
+    """What was sensed; None where it was not asked for."""
+
+    rays: Rays | None
+    neighbours: Neighbours | None
+    edges: Edges | None
+
+
+def sense(simulation: Simulation, chosen: IntArray, needs: frozenset[Need]) -> Senses:
+    """What the chosen agents perceive now.
+
+    Args:
+        simulation: B worlds with one sensing.
+        chosen: (B, An) agent indices; -1 is padding, and senses nothing.
+        needs: which sensors to compute; one that the worlds do not have is None.
+    """
+    sensing: Sensing = simulation.worlds[0].sensing
+    crowd = simulation.A > BRUTE_FORCE
+    side = 1.0
+    if crowd and needs & {Need.RAYS, Need.NEIGHBOURS}:
+        side = _cell_side(simulation, sensing)
+        run_rows(
+            _sort_agents, simulation.B, simulation.agents, simulation.hashed, simulation.sorted,
+            side,
+        )  # fmt: skip
+    rays = neighbours = edges = None
+    if Need.RAYS in needs and sensing.rays is not None:
+        rays = _rays(simulation, chosen, sensing.rays, side)
+    if Need.NEIGHBOURS in needs and sensing.neighbours is not None:
+        neighbours = _neighbours(simulation, chosen, sensing.neighbours, sensing.occlusion, side)
+    if Need.EDGES in needs and sensing.edges is not None:
+        edges = _edges(simulation, chosen, sensing.edges, sensing.occlusion)
+    return Senses(rays, neighbours, edges)
+
+
+def _cell_side(simulation: Simulation, sensing: Sensing) -> float:
+    """Cells of the size of a few bodies: crowds are dense where they matter."""
+    limit = sensing.neighbours.range if sensing.neighbours is not None else 0.0
+    if sensing.rays is not None:
+        limit = max(limit, sensing.rays.range)
+    return max(0.5 * limit, 4.0 * float(simulation.agents["radius"].max()))
+
+
+@njit(cache=True, nogil=True)
+def _sort_agents(
+    low: int, high: int, agents: AnyArray, hashed: IntArray, sorted_: IntArray, side: float
+) -> None:
+    for b in range(low, high):
+        fill(agents[b], hashed[b], sorted_[b], side)
+
+
+def ray_angles(sensor: RaySensor) -> FloatArray:
+    """(R,) [rad] from the heading, from right to left."""
+    if sensor.count == 1:
+        return np.zeros(1)
+    whole = sensor.fan >= 2.0 * math.pi - 1e-9
+    return np.linspace(-0.5 * sensor.fan, 0.5 * sensor.fan, sensor.count, endpoint=not whole)
+
+
+def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: float) -> Rays:
+    angle = ray_angles(sensor)
+    shape = (*chosen.shape, len(angle))
+    out = Rays(
+        angle, np.full(shape, float(sensor.range)), np.zeros(shape, np.int8), np.zeros(shape),
+        np.full(shape, np.inf),
+    )  # fmt: skip
+    s = simulation
+    run_rows(
+        cast_rays, chosen.size, chosen, angle, float(sensor.range), sensor.thick, side, s.sees, s.records,
+        s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.sorted,
+        out.distance, out.kind, out.approach, out.goal, least=LEAST,
+    )  # fmt: skip
+    return out
+
+
+def _neighbours(
+    simulation: Simulation, chosen: IntArray, sensor: NeighbourSensor, occlusion: bool, side: float
+) -> Neighbours:
+    shape = (*chosen.shape, sensor.count)
+    out = Neighbours(
+        np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(shape, np.int8),
+        np.zeros(chosen.shape, np.int64),
+    )  # fmt: skip
+    s = simulation
+    run_rows(
+        find_neighbours, chosen.size, chosen, float(sensor.range), occlusion, side, s.sees, s.records,
+        s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.sorted,
+        out.position, out.velocity, out.radius, out.kind, out.count, least=LEAST,
+    )  # fmt: skip
+    return out
+
+
+def _edges(simulation: Simulation, chosen: IntArray, sensor: EdgeSensor, occlusion: bool) -> Edges:
+    shape = (*chosen.shape, sensor.count)
+    out = Edges(
+        *(np.zeros((*shape, 2)) for _ in range(4)), *(np.zeros(shape, np.bool_) for _ in range(2)),
+        np.zeros(chosen.shape, np.int64),
+    )  # fmt: skip
+    s = simulation
+    run_rows(
+        find_edges, chosen.size, chosen, float(sensor.range), occlusion, s.records, s.agents, s.bodies,
+        s.shapes, s.capsules, s.start, s.item, out.start, out.end, out.before, out.after,
+        out.start_convex, out.end_convex, out.count, least=LEAST,
+    )  # fmt: skip
+    return out

@@ -1,0 +1,70 @@
+"""Lines of sight: is the straight way from an agent to a point free of walls and obstacles?
+
+Agents hide nobody. The test is against the same capsules that bodies touch.
+"""
+
+import math
+from typing import Any
+
+from numba import njit
+
+from benchnav.arrays import AnyArray, IntArray
+from benchnav.geometry.capsule import nearest_on_segment, segments_cross
+
+FEW = 64  # capsules up to which testing all is cheaper than walking the grid
+
+
+@njit(cache=True)
+def hides(c: Any, px: float, py: float, qx: float, qy: float) -> bool:
+    """Does capsule c cut the open segment pq?"""
+    if c.r > 0.0:
+        nx, ny = nearest_on_segment(c.x0, c.y0, px, py, qx, qy)
+        dx, dy = c.x0 - nx, c.y0 - ny
+        return bool(dx * dx + dy * dy < c.r * c.r)
+    return segments_cross(px, py, qx, qy, c.x0, c.y0, c.x1, c.y1)
+
+
+@njit(cache=True)
+def in_sight(
+    px: float, py: float, qx: float, qy: float, skip: int, world: Any, capsules: AnyArray,
+    start: IntArray, item: IntArray, bodies: AnyArray, shapes: AnyArray,
+) -> bool:  # fmt: skip
+    """True where nothing stands between p and q; body ``skip`` (or -1) does not count."""
+    for m in range(world.bodies):
+        body = bodies[m]
+        nx, ny = nearest_on_segment(body.x, body.y, px, py, qx, qy)
+        dx, dy = body.x - nx, body.y - ny
+        if m == skip or dx * dx + dy * dy > body.bound * body.bound:
+            continue
+        for k in range(body.first, body.last):
+            if hides(shapes[k], px - body.x, py - body.y, qx - body.x, qy - body.y):
+                return False
+    if world.last - world.first <= FEW:
+        for p in range(world.first, world.last):
+            if hides(capsules[p], px, py, qx, qy):
+                return False
+        return True
+    return _clear_along(px, py, qx, qy, world, capsules, start, item)
+
+
+@njit(cache=True)
+def _clear_along(
+    px: float, py: float, qx: float, qy: float, world: Any, capsules: AnyArray, start: IntArray,
+    item: IntArray,
+) -> bool:  # fmt: skip
+    """As `in_sight`, over the cells along pq; their lists reach beyond them."""
+    side = world.side
+    dx, dy = qx - px, qy - py
+    steps = int(math.ceil(math.sqrt(dx * dx + dy * dy) / (0.5 * side))) + 1
+    last = -1
+    for k in range(steps + 1):
+        x, y = px + dx * k / steps, py + dy * k / steps
+        i = min(max(int(math.floor((x - world.origin_x) / side)), 0), world.nx - 1)
+        j = min(max(int(math.floor((y - world.origin_y) / side)), 0), world.ny - 1)
+        cell = world.grid + i * world.ny + j
+        if cell != last:
+            for at in range(start[cell], start[cell + 1]):
+                if hides(capsules[item[at]], px, py, qx, qy):
+                    return False
+        last = cell
+    return True
