@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import pyarrow as pa
+import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from benchnav.episode.episode import Episode
@@ -77,7 +78,8 @@ class Part:
                 path, f"has sha256 {found[:12]}…, sealed was {sealed['sha256'][:12]}…"
             )
         try:
-            return pq.read_table(path, partitioning=None)
+            table = pq.read_table(path, partitioning=None)
+            return table.take(pc.sort_indices(table["seed"]))  # stable: batches may be out of order
         except (OSError, pa.ArrowException) as error:
             raise self._corrupt(path, f"is no Parquet file ({error})") from error
 

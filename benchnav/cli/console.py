@@ -1,0 +1,53 @@
+"""Where words go: results to stdout, talk to stderr."""
+
+from collections.abc import Sequence
+from enum import StrEnum
+from pathlib import Path
+from typing import TypeVar
+
+import typer
+
+from benchnav.errors import StoreError, UsageError, did_you_mean
+
+E = TypeVar("E", bound=StrEnum)
+
+
+def say(text: str) -> None:
+    """Talk."""
+    typer.echo(text, err=True)
+
+
+def put(text: str) -> None:
+    """A result."""
+    typer.echo(text)
+
+
+def columns(rows: Sequence[Sequence[str]]) -> str:
+    """Rows as columns of equal width, two spaces apart."""
+    if not rows:
+        return ""
+    widths = [max(len(row[c]) for row in rows) for c in range(len(rows[0]))]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    )
+
+
+def write(path: Path, text: str) -> None:
+    """Write a result to a file. Raises StoreError where that cannot be done."""
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+
+
+def one_of(kinds: type[E], what: str, said: str) -> E:
+    """The member of ``kinds`` that was said. Raises UsageError where there is none."""
+    try:
+        return kinds(said)
+    except ValueError:
+        known = [kind.value for kind in kinds]
+        raise UsageError(
+            f"{what} must be one of {', '.join(known)}. Got {said!r} instead."
+            f"{did_you_mean(said, known)}"
+        ) from None

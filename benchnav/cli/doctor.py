@@ -1,0 +1,80 @@
+"""`benchnav doctor`: is this installation sound?"""
+
+import os
+import platform
+import sys
+from collections.abc import Iterator
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from pathlib import Path
+
+import typer
+
+from benchnav.cli.console import columns, put
+from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS
+
+_CORE = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pydantic", "pedpy")
+_EXTRAS = {
+    "plan": {"ompl": "ompl", "trimesh": "trimesh", "python-fcl": "fcl"},
+    "learn": {"torch": "torch", "stable-baselines3": "stable_baselines3", "gymnasium": "gymnasium"},
+    "view": {"matplotlib": "matplotlib", "plotly": "plotly"},
+    "ray": {"ray": "ray"},
+}
+Line = tuple[str, str, str]  # verdict, what, detail
+
+
+def doctor() -> None:
+    """Check this installation.
+
+    Versions, cores, kernel cache, extras, plugins.
+    """
+    lines = [*_machine(), *_packages(), *_cache(), *_plugins()]
+    put(columns(lines))
+    if any(verdict == "WRONG" for verdict, _, _ in lines):
+        raise typer.Exit(1)
+
+
+def _machine() -> Iterator[Line]:
+    yield "ok", "python", f"{platform.python_version()} ({sys.executable})"
+    yield "ok", "machine", platform.platform()
+    cores = len(os.sched_getaffinity(0))
+    yield "ok", "cores", f"{cores}, so `benchnav run` uses {cores} workers"
+
+
+def _packages() -> Iterator[Line]:
+    for name in _CORE:
+        try:
+            yield "ok", name, version(name)
+        except PackageNotFoundError:
+            yield "WRONG", name, "must be installed: pip install benchnav"
+    for extra, packages in _EXTRAS.items():
+        absent = [name for name, module in packages.items() if find_spec(module) is None]
+        have = [f"{name} {version(name)}" for name in packages if name not in absent]
+        if absent:
+            detail = f"without {', '.join(absent)}: pip install 'benchnav[{extra}]'"
+            yield "-", f"extra [{extra}]", detail
+        else:
+            yield "ok", f"extra [{extra}]", ", ".join(have)
+
+
+def _cache() -> Iterator[Line]:
+    """Where compiled kernels are kept: beside the code, or where NUMBA_CACHE_DIR says."""
+    import benchnav
+
+    place = Path(os.environ.get("NUMBA_CACHE_DIR") or Path(benchnav.__file__).parent)
+    if os.access(place, os.W_OK):
+        yield "ok", "kernel cache", f"{place} is writable"
+    else:
+        yield (
+            "-", "kernel cache",
+            f"{place} is not writable: set NUMBA_CACHE_DIR, or kernels may compile at every start",
+        )  # fmt: skip
+
+
+def _plugins() -> Iterator[Line]:
+    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS):
+        broken = list(registry.broken())
+        for _, cause in broken:
+            yield "WRONG", registry.kind, cause
+        whole = len(registry.names()) - len(broken)
+        yield "ok", f"{registry.kind}s", f"{whole} can be used"

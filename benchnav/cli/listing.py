@@ -1,0 +1,101 @@
+"""`benchnav list`: what is installed, and what of it is broken."""
+
+import inspect
+from collections.abc import Iterator
+from enum import StrEnum
+from typing import Annotated
+
+import typer
+
+from benchnav.cli.console import columns, one_of, put
+from benchnav.errors import BenchnavError
+from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, Registry
+
+
+class Kind(StrEnum):
+    """What can be listed."""
+
+    NAVIGATORS = "navigators"
+    PLANNERS = "planners"
+    CONTROLLERS = "controllers"
+    SCENARIOS = "scenarios"
+    SUITES = "suites"
+    METRICS = "metrics"
+
+
+REGISTRIES = {
+    Kind.NAVIGATORS: NAVIGATORS,
+    Kind.PLANNERS: PLANNERS,
+    Kind.CONTROLLERS: CONTROLLERS,
+    Kind.METRICS: METRICS,
+}
+
+Row = tuple[str, str, str]  # name, where from, what it is
+
+
+def list_(
+    kind: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="KIND",
+            help="navigators, planners, controllers, scenarios, suites or metrics. [default: all]",
+        ),
+    ] = None,
+) -> None:
+    """List what can be named, and what is broken."""
+    if kind is not None:
+        put(columns(list(_rows(one_of(Kind, "KIND", kind)))))
+        return
+    for number, each in enumerate(Kind):
+        put(f"{'' if number == 0 else chr(10)}{each.value}")
+        put(columns([("  " + name, *rest) for name, *rest in _rows(each)]))
+
+
+def _rows(kind: Kind) -> Iterator[Row]:
+    if kind == Kind.SCENARIOS:
+        yield from _scenarios()
+    elif kind == Kind.SUITES:
+        yield from _suites()
+    else:
+        yield from _plugins(REGISTRIES[kind])
+
+
+def _plugins(registry: Registry) -> Iterator[Row]:
+    for name in registry.names():
+        try:
+            source = registry.source(name).distribution
+            yield name, source, sentence(registry.load(name))
+        except BenchnavError as error:
+            yield name, "broken", str(error)
+
+
+def _scenarios() -> Iterator[Row]:
+    from benchnav.scenario.catalogue import find, names
+
+    for name in names():
+        try:
+            found = find(name)
+            yield name, f"version {found.version}", found.title
+        except BenchnavError as error:
+            yield name, "broken", str(error)
+
+
+def _suites() -> Iterator[Row]:
+    from benchnav.runner.suite_file import SuiteFile, suite_names, suite_path
+    from benchnav.scenario.yaml_reader import read_yaml, validate
+
+    for name in suite_names():
+        try:
+            said = validate(SuiteFile, read_yaml(suite_path(name)))
+            yield name, f"version {said.version}", said.description
+        except BenchnavError as error:
+            yield name, "broken", str(error)
+
+
+def sentence(thing: object) -> str:
+    """What a plugin says that it is: a metric's title, or the first line of a docstring."""
+    title = getattr(thing, "title", None)
+    if isinstance(title, str):
+        return title
+    text = inspect.getdoc(thing) or ""
+    return text.partition("\n")[0]

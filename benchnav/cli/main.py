@@ -1,0 +1,85 @@
+"""The command `benchnav`: one verb a file, nothing heavy imported before a verb needs it."""
+
+import os
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import typer
+
+import benchnav
+from benchnav.cli.console import say
+from benchnav.cli.doctor import doctor
+from benchnav.cli.imports import import_app
+from benchnav.cli.leaderboard import leaderboard
+from benchnav.cli.listing import list_
+from benchnav.cli.new import new_app
+from benchnav.cli.run import run
+from benchnav.cli.schema import schema
+from benchnav.cli.show import show
+from benchnav.cli.validate import validate
+from benchnav.errors import (
+    BenchnavError,
+    InputError,
+    MissingExtraError,
+    PluginError,
+    UnsolvableError,
+    UsageError,
+)
+
+INTERRUPTED = 130
+_Usage: type[Any] = typer.BadParameter.mro()[2]  # click's, which typers carry in changing places
+_ASKED_WRONGLY = (UsageError, InputError, PluginError, UnsolvableError, MissingExtraError)
+
+app = typer.Typer(
+    name="benchnav",
+    help="Crowd navigation in unknown and dynamic environments: every method measured alike.",
+    epilog="Exit status: 0 done, 1 the work failed, 2 asked wrongly, 130 interrupted.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
+app.command("run")(run)
+app.command("leaderboard")(leaderboard)
+app.command("list")(list_)
+app.command("show")(show)
+app.command("validate")(validate)
+app.command("schema")(schema)
+app.add_typer(import_app, name="import")
+app.add_typer(new_app, name="new")
+app.command("doctor")(doctor)
+
+
+@app.callback()
+def _options(
+    version: bool = typer.Option(False, "--version", help="Print the version.", is_eager=True),
+) -> None:
+    if version:
+        typer.echo(benchnav.__version__)
+        raise typer.Exit
+
+
+def status(arguments: Sequence[str]) -> int:
+    """Do what ``arguments`` ask; the exit status."""
+    try:
+        code = app(list(arguments), standalone_mode=False)
+        sys.stdout.flush()
+    except BenchnavError as error:
+        say(f"benchnav: {error}")
+        return 2 if isinstance(error, _ASKED_WRONGLY) else 1
+    except (typer.Abort, KeyboardInterrupt):
+        return INTERRUPTED
+    except BrokenPipeError:  # whoever read stdout has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except _Usage as error:
+        error.show()
+        return 2
+    return code if isinstance(code, int) else 0
+
+
+def main() -> None:
+    """Entry point of the command."""
+    raise SystemExit(status(sys.argv[1:]))

@@ -1,0 +1,110 @@
+"""`benchnav run`: execute a suite."""
+
+from collections import Counter
+from datetime import datetime
+from pathlib import Path
+from time import perf_counter
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from benchnav.cli.console import put, say
+
+if TYPE_CHECKING:
+    from benchnav.runner.run import Summary
+    from benchnav.runner.suite import Suite
+
+
+def run(
+    suite: Annotated[
+        str, typer.Argument(metavar="SUITE", help="Name of a suite that ships, or a file.")
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="DIR",
+            help="Run folder; the same suite goes on where it stopped. [default: new]",
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=0, max=1024, help="Processes. [default: one per core]"),
+    ] = None,
+    seeds: Annotated[
+        str | None, typer.Option(metavar="N|A:B", help="Seeds 0 … N-1, or A … B-1.")
+    ] = None,
+    navigator: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="NAME", help="Only this one of the suite, or any other by name. Repeatable."
+        ),
+    ] = None,
+    scenario: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME", help="Instead of the suite's: name or file. Repeatable."),
+    ] = None,
+    track: Annotated[
+        list[str] | None, typer.Option(metavar="NAME", help="Instead of the suite's. Repeatable.")
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
+) -> None:
+    """Execute a suite into a run folder.
+
+    Scenarios × tracks × navigators × seeds. Prints the run folder on stdout;
+    `benchnav leaderboard` makes the table from it.
+    """
+    from benchnav.runner.progress import progress
+    from benchnav.runner.run import Summary, run_suite
+    from benchnav.runner.suite import Selection, load_suite
+
+    chosen = Selection(
+        tuple(scenario or ()), tuple(track or ()), tuple(navigator or ()), seeds or ""
+    )
+    asked = load_suite(suite, chosen)
+    folder = (
+        out if out is not None else Path("runs") / f"{asked.name}-{datetime.now():%Y%m%d-%H%M%S}"
+    )
+    if not quiet:
+        say(_announce(asked, folder))
+    summary, began = Summary(), perf_counter()
+    try:
+        run_suite(asked, folder, workers=workers, progress=progress(quiet), summary=summary)
+    except KeyboardInterrupt:
+        say(
+            f"Interrupted. {summary.stored} of {summary.total} episodes are stored, whole."
+            f" The same command with --out {folder} goes on from there."
+        )
+        raise
+    if not quiet:
+        say(_conclude(summary, perf_counter() - began))
+        say(f"The table: benchnav leaderboard {folder}")
+    put(str(folder))
+
+
+def _announce(suite: "Suite", folder: Path) -> str:
+    sizes = (
+        (len(suite.scenarios), "scenarios"), (len(suite.tracks), "tracks"),
+        (len(suite.entries), "navigators"), (len(suite.seeds), "seeds"),
+    )  # fmt: skip
+    product = " × ".join(f"{n} {what if n != 1 else what[:-1]}" for n, what in sizes)
+    return f"{suite.name}@{suite.version}: {product}, into {folder}"
+
+
+def _conclude(summary: "Summary", seconds: float) -> str:
+    fresh = summary.stored - summary.found
+    lines = [f"{summary.stored} episodes stored, {fresh} of them run in {seconds:.1f} s"]
+    if fresh and seconds > 0:
+        lines[0] += f" ({fresh / seconds:.0f} a second)"
+    if summary.redraws:
+        lines.append(f"{summary.redraws} draws of worlds were not solvable and drawn again")
+    reasons = Counter[tuple[str, str]]()
+    for cell, reason in summary.not_applicable:
+        reasons[cell.entry.label, f"{reason} ({cell.track})"] += 1
+    lines += [f"n/a: {who} {why}, {n} cells" for (who, why), n in sorted(reasons.items())]
+    lines += [
+        f"failed: {who} in {n} episodes: {why}"
+        for (who, why), n in summary.failures.most_common(10)
+    ]
+    if len(summary.failures) > 10:
+        lines.append(f"… and for {len(summary.failures) - 10} more reasons")
+    return "\n".join(lines)

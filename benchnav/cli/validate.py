@@ -1,0 +1,56 @@
+"""`benchnav validate`: is this file right, and can it be drawn?"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from benchnav.cli.console import put
+
+
+def validate(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario or suite file.")],
+    draw: Annotated[
+        bool, typer.Option(help="Also draw one world of a scenario, to see that it can be solved.")
+    ] = True,
+) -> None:
+    """Check a scenario or suite file.
+
+    Every complaint says file:line: key.
+    """
+    from benchnav.scenario.yaml_reader import read_yaml
+
+    data = read_yaml(file).data
+    if isinstance(data, dict) and "scenarios" in data:
+        _suite(file)
+    else:
+        _scenario(file, draw)
+
+
+def _suite(file: Path) -> None:
+    from benchnav.runner.suite import load_suite
+
+    suite = load_suite(str(file))
+    cells = list(suite.cells())
+    missing = sum(bool(cell.reason) for cell in cells)
+    put(
+        f"{file} is a suite, {suite.name}@{suite.version}: {len(cells)} cells, {missing} of them"
+        f" n/a, × {len(suite.seeds)} seeds"
+    )
+
+
+def _scenario(file: Path, draw: bool) -> None:
+    from benchnav.scenario.load import load_scenario
+
+    scenario = load_scenario(file)
+    put(f"{file} is a scenario, {scenario.identity}, hash {scenario.hash}")
+    if not draw:
+        return
+    from benchnav.world.build import build
+
+    world = build(scenario, "test", 0)
+    put(
+        f"its first test world has {len(world.agents)} agents, {len(world.solids)} walls and"
+        f" static obstacles and {len(world.bodies)} moving ones; {world.redraws} draws before it"
+        " were not solvable"
+    )

@@ -1,0 +1,162 @@
+"""One navigator at work in a batch: what it is told, what it sees, what it answers."""
+
+from collections.abc import Sequence
+from time import perf_counter
+
+import numpy as np
+
+from benchnav.arena.world import World
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.episode.episode import Status
+from benchnav.errors import MissingExtraError
+from benchnav.navigation.briefing import Briefing, brief
+from benchnav.navigation.navigator import Navigator
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.tracks import granted_map
+from benchnav.runner.answer import CallFailed, checked
+from benchnav.sensors.sense import sense
+from benchnav.world.simulation import Simulation
+
+
+class Driver:
+    """A navigator and the agents that it drives in each world of a batch.
+
+    Everything that it hands to the navigator is a copy or read-only.
+    """
+
+    def __init__(
+        self,
+        navigator: Navigator,
+        simulation: Simulation,
+        which: int,
+        track: str,
+        blame: str = "",
+    ) -> None:
+        self.navigator = navigator
+        self.simulation = simulation
+        self.which = which
+        self.track = track
+        self._blame = blame  # what its reasons start with
+        worlds = simulation.worlds
+        self.chosen = _chosen(worlds, which)  # (B, An) agent index, -1: padding
+        self._needs = navigator.required
+        self._row = np.arange(len(worlds))[:, None]
+        self._goal = np.zeros((*self.chosen.shape, 2))
+        for b, world in enumerate(worlds):
+            mine = self.chosen[b][self.chosen[b] >= 0]
+            self._goal[b, : len(mine)] = world.agents.goal[mine]
+        self._maps = [granted_map(world, track) for world in worlds]
+        self._moving = track == "known" and any(world.relocates for world in worlds)
+
+    def reset(self, generators: Sequence[np.random.Generator]) -> float:
+        """Brief the navigator for all worlds. Returns the seconds that it took.
+
+        Raises CallFailed where it raises.
+        """
+        worlds = self.simulation.worlds
+        briefings = [
+            self._briefing(b, world, rng)
+            for b, (world, rng) in enumerate(zip(worlds, generators, strict=True))
+        ]
+        rows = np.arange(len(worlds))
+        began = perf_counter()
+        try:
+            self.navigator.reset(briefings, rows)
+        except MissingExtraError:
+            raise  # what is not installed is no failure of the navigator
+        except (Exception, SystemExit) as error:
+            raise CallFailed(f"{self._blame}reset raised {_said(error)}") from error
+        return perf_counter() - began
+
+    def mark_twists(self, twist: BoolArray) -> None:
+        """Set ``twist`` (B, A) for its agents where it answers twists."""
+        world, agent = np.nonzero(self.chosen >= 0)
+        twist[world, self.chosen[world, agent]] = self.navigator.command == "twist"
+
+    def act(self, command: FloatArray, time: float) -> float:
+        """Put its answers for all running worlds into ``command`` (B, A, 2).
+
+        Args:
+            command: receives the commands of the agents that it drives.
+            time: [s] now, the same in every running world.
+
+        Returns the seconds that its call took. Raises CallFailed where the call raises
+        or answers what is not a command.
+        """
+        observation = self._observe(time)
+        active = self._active[observation.rows]
+        began = perf_counter()
+        try:
+            answer = self.navigator.act(observation)
+            seconds = perf_counter() - began
+            told = checked(answer, active)
+        except CallFailed as failed:
+            raise CallFailed(self._at(failed.reason, time), failed.suspects) from None
+        except MissingExtraError:
+            raise  # what is not installed is no failure of the navigator
+        except (Exception, SystemExit) as error:
+            raise CallFailed(self._at(f"act raised {_said(error)}", time)) from error
+        world, agent = np.nonzero(active)
+        row = observation.rows[world]
+        command[row, self.chosen[row, agent]] = told[world, agent]
+        return seconds
+
+    def _at(self, reason: str, time: float) -> str:
+        return f"{self._blame}{reason} at t = {time:g} s"
+
+    def _observe(self, time: float) -> Observation:
+        simulation, at = self.simulation, (self._row, self.chosen)
+        self._active = (
+            (self.chosen >= 0)
+            & simulation.running[:, None]
+            & (simulation.status[at] == int(Status.ACTIVE))
+            & simulation.present[at]
+        )
+        present = np.where(self._active, self.chosen, -1)
+        rays, neighbours, edges = sense(simulation, present, self._needs)
+        if self._moving:
+            self._renew_maps()
+        everything = Observation(
+            np.arange(len(self.chosen)), np.full(len(self.chosen), time), self._active.copy(),
+            self._own(simulation.position), self._own(simulation.heading),
+            self._own(simulation.velocity), self._goal.copy(), tuple(self._maps),
+            rays, neighbours, edges,
+        )  # fmt: skip
+        if simulation.running.all():
+            return everything
+        return everything.select(np.flatnonzero(simulation.running))
+
+    def _own(self, array: FloatArray) -> FloatArray:
+        own = array[self._row, self.chosen]
+        own[self.chosen < 0] = 0.0
+        return own
+
+    def _renew_maps(self) -> None:
+        simulation = self.simulation
+        for b, world in enumerate(simulation.worlds):
+            held, revision = self._maps[b], int(simulation.revision[b])
+            if held is not None and held.revision != revision:
+                position = simulation.body_position[b].copy()
+                self._maps[b] = granted_map(world, self.track, position, revision)
+
+    def _briefing(self, b: int, world: World, rng: np.random.Generator) -> Briefing:
+        clock = world.clock
+        return brief(
+            world.agents, self.chosen[b][self.chosen[b] >= 0], dt=clock.dt, horizon=clock.horizon,
+            goal_tolerance=world.rules.goal_tolerance, decision_budget=clock.decision_budget,
+            map=self._maps[b], rng=rng,
+        )  # fmt: skip
+
+
+def _chosen(worlds: Sequence[World], which: int) -> IntArray:
+    mine = [np.flatnonzero(world.agents.driver == which) for world in worlds]
+    chosen = np.full((len(worlds), max(map(len, mine))), -1)
+    for b, agents in enumerate(mine):
+        chosen[b, : len(agents)] = agents
+    return chosen
+
+
+def _said(error: BaseException) -> str:
+    text = " ".join(str(error).split())
+    shown = text if len(text) <= 300 else text[:297] + "..."
+    return f"{type(error).__name__}: {shown}" if shown else type(error).__name__

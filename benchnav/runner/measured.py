@@ -1,0 +1,26 @@
+"""Episodes → the table of measured values, now or from a stored run."""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import pyarrow as pa
+
+from benchnav.episode.episode import Episode
+from benchnav.metrics.measure import measure
+from benchnav.metrics.metric import Metric
+from benchnav.store.reading import read_episodes
+from benchnav.store.results import RESULTS
+
+
+def measured(episodes: Iterable[Episode], metrics: Sequence[Metric]) -> pa.Table:
+    """The table of `RESULTS` of these episodes."""
+    rows = [row for episode in episodes for row in measure(episode, metrics)]
+    return pa.Table.from_pylist(rows, schema=RESULTS)
+
+
+def measure_again(run: Path, metrics: Sequence[Metric]) -> pa.Table:
+    """The table of `RESULTS` of a stored run, computed from its episodes: nothing is run again.
+
+    Raises what `benchnav.store.reading.read_episodes` raises.
+    """
+    return measured(read_episodes(run), metrics)

@@ -1,0 +1,153 @@
+"""Runs one navigator in many worlds, in lockstep."""
+
+from collections import deque
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchnav.arena.world import World
+from benchnav.episode.episode import Episode, Identity
+from benchnav.navigation.configure import Spec, make, split
+from benchnav.plugins import NAVIGATORS
+from benchnav.runner.answer import CallFailed
+from benchnav.runner.driver import Driver
+from benchnav.runner.generators import generator
+from benchnav.runner.recorder import Recorder
+from benchnav.world.simulation import Simulation
+
+MAX_WORLDS = 64  # of a batch: more gains little speed and holds more in memory
+MAX_BYTES = 256 << 20  # of recorded states of a batch that runs to its horizon
+_BYTES = 72  # recorded per agent and decision
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """Who runs where, and with which knowledge."""
+
+    scenario: str  # "leaders/dynamic@1"
+    scenario_hash: str
+    split: str
+    track: str
+    label: str  # of the navigator in the suite
+    navigator: Spec
+    background: tuple[Spec, ...] = ()  # navigators of the scenario's other teams
+
+    def identity(self, seed: int) -> Identity:
+        """Of the episode with this seed."""
+        return Identity(self.scenario, self.scenario_hash, self.split, seed, self.track, self.label)
+
+
+Seeded = tuple[int, World]
+
+
+def rollout(
+    assignment: Assignment, worlds: Sequence[Seeded], charge: str = ""
+) -> Iterator[list[Episode]]:
+    """Every world's episode, batch by batch; the batching changes no state and no command.
+
+    A call that fails for a batch is tried again from the start of the episodes with
+    fewer worlds, so that no state of a navigator is touched twice, until the worlds
+    that fail alone are found: only they are charged.
+
+    Args:
+        assignment: who runs where.
+        worlds: (seed, world) pairs.
+        charge: a reason for which every world is charged without running (its
+            navigator killed the process, say); "" runs them.
+    """
+    pending = deque(_batches(worlds))
+    while pending:
+        batch = pending.popleft()
+        try:
+            yield _lockstep(assignment, batch, charge)
+        except CallFailed as failed:
+            pending.extendleft(reversed(_split(batch, failed)))
+
+
+def _batches(worlds: Sequence[Seeded]) -> Iterator[list[Seeded]]:
+    """Consecutive worlds that share clock and rules and fit into memory together."""
+    batch: list[Seeded] = []
+    size = 0
+    for seed, world in worlds:
+        cost = len(world.agents) * world.clock.steps * _BYTES
+        alike = batch and (batch[0][1].clock, batch[0][1].rules) == (world.clock, world.rules)
+        if batch and (not alike or len(batch) == MAX_WORLDS or size + cost > MAX_BYTES):
+            yield batch
+            batch, size = [], 0
+        batch.append((seed, world))
+        size += cost
+    if batch:
+        yield batch
+
+
+def _split(batch: list[Seeded], failed: CallFailed) -> list[list[Seeded]]:
+    """Smaller batches, in one of which the failure shows again."""
+    guilty = set() if failed.suspects is None else set(failed.suspects.tolist())
+    if guilty:
+        innocent = [world for b, world in enumerate(batch) if b not in guilty]
+        alone = [[batch[b]] for b in sorted(guilty)]
+        return [innocent, *alone] if innocent else alone
+    half = len(batch) // 2
+    return [batch[:half], batch[half:]]
+
+
+def _lockstep(assignment: Assignment, batch: list[Seeded], charge: str) -> list[Episode]:
+    simulation = Simulation([world for _, world in batch])
+    recorder = Recorder(simulation)
+    recorder.record_state()
+    planning, failure, reproducible = 0.0, charge, True
+    if charge:
+        _charge(simulation, recorder)
+    else:
+        try:
+            drivers = _drivers(assignment, simulation)
+            reproducible = all(driver.navigator.reproducible for driver in drivers)
+            planning = _reset(assignment, drivers, [seed for seed, _ in batch])
+            _run(simulation, drivers, recorder)
+        except CallFailed as failed:
+            if len(batch) > 1:
+                raise
+            failure = failed.reason
+            _charge(simulation, recorder)
+    identities = [assignment.identity(seed) for seed, _ in batch]
+    return recorder.episodes(identities, planning, failure, reproducible)
+
+
+def _charge(simulation: Simulation, recorder: Recorder) -> None:
+    for b in range(simulation.B):
+        simulation.fail(b, np.flatnonzero(simulation.world(b).agents.evaluated))
+    recorder.restate()
+
+
+def _drivers(assignment: Assignment, simulation: Simulation) -> list[Driver]:
+    """The evaluated navigator, then the background ones, which know the scenario's map."""
+    drivers = [Driver(make(NAVIGATORS, assignment.navigator), simulation, 0, assignment.track)]
+    for which, spec in enumerate(assignment.background, start=1):
+        blame = f"the scenario's background navigator {split(NAVIGATORS, spec)[0]!r}: "
+        drivers.append(Driver(make(NAVIGATORS, spec), simulation, which, "known", blame))
+    return [driver for driver in drivers if driver.chosen.size]
+
+
+def _reset(assignment: Assignment, drivers: list[Driver], seeds: list[int]) -> float:
+    """Brief everybody. Returns the seconds that the evaluated navigator took."""
+    about = (assignment.scenario_hash, assignment.split)
+    seconds = [d.reset([generator(*about, seed, d.which) for seed in seeds]) for d in drivers]
+    return seconds[0]
+
+
+def _run(simulation: Simulation, drivers: list[Driver], recorder: Recorder) -> None:
+    """Sense, act, step and record until no world runs."""
+    twist = np.zeros(simulation.present.shape, np.bool_)
+    for driver in drivers:
+        driver.mark_twists(twist)
+    dt = simulation.world(0).clock.dt
+    step = 0
+    while simulation.running.any():
+        served = int(simulation.running.sum())
+        command = np.zeros_like(simulation.position)
+        seconds = [driver.act(command, step * dt) for driver in drivers]
+        executed = simulation.step(command, twist)
+        recorder.record_commands(command, executed, seconds[0] / served)
+        recorder.record_state()
+        step += 1

@@ -1,0 +1,99 @@
+"""Executes a suite into a run folder."""
+
+import os
+from collections import Counter
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from benchnav.runner.executor import execute
+from benchnav.runner.progress import Progress
+from benchnav.runner.suite import Cell, Suite
+from benchnav.runner.task import Task, chunks
+from benchnav.store.manifest import Manifest
+from benchnav.store.run_folder import RunFolder
+
+
+@dataclass
+class Summary:
+    """What a run did; filled while it goes on, so that an interrupted one can say how far."""
+
+    total: int = 0  # episodes of the suite, n/a cells left out
+    found: int = 0  # of these, on disk before it began
+    stored: int = 0  # of these, on disk now
+    redraws: int = 0  # draws of worlds that were thrown away as unsolvable, in this execution
+    not_applicable: list[tuple[Cell, str]] = field(default_factory=list)
+    failures: Counter[tuple[str, str]] = field(default_factory=Counter)  # (navigator, reason)
+
+
+def default_workers() -> int:
+    """The cores that this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def run_suite(
+    suite: Suite,
+    out: Path,
+    *,
+    workers: int | None = None,
+    progress: Progress | None = None,
+    summary: Summary | None = None,
+) -> Summary:
+    """Run what is not stored yet; afterwards ``out`` holds the whole suite.
+
+    Args:
+        suite: what to run.
+        out: the run folder; missing, empty, or one of the same suite (resumed).
+        workers: processes; None: as many as there are cores; 0: in this process.
+        progress: who is told; None: nobody.
+        summary: filled while the run goes on; None: a new one.
+
+    Raises:
+        RunConflictError: ``out`` holds something else, or another process writes it.
+        StoreError: the disk refuses, or a stored part is damaged.
+        UnsolvableError: a scenario cannot be drawn.
+    """
+    told = progress if progress is not None else Progress()
+    summary = summary if summary is not None else Summary()
+    cells = list(suite.cells())
+    folder = RunFolder.start(out, Manifest(suite.resolved(), tuple(_said(c) for c in cells)))
+    with folder.writing():
+        tasks = _tasks(suite, folder, cells, summary)
+        told.begin(summary.total, summary.stored)
+        try:
+            for task, outcome in execute(tasks, _count(workers), told):
+                summary.stored += outcome.episodes
+                summary.redraws += outcome.redraws
+                label = task.cell.entry.label
+                summary.failures.update((label, reason) for _, reason in outcome.failures)
+        finally:
+            told.end()
+    return summary
+
+
+def _tasks(suite: Suite, folder: RunFolder, cells: list[Cell], summary: Summary) -> list[Task]:
+    """What is missing, the longest first."""
+    tasks = []
+    for cell in cells:
+        if cell.reason:
+            summary.not_applicable.append((cell, cell.reason))
+            continue
+        missing = set(suite.seeds) - folder.done(cell.key)
+        summary.total += len(suite.seeds)
+        summary.stored += len(suite.seeds) - len(missing)
+        tasks += [Task(cell, folder.cell(cell.key), *chunk) for chunk in chunks(missing)]
+    summary.found = summary.stored
+    return sorted(tasks, key=lambda task: -task.cell.effort * len(task.seeds))
+
+
+def _said(cell: Cell) -> dict[str, str]:
+    return {
+        "key": cell.key,
+        "scenario": cell.scenario.identity,
+        "track": cell.track,
+        "navigator": cell.entry.label,
+        "reason": cell.reason,
+    }
+
+
+def _count(workers: int | None) -> int:
+    return default_workers() if workers is None else workers

@@ -1,0 +1,217 @@
+"""A suite, resolved: a lazy product of scenarios, tracks and navigators over seeds."""
+
+import hashlib
+import json
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from benchnav.errors import ScenarioError, UsageError, did_you_mean
+from benchnav.navigation.configure import Spec, configure, make, split
+from benchnav.navigation.navigator import Need
+from benchnav.navigation.tracks import TRACKS
+from benchnav.plugins import NAVIGATORS
+from benchnav.runner.rollout import Assignment
+from benchnav.runner.suite_file import SuiteFile, parse_seeds, suite_path
+from benchnav.scenario.catalogue import find
+from benchnav.scenario.load import load_scenario
+from benchnav.scenario.sampler import support
+from benchnav.scenario.scenario import Scenario
+from benchnav.scenario.yaml_reader import read_yaml, validate
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A navigator of a suite."""
+
+    label: str
+    spec: Mapping[str, Any]  # {type: name, …every parameter}
+    source: str  # distribution and version that it comes from
+    required: frozenset[Need]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One scenario × track × navigator."""
+
+    scenario: Scenario
+    split: str
+    track: str
+    entry: Entry
+
+    @property
+    def assignment(self) -> Assignment:
+        """Who runs where."""
+        scenario, entry = self.scenario, self.entry
+        return Assignment(
+            scenario.identity, scenario.hash, self.split, self.track, entry.label, entry.spec,
+            tuple({"type": d.type, **d.params} for d in scenario.drivers),
+        )  # fmt: skip
+
+    @property
+    def key(self) -> str:
+        """Name of its folder: readable, and with a hash of all that makes it what it is."""
+        a = self.assignment
+        said = json.dumps(
+            [a.scenario, a.scenario_hash, a.split, a.track, a.label, dict(self.entry.spec)]
+        )
+        parts = (_slug(a.scenario), a.track, _slug(a.label))
+        return ".".join(parts) + "." + hashlib.sha256(said.encode()).hexdigest()[:10]
+
+    @property
+    def reason(self) -> str:
+        """Why it is n/a; "" where it can be run."""
+        required, sensing = self.entry.required, self.scenario.sensing
+        if self.track not in self.scenario.granted_tracks:
+            return f"the scenario has no track {self.track!r}"
+        if Need.MAP in required and self.track == "unknown":
+            return "needs a map"
+        sensed = {need for need in Need if getattr(sensing, need, None) is not None}
+        lacking = sorted(required - sensed - {Need.MAP})
+        return f"needs {' and '.join(lacking)}, which nobody senses there" if lacking else ""
+
+    @property
+    def effort(self) -> float:
+        """How long its episodes are likely to take, to begin the longest first."""
+        agents = sum(support(team.count)[1] for team in self.scenario.teams)
+        planning = 4.0 if Need.MAP in self.entry.required else 1.0
+        return agents * self.scenario.clock.steps * planning
+
+
+@dataclass(frozen=True)
+class Selection:
+    """What the command line takes instead of the suite's own; empty means the suite's own."""
+
+    scenarios: tuple[str, ...] = ()
+    tracks: tuple[str, ...] = ()
+    navigators: tuple[str, ...] = ()
+    seeds: str = ""
+
+
+@dataclass(frozen=True)
+class Suite:
+    """What to run."""
+
+    name: str
+    version: int
+    split: str
+    seeds: range
+    scenarios: tuple[Scenario, ...]
+    tracks: tuple[str, ...]
+    entries: tuple[Entry, ...]
+
+    def cells(self) -> Iterator[Cell]:
+        """Every cell, n/a ones included: by scenario, track, navigator."""
+        for scenario in self.scenarios:
+            for track in self.tracks:
+                for entry in self.entries:
+                    yield Cell(scenario, self.split, track, entry)
+
+    def resolved(self) -> dict[str, Any]:
+        """Everything that has a say in the results, as plain data for the manifest."""
+        return {
+            "name": self.name,
+            "version": self.version,
+            "split": self.split,
+            "seeds": [self.seeds.start, self.seeds.stop],
+            "scenarios": [
+                {"scenario": s.identity, "hash": s.hash, "says": s.model_dump(mode="json")}
+                for s in self.scenarios
+            ],
+            "tracks": list(self.tracks),
+            "navigators": [
+                {"label": e.label, "says": dict(e.spec), "source": e.source} for e in self.entries
+            ],
+        }
+
+
+def load_suite(name: str, selection: Selection = Selection()) -> Suite:
+    """The suite that ships as ``name`` or stands in that file, with what was selected.
+
+    Raises:
+        UsageError: no such suite, track or seeds; a label or scenario twice.
+        ScenarioError: the suite file or a scenario is wrong.
+        PluginError: a navigator cannot be used.
+    """
+    path = suite_path(name)
+    document = read_yaml(path)
+    said = validate(SuiteFile, document)
+    wanted = _wanted_navigators(said, selection.navigators)
+    entries = tuple(
+        _entry(spec, "--navigator" if i is None else document.where(("navigators", i)))
+        for i, spec in wanted
+    )
+    if selection.scenarios:
+        scenarios = tuple(find(name) for name in selection.scenarios)
+    else:
+        scenarios = tuple(_scenario(name, path.parent) for name in said.scenarios)
+    tracks = tuple(selection.tracks or said.tracks)
+    _refuse_unknown_tracks(tracks)
+    _refuse_twice("scenario", [s.identity for s in scenarios], path)
+    _refuse_twice("track", tracks, path)
+    _refuse_twice("navigator label", [e.label for e in entries], path)
+    seeds = _seeds(selection.seeds or str(said.seeds))
+    return Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries)
+
+
+def _wanted_navigators(said: SuiteFile, selected: Sequence[str]) -> list[tuple[int | None, Spec]]:
+    """(place in the file or None, spec): labels select from the file, other names are added."""
+    own = {_label(spec): (i, spec) for i, spec in enumerate(said.navigators)}
+    if not selected:
+        return [(i, spec) for i, spec in enumerate(said.navigators)]
+    return [own.get(name, (None, name)) for name in selected]
+
+
+def _label(spec: Spec) -> str:
+    if isinstance(spec, str):
+        return spec
+    return str(spec.get("label", spec.get("type", "")))
+
+
+def _entry(spec: Spec, where: str) -> Entry:
+    label = _label(spec)
+    if not isinstance(spec, str):
+        spec = {key: value for key, value in spec.items() if key != "label"}
+        if not label.strip() or len(label) > 80:
+            raise ScenarioError(f"{where} label must have 1 to 80 characters; got {label[:90]!r}.")
+    name, _ = split(NAVIGATORS, spec, where=where)
+    _, config = configure(NAVIGATORS, spec, where=where)
+    navigator = make(NAVIGATORS, spec, where=where)
+    full = {"type": name, **config.model_dump(mode="json")}
+    return Entry(label, full, NAVIGATORS.source(name).distribution, navigator.required)
+
+
+def _scenario(name: str, folder: Path) -> Scenario:
+    if name.endswith((".yaml", ".yml")):
+        return load_scenario(folder / name)
+    return find(name)
+
+
+def _seeds(text: str) -> range:
+    try:
+        return parse_seeds(text)
+    except ValueError as error:
+        raise UsageError(f"seeds {error}.") from None
+
+
+def _refuse_unknown_tracks(tracks: Sequence[str]) -> None:
+    for track in tracks:
+        if track not in TRACKS:
+            raise UsageError(
+                f"A track must be one of {', '.join(TRACKS)}. Got {track!r} instead."
+                f"{did_you_mean(track, TRACKS)}"
+            )
+
+
+def _refuse_twice(what: str, names: Sequence[str], path: Path) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise UsageError(
+                f"Every {what} of a suite must be there once. {path} has {name!r} more than once."
+            )
+
+
+def _slug(text: str) -> str:
+    return re.sub(r"[^A-Za-z0-9@_-]+", "-", text)[:60]

@@ -1,0 +1,97 @@
+"""The suite file: what a YAML file that asks for a run may say."""
+
+import re
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+from benchnav.errors import UsageError, did_you_mean
+from benchnav.navigation.tracks import Track
+
+MAX_SEEDS = 1_000_000
+_RANGE = re.compile(r"(?:([0-9]{1,15}):)?([0-9]{1,15})")
+_SUFFIXES = (".yaml", ".yml")
+
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class SuiteFile(BaseModel):
+    """Scenarios × tracks × navigators × seeds."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=60)] = Field(
+        description="Of the suite: small letters, digits and hyphens."
+    )
+    version: int = Field(1, ge=1, description="Rises when the suite's results change meaning.")
+    description: str = Field("", description="What the suite is for.")
+    scenarios: tuple[Name, ...] = Field(
+        min_length=1, description="Names of scenarios, or paths from this file's folder."
+    )
+    tracks: tuple[Track, ...] = Field(
+        ("known",), min_length=1, description="Knowledge tracks: known, stale, partial, unknown."
+    )
+    navigators: tuple[Name | dict[str, Any], ...] = Field(
+        min_length=1,
+        description="Names, or {type: name, label: what tables call it, …its parameters}.",
+    )
+    seeds: int | str = Field(20, description="N for seeds 0 … N-1, or 'a:b' for seeds a … b-1.")
+    split: Literal["train", "validation", "test"] = Field(
+        "test", description="Stream that worlds are drawn from."
+    )
+
+    @field_validator("seeds")
+    @classmethod
+    def _check_seeds(cls, seeds: int | str) -> int | str:
+        parse_seeds(str(seeds))
+        return seeds
+
+
+def parse_seeds(text: str) -> range:
+    """``"20"`` → 0 … 19; ``"100:120"`` → 100 … 119.
+
+    Raises ValueError, with the rule and what came instead.
+    """
+    rule = f"must be N (seeds 0 … N-1) or A:B (seeds A … B-1), with 1 to {MAX_SEEDS} seeds"
+    match = _RANGE.fullmatch(text)
+    if match is None:
+        raise ValueError(f"{rule}; got {text[:60]!r}")
+    first, stop = int(match[1] or 0), int(match[2])
+    if not 1 <= stop - first <= MAX_SEEDS:
+        raise ValueError(f"{rule}; got {text!r}")
+    return range(first, stop)
+
+
+def suite_names() -> list[str]:
+    """Suites that ship, sorted."""
+    return sorted(f.name.removesuffix(".yaml") for f in _shipped() if f.name.endswith(".yaml"))
+
+
+def suite_path(name: str) -> Path:
+    """The file of a suite that ships, or the path itself where ``name`` is one.
+
+    Raises UsageError where it is neither.
+    """
+    if name.endswith(_SUFFIXES) or Path(name).is_file():
+        return Path(name)
+    for entry in _shipped():
+        if entry.name == f"{name}.yaml":
+            return Path(str(entry))
+    raise UsageError(
+        f"SUITE must be a file (*.yaml) or one of {', '.join(suite_names())}."
+        f" Got {name!r} instead.{did_you_mean(name, suite_names())}"
+    )
+
+
+def _shipped() -> list[Traversable]:
+    folder = files("benchnav_scenarios") / "suites"
+    return list(folder.iterdir()) if folder.is_dir() else []
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema (2020-12) of a suite file."""
+    schema = SuiteFile.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -1,0 +1,83 @@
+"""The unit of work: one cell for a range of seeds."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from benchnav.metrics.measure import all_metrics
+from benchnav.runner.measured import measured
+from benchnav.runner.rollout import rollout
+from benchnav.runner.suite import Cell
+from benchnav.store.part import Part
+from benchnav.store.part_writer import PartWriter
+from benchnav.world.build import build
+
+CHUNK = 32  # seeds of a task: enough for lockstep to pay, few enough to lose to an interruption
+
+
+@dataclass(frozen=True)
+class Task:
+    """Runs seeds first … stop - 1 of a cell and stores them as one part."""
+
+    cell: Cell
+    folder: Path  # of the cell
+    first: int
+    stop: int
+    charge: str = ""  # a reason for which every episode fails without running
+
+    @property
+    def seeds(self) -> range:
+        """What it runs."""
+        return range(self.first, self.stop)
+
+    def alone(self) -> list["Task"]:
+        """The same, seed by seed."""
+        return [Task(self.cell, self.folder, s, s + 1, self.charge) for s in self.seeds]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What there is to say about a finished task."""
+
+    episodes: int
+    redraws: int  # draws of worlds that were thrown away as unsolvable
+    failures: tuple[tuple[int, str], ...] = field(default=())  # (seed, reason)
+
+
+def chunks(seeds: Iterable[int]) -> Iterator[tuple[int, int]]:
+    """Ranges (first, stop) that cover ``seeds``, none across a multiple of `CHUNK`."""
+    first = previous = None
+    for seed in sorted(seeds):
+        if first is None or previous is None:
+            first = seed
+        elif seed != previous + 1 or seed % CHUNK == 0:
+            yield first, previous + 1
+            first = seed
+        previous = seed
+    if first is not None and previous is not None:
+        yield first, previous + 1
+
+
+def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:
+    """Run a task; its part is on disk when this returns.
+
+    Args:
+        task: what to run.
+        tick: called with the number of episodes that were just finished.
+
+    Raises:
+        UnsolvableError: the scenario cannot be drawn.
+        StoreError: the disk refuses.
+        MissingExtraError: the navigator needs something that is not installed.
+    """
+    cell = task.cell
+    worlds = [(seed, build(cell.scenario, cell.split, seed)) for seed in task.seeds]
+    metrics = all_metrics()
+    failures: list[tuple[int, str]] = []
+    with PartWriter(Part(task.folder, task.first, task.stop)) as writer:
+        for episodes in rollout(cell.assignment, worlds, task.charge):
+            writer.add(episodes, measured(episodes, metrics))
+            failures += [(e.identity.seed, e.failure) for e in episodes if e.failure]
+            tick(len(episodes))
+        writer.seal()
+    return Outcome(len(worlds), sum(w.redraws for _, w in worlds), tuple(sorted(failures)))
