@@ -1,0 +1,141 @@
+"""The exact test of a disc that is swept along a segment against capsules.
+
+Nothing is sampled: a motion from p to q is free where the distance between the
+segments pq and each capsule's axis is at least the sum of the two radii, and pq
+does not cross the axis. Touching is free: the disc is taken as open. A motion that
+lies wholly inside a solid touches no edge, so the points where motions begin are
+asked `inside_solid` besides.
+
+Kernels use correctly rounded operations only. `Capsules` arrays are (P, 5)
+x0, y0, x1, y1, radius [m].
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numba import njit
+
+from benchnav.arena.solid import Solid
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.geometry.capsule import nearest_on_segment, segments_cross
+
+
+@njit(cache=True)
+def point_segment_distance2(
+    px: float, py: float, x0: float, y0: float, x1: float, y1: float
+) -> float:
+    """Squared distance [m²] of a point and a segment."""
+    qx, qy = nearest_on_segment(px, py, x0, y0, x1, y1)
+    return (px - qx) * (px - qx) + (py - qy) * (py - qy)
+
+
+@njit(cache=True)
+def segment_distance2(
+    ax: float, ay: float, bx: float, by: float, x0: float, y0: float, x1: float, y1: float
+) -> float:
+    """Squared distance [m²] of two segments: 0 where they cross, else an end is nearest."""
+    if segments_cross(ax, ay, bx, by, x0, y0, x1, y1):
+        return 0.0
+    d = point_segment_distance2(ax, ay, x0, y0, x1, y1)
+    d = min(d, point_segment_distance2(bx, by, x0, y0, x1, y1))
+    d = min(d, point_segment_distance2(x0, y0, ax, ay, bx, by))
+    return min(d, point_segment_distance2(x1, y1, ax, ay, bx, by))
+
+
+@njit(cache=True)
+def segment_capsule_distance(
+    ax: float, ay: float, bx: float, by: float, capsule: FloatArray
+) -> float:
+    """Distance [m] of the segment ab and a capsule (5,); negative where they overlap."""
+    d2 = segment_distance2(ax, ay, bx, by, capsule[0], capsule[1], capsule[2], capsule[3])
+    return math.sqrt(d2) - capsule[4]
+
+
+@njit(cache=True)
+def is_free_of(
+    px: float, py: float, qx: float, qy: float, radius: float, capsule: FloatArray
+) -> bool:
+    """True where a disc may go from p to q without entering one capsule (5,)."""
+    x0, y0, x1, y1 = capsule[0], capsule[1], capsule[2], capsule[3]
+    reach = radius + capsule[4]
+    if max(px, qx) + reach < min(x0, x1) or max(x0, x1) + reach < min(px, qx):
+        return True
+    if max(py, qy) + reach < min(y0, y1) or max(y0, y1) + reach < min(py, qy):
+        return True
+    if segments_cross(px, py, qx, qy, x0, y0, x1, y1):
+        return False
+    return segment_distance2(px, py, qx, qy, x0, y0, x1, y1) >= reach * reach
+
+
+@njit(cache=True)
+def motion_is_free(
+    px: float, py: float, qx: float, qy: float, radius: float, capsules: FloatArray
+) -> bool:
+    """True where a disc of ``radius`` [m] may go straight from p to q among capsules (P, 5)."""
+    for i in range(capsules.shape[0]):
+        if not is_free_of(px, py, qx, qy, radius, capsules[i]):
+            return False
+    return True
+
+
+@njit(cache=True)
+def clearance(px: float, py: float, capsules: FloatArray) -> float:
+    """Distance [m] of a point to the nearest capsule (P, 5); negative inside one, inf if none."""
+    least = math.inf
+    for i in range(capsules.shape[0]):
+        x0, y0, x1, y1, r = capsules[i]
+        least = min(least, math.sqrt(point_segment_distance2(px, py, x0, y0, x1, y1)) - r)
+    return least
+
+
+@njit(cache=True)
+def inside_solid(
+    px: float, py: float, capsules: FloatArray, first: IntArray, outside: IntArray
+) -> bool:
+    """True where a point lies within the loops of any solid.
+
+    Solid s owns the capsules first[s]:first[s + 1]; ``outside`` (S,) is its winding
+    number far away (`solid_index`). Each solid is asked alone, so that solids may
+    overlap. Discs are left to the distance tests.
+    """
+    for s in range(first.shape[0] - 1):
+        turns = outside[s]
+        for i in range(first[s], first[s + 1]):
+            x0, y0, x1, y1 = capsules[i, 0], capsules[i, 1], capsules[i, 2], capsules[i, 3]
+            if (y0 <= py) == (y1 <= py):
+                continue
+            left = (x1 - x0) * (py - y0) - (px - x0) * (y1 - y0)
+            if y0 <= py and left > 0.0:
+                turns += 1
+            elif y1 <= py and left < 0.0:
+                turns -= 1
+        if turns > 0:
+            return True
+    return False
+
+
+def solid_index(solids: Sequence[Solid]) -> tuple[IntArray, IntArray]:
+    """(first (S+1,), outside (S,)) for `inside_solid`.
+
+    ``outside`` is 1 where the solid reaches to infinity: the inside of a walled arena
+    is a clockwise loop, so the loops of such a solid enclose a negative area.
+    """
+    first = np.zeros(len(solids) + 1, np.int64)
+    outside = np.zeros(len(solids), np.int64)
+    for s, solid in enumerate(solids):
+        first[s + 1] = first[s] + len(solid.capsules)
+        outside[s] = 0 if solid.is_disc else int(_reaches_to_infinity(solid))
+    return first, outside
+
+
+def _reaches_to_infinity(solid: Solid) -> bool:
+    """True where the loops enclose a negative area by more than rounding makes of thin walls."""
+    extent = float(np.ptp(np.vstack(solid.loops), axis=0).max())
+    return sum(map(_area, solid.loops)) < -1e-12 * extent * extent
+
+
+def _area(loop: FloatArray) -> float:
+    """Signed area [m²] of a loop (V, 2), taken about its first vertex."""
+    x, y = (loop - loop[0]).T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
