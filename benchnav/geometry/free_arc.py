@@ -13,7 +13,7 @@ from numba import njit
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
-from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid, nearby
+from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid, longer, nearby
 
 TWO_PI = 2.0 * math.pi
 _NARROW = 1e-9  # [rad] narrower arcs are none
@@ -78,7 +78,7 @@ def _free_parts(grid: CapsuleGrid, circles: FloatArray) -> FloatArray:
     rows = np.empty((16, 5))
     count = 0
     for index in range(len(circles)):
-        x, y, radius = circles[index]
+        x, y, radius = circles[index, 0], circles[index, 1], circles[index, 2]
         near = nearby(grid, x, y, radius)
         angles = _crossings(grid, near, x, y, radius)
         size = len(angles) - 1  # the last angle is the first, one turn later
@@ -98,10 +98,9 @@ def _free_parts(grid: CapsuleGrid, circles: FloatArray) -> FloatArray:
             k += 1
             if width > 0.0:
                 if count == len(rows):
-                    longer = np.empty((2 * count, 5))
-                    longer[:count] = rows
-                    rows = longer
-                rows[count] = x, y, radius, low, (TWO_PI if first == size else width)
+                    rows = longer(rows)
+                rows[count, 0], rows[count, 1], rows[count, 2] = x, y, radius
+                rows[count, 3], rows[count, 4] = low, (TWO_PI if first == size else width)
                 count += 1
     return rows[:count]
 

@@ -45,9 +45,10 @@ def _on_circle(
         return count
     across = math.sqrt(radius * radius - along * along)
     ex, ey = dx / d, dy / d
-    points[count] = x + along * ex - across * ey, y + along * ey + across * ex
-    points[count + 1] = x + along * ex + across * ey, y + along * ey - across * ex
-    return count + 2
+    points[count, 0], points[count, 1] = x + along * ex - across * ey, y + along * ey + across * ex
+    count += 1
+    points[count, 0], points[count, 1] = x + along * ex + across * ey, y + along * ey - across * ex
+    return count + 1
 
 
 @njit(cache=True)
@@ -70,6 +71,6 @@ def _on_edge(
     for sign in range(2):
         t = along - half if sign == 0 else along + half
         if 0.0 <= t <= d:
-            points[count] = ox + t * tx, oy + t * ty
+            points[count, 0], points[count, 1] = ox + t * tx, oy + t * ty
             count += 1
     return count

@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from benchnav.arrays import FloatArray
-from benchnav.geometry.capsule_grid import CapsuleGrid, is_clear
+from benchnav.geometry.capsule_grid import CapsuleGrid, is_clear, longer
 from benchnav.geometry.free_arc import TWO_PI, Arcs
 
 _ON_ARC = 1e-12  # slack of the cosine that tells whether an arc reaches to a point of tangency
@@ -62,9 +62,7 @@ def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
                 if not is_clear(grid, ax, ay, bx, by):
                     continue
                 if count == len(rows):
-                    longer = np.empty((2 * count, 5))
-                    longer[:count] = rows
-                    rows = longer
+                    rows = longer(rows)
                 length = math.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
                 rows[count, 0], rows[count, 1] = i, _angle_on(arcs, i, ux, uy)
                 rows[count, 2], rows[count, 3] = j, _angle_on(arcs, j, vx, vy)
