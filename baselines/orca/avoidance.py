@@ -29,10 +29,13 @@ class OrcaConfig(PluginConfig):
     margin: float = Field(0.01, ge=0, description="[m] by which every disc is taken to be larger")
     neighbours: int = Field(10, ge=0, description="nearest neighbours that are considered")
     perturbation: float = Field(
-        0.01, ge=0, lt=1,
-        description="size of a constant random part of the preferred velocity, as a share of"
-        " its length; breaks exact symmetry",
-    )  # fmt: skip
+        0.005,
+        ge=0,
+        lt=1,
+        description="size of a constant random error of the agent's own velocity and preferred"
+        " velocity, as a share of the preferred speed; agents that meet in exact symmetry"
+        " stand for ever without it",
+    )
 
 
 class Avoidance:
@@ -62,9 +65,10 @@ class Avoidance:
         offset = self._told.take("offset", observation.rows, agents)
         wanted = approach(observation.position, target, told[..., 2], told[..., 3])
         speed = np.sqrt(np.sum(wanted * wanted, axis=-1, keepdims=True))
+        usual = told[..., 2:3]
         own = np.empty((worlds, agents, OWN))
         own[..., 0:2] = observation.position
-        own[..., 2:4] = observation.velocity
+        own[..., 2:4] = observation.velocity + usual * offset
         own[..., 4:6] = wanted + speed * offset
         own[..., 6:8] = told[..., 0:2]
         own[..., 8] = 1.0 / np.where(told[..., 3] > 0.0, told[..., 3], 1.0)

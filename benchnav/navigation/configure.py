@@ -1,7 +1,9 @@
 """From a name or ``{type: name, …params}``, as a file or a caller wrote it, to a plugin."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from itertools import groupby
+from types import UnionType
+from typing import Any, Union, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -54,8 +56,7 @@ def configure(registry: Registry, spec: Spec, *, where: str = "") -> tuple[Any, 
     try:
         return plugin, declared(**parameters)
     except ValidationError as error:
-        subject = f"{registry.kind} {name!r}"
-        lines = [_explain(subject, declared, detail) for detail in error.errors()]
+        lines = _explanations(f"{registry.kind} {name!r}", declared, error.errors())
         raise ConfigError(_at(where) + "\n".join(lines)) from None
 
 
@@ -81,20 +82,58 @@ def split(registry: Registry, spec: Spec, *, where: str = "") -> tuple[str, dict
     return name, {key: value for key, value in spec.items() if key != "type"}
 
 
+def _explanations(
+    subject: str, declared: type[BaseModel], details: list[ErrorDetails]
+) -> list[str]:
+    """One line for each mistake; the branches of a union that all fail are one mistake."""
+    lines = []
+    for key, group in groupby(details, key=lambda detail: detail["loc"][:1]):
+        branches = list(group)
+        field = declared.model_fields.get(str(key[0])) if key else None
+        union = field is not None and get_origin(field.annotation) in (Union, UnionType)
+        if union and len({branch["loc"] for branch in branches}) > 1:
+            rule = ", or ".join(dict.fromkeys(_rule(branch) for branch in branches))
+            whole = next((b["input"] for b in branches if len(b["loc"]) == 2), None)
+            got = "" if whole is None else f" Got {_short(whole)} instead."
+            lines.append(f"The parameter {key[0]!r} of the {subject} must be {rule}.{got}")
+        else:
+            lines += [_explain(subject, declared, branch) for branch in branches]
+    return lines
+
+
+def _rule(detail: ErrorDetails) -> str:
+    if detail["type"] in ("missing", "extra_forbidden"):
+        word = "with" if detail["type"] == "missing" else "without"
+        return f"a mapping {word} {detail['loc'][-1]!r}"
+    message = detail["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
+    return message.partition(" or instance of ")[0]
+
+
 def _explain(subject: str, declared: type[BaseModel], detail: ErrorDetails) -> str:
     place = detail["loc"]
     key = ".".join(str(part) for part in place)
     if detail["type"] == "extra_forbidden":
-        known = list(declared.model_fields) if len(place) == 1 else []
+        known = _known(declared, place[:-1])
         near = did_you_mean(str(place[-1]), known)
-        has = f" It has {_listed(known)}." if known and not near else ""
+        has = f" There is {_listed(known)}." if known and not near else ""
         none = " It has none." if len(place) == 1 and not known else ""
         return f"The {subject} has no parameter {key!r}.{near}{has}{none}"
     if detail["type"] == "missing":
         return f"The {subject} must be given the parameter {key!r}. Got nothing instead."
-    rule = detail["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
     what = f"The parameter {key!r} of the {subject}" if key else f"The {subject}"
-    return f"{what} must be {rule}. Got {_short(detail['input'])} instead."
+    return f"{what} must be {_rule(detail)}. Got {_short(detail['input'])} instead."
+
+
+def _known(declared: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
+    """The parameters at ``place``; none where that is not plainly a nested Config."""
+    for part in place:
+        field = declared.model_fields.get(str(part))
+        if field is None or not isinstance(field.annotation, type):
+            return []
+        if not issubclass(field.annotation, BaseModel):
+            return []
+        declared = field.annotation
+    return list(declared.model_fields)
 
 
 def _at(where: str) -> str:

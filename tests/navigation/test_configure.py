@@ -1,4 +1,4 @@
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import pytest
 from pydantic import Field
@@ -9,10 +9,20 @@ from benchnav.navigation.navigator import PluginConfig
 from benchnav.plugins import Registry
 
 
+class Every(PluginConfig):
+    every: float = Field(gt=0)
+
+
+class Deep(PluginConfig):
+    radius: float = 1.0
+
+
 class Mild:
     class Config(PluginConfig):
         time_horizon: float = Field(5.0, gt=0, description="[s]")
         name: str = "x"
+        when: Literal["never", "always"] | Every = "never"
+        deep: Deep = Deep()
 
     def __init__(self, config=None):
         self.config = config if config is not None else self.Config()
@@ -80,7 +90,7 @@ def test_configure_constructs_nothing(registry):
         ),
         (
             {"type": "mild", "zz": 2},
-            "The thing 'mild' has no parameter 'zz'. It has 'time_horizon', 'name'.",
+            "The thing 'mild' has no parameter 'zz'. There is 'time_horizon', 'name', 'when', 'deep'.",
         ),
         ({"type": "empty", "zz": 2}, "The thing 'empty' has no parameter 'zz'. It has none."),
         (
@@ -96,6 +106,20 @@ def test_configure_constructs_nothing(registry):
         (
             "strict",
             "The thing 'strict' must be given the parameter 'must'. Got nothing instead.",
+        ),
+        (
+            {"type": "mild", "deep": {"radus": 1}},
+            "The thing 'mild' has no parameter 'deep.radus'. Did you mean 'radius'?",
+        ),
+        (
+            {"type": "mild", "when": 7},
+            "The parameter 'when' of the thing 'mild' must be 'never' or 'always', or a valid"
+            " dictionary. Got 7 instead.",
+        ),
+        (
+            {"type": "mild", "when": {"evry": 1}},
+            "The parameter 'when' of the thing 'mild' must be 'never' or 'always', or a mapping"
+            " with 'every', or a mapping without 'evry'. Got {'evry': 1} instead.",
         ),
         (7, "A thing must be a name or {type: name, …parameters}. Got 7 instead."),
         (
