@@ -40,7 +40,8 @@ def segment_distance2(
     d = point_segment_distance2(ax, ay, x0, y0, x1, y1)
     d = min(d, point_segment_distance2(bx, by, x0, y0, x1, y1))
     d = min(d, point_segment_distance2(x0, y0, ax, ay, bx, by))
-    return min(d, point_segment_distance2(x1, y1, ax, ay, bx, by))
+    least: float = min(d, point_segment_distance2(x1, y1, ax, ay, bx, by))
+    return least
 
 
 @njit(cache=True)
@@ -49,7 +50,8 @@ def segment_capsule_distance(
 ) -> float:
     """Distance [m] of the segment ab and a capsule (5,); negative where they overlap."""
     d2 = segment_distance2(ax, ay, bx, by, capsule[0], capsule[1], capsule[2], capsule[3])
-    return math.sqrt(d2) - capsule[4]
+    apart: float = math.sqrt(d2) - capsule[4]
+    return apart
 
 
 @njit(cache=True)
@@ -65,7 +67,8 @@ def is_free_of(
         return True
     if segments_cross(px, py, qx, qy, x0, y0, x1, y1):
         return False
-    return segment_distance2(px, py, qx, qy, x0, y0, x1, y1) >= reach * reach
+    free: bool = segment_distance2(px, py, qx, qy, x0, y0, x1, y1) >= reach * reach
+    return free
 
 
 @njit(cache=True)
@@ -73,10 +76,12 @@ def motion_is_free(
     px: float, py: float, qx: float, qy: float, radius: float, capsules: FloatArray
 ) -> bool:
     """True where a disc of ``radius`` [m] may go straight from p to q among capsules (P, 5)."""
+    free = True
     for i in range(capsules.shape[0]):
-        if not is_free_of(px, py, qx, qy, radius, capsules[i]):
-            return False
-    return True
+        free = is_free_of(px, py, qx, qy, radius, capsules[i])
+        if not free:
+            break
+    return free
 
 
 @njit(cache=True)
