@@ -48,9 +48,15 @@ class Solid:
         """(P, 5) x0, y0, x1, y1, radius, edges in loop order."""
         if self.is_disc:
             return np.array([[*self.center, *self.center, self.radius]])
-        edges = [np.hstack([loop, np.roll(loop, -1, axis=0)]) for loop in self.loops]
-        ends = np.vstack(edges)
-        return np.hstack([ends, np.zeros((len(ends), 1))])
+        edges = np.zeros((sum(len(loop) for loop in self.loops), 5))
+        first = 0
+        for loop in self.loops:
+            end = first + len(loop)
+            edges[first:end, 0:2] = loop
+            edges[first : end - 1, 2:4] = loop[1:]
+            edges[end - 1, 2:4] = loop[0]
+            first = end
+        return edges
 
     @property
     def bounding_radius(self) -> float:
@@ -62,7 +68,7 @@ class Solid:
     def moved(self, offset: FloatArray) -> "Solid":
         """The same shape, translated by ``offset`` (2,) [m]."""
         x, y = float(offset[0]), float(offset[1])
-        loops = tuple(loop + (x, y) for loop in self.loops)
+        loops = tuple(loop + np.array([x, y]) for loop in self.loops)
         return Solid(self.kind, loops, (self.center[0] + x, self.center[1] + y), self.radius)
 
 

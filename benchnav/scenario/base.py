@@ -1,0 +1,38 @@
+"""What every part of a scenario's description shares: strictness, numbers with bounds."""
+
+from typing import Annotated
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+
+
+class Spec(BaseModel):
+    """Frozen; unknown keys, NaN and infinities are refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+
+FAR = 1e5  # [m] no coordinate lies farther from the origin
+
+
+def _ordered(box: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    if not (box[0] < box[2] and box[1] < box[3]):
+        raise ValueError(
+            "must be [xmin, ymin, xmax, ymax] with xmin < xmax and ymin < ymax;"
+            f" got [{', '.join(f'{v:g}' for v in box)}]"
+        )
+    return box
+
+
+Coordinate = Annotated[float, Field(ge=-FAR, le=FAR)]
+Point = tuple[Coordinate, Coordinate]
+Length = Annotated[float, Field(gt=0, le=FAR)]
+Distance = Annotated[float, Field(ge=0, le=FAR)]
+Bounds = Annotated[
+    tuple[Coordinate, Coordinate, Coordinate, Coordinate], AfterValidator(_ordered)
+]  # xmin, ymin, xmax, ymax [m]
+Name = Annotated[str, Field(pattern=r"^[a-z0-9]+([_-][a-z0-9]+)*$", max_length=60)]
+
+
+def inside(bounds: tuple[float, float, float, float], x: float, y: float) -> bool:
+    """True where (x, y) lies within ``bounds``, edges included."""
+    return bounds[0] <= x <= bounds[2] and bounds[1] <= y <= bounds[3]

@@ -1,0 +1,82 @@
+"""Groups of obstacles: static ones that may be re-placed, dynamic ones that never yield."""
+
+from pydantic import Field, model_validator
+
+from benchnav.scenario.base import Distance, Point, Spec
+from benchnav.scenario.law import Law, RecordedTrack
+from benchnav.scenario.region import Region
+from benchnav.scenario.sampler import Count, NonNegativeScalar, Scalar, fixed
+from benchnav.scenario.shape import Movable, Placeable, shape_is_fixed
+from benchnav.scenario.validation import FieldError
+
+
+class StaticGroup(Spec):
+    """Furniture: fixed at given points, or drawn from a region."""
+
+    shape: Placeable
+    count: Count | None = Field(None, description="1 if not given; not with `at`")
+    at: tuple[Point, ...] | None = Field(
+        None, min_length=1, max_length=1000, description="one obstacle at each point [m]"
+    )
+    region: Region | None = Field(None, description="where the obstacles' origins are drawn")
+    heading: Scalar = Field(0.0, description="[rad] counter-clockwise")
+    gap: Distance = Field(
+        0.0,
+        description="least distance [m] to walls, to other obstacles, to fixed starts and goals",
+    )
+    moved: bool = Field(
+        False, description="re-placed before the episode: the stale map shows where they stood"
+    )
+    relocate_at: NonNegativeScalar | None = Field(
+        None, description="[s] when each is re-placed, once, within the episode"
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> "StaticGroup":
+        if (self.at is None) == (self.region is None):
+            raise FieldError((), "must have either `at` or `region`")
+        if self.at is not None:
+            if self.count is not None:
+                raise FieldError(("count",), "must not be given with `at`: it has one per point")
+            if self.moved or self.relocate_at is not None:
+                key = "moved" if self.moved else "relocate_at"
+                raise FieldError((key,), "needs a `region` to re-place obstacles in, not `at`")
+        if self.moved and self.relocate_at is not None:
+            raise FieldError(("moved",), "must not be given with `relocate_at`: choose one")
+        return self
+
+    @property
+    def fixed(self) -> bool:
+        """True where every draw is the same."""
+        return self.at is not None and shape_is_fixed(self.shape) and fixed(self.heading)
+
+
+class DynamicGroup(Spec):
+    """Obstacles that follow a motion law."""
+
+    shape: Movable
+    law: Law
+    count: Count | None = Field(None, description="1 if not given; not with `at`")
+    at: tuple[Point, ...] | None = Field(
+        None, min_length=1, max_length=1000, description="one obstacle at each point [m]"
+    )
+    region: Region | None = Field(None, description="where the laws' origins are drawn")
+    heading: Scalar = Field(0.0, description="of the shape [rad]; it does not turn")
+    gap: Distance = Field(
+        0.0, description="least distance [m] of the swept path to walls and static obstacles"
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> "DynamicGroup":
+        if isinstance(self.law, RecordedTrack):
+            for key in ("at", "region", "count"):
+                if getattr(self, key) is not None:
+                    raise FieldError(
+                        (key,), "must not be given: recorded tracks say where they are"
+                    )
+            return self
+        if (self.at is None) == (self.region is None):
+            raise FieldError((), "must have either `at` or `region`")
+        if self.at is not None and self.count is not None:
+            raise FieldError(("count",), "must not be given with `at`: it has one per point")
+        return self

@@ -1,0 +1,205 @@
+"""A scenario: a frozen, validated description that generates worlds."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import Field, PrivateAttr, model_validator
+
+from benchnav.errors import did_you_mean
+from benchnav.scenario.base import Bounds, Spec, inside
+from benchnav.scenario.document import PathKey
+from benchnav.scenario.law import RecordedTrack
+from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
+from benchnav.scenario.region import region_problem
+from benchnav.scenario.sampler import support
+from benchnav.scenario.shape import Mesh, Occupancy
+from benchnav.scenario.team import Driver, PointsGoal, PointsStart, RegionGoal, RegionStart, Team
+from benchnav.scenario.terms import Clock, Rules, Sensing, Track
+from benchnav.scenario.validation import FieldError
+from benchnav.scenario.wall import Layout, Wall, layout_problem
+
+MAX_AGENTS = 5000
+MAX_OBSTACLES = 2000
+_PROSE = {"title", "description"}
+
+
+class Scenario(Spec):
+    """What a scenario file says. Metres, seconds, radians; x right, y up."""
+
+    name: str = Field(
+        pattern=r"^[a-z0-9]+([_-][a-z0-9]+)*(/[a-z0-9]+([_-][a-z0-9]+)*)*$",
+        max_length=100,
+        description="family/name",
+    )
+    version: int = Field(1, ge=1, le=10**6, description="rises when results stop being comparable")
+    title: str = Field("", max_length=200)
+    description: str = Field("", max_length=5000)
+    bounds: Bounds = Field(description="of the arena: [xmin, ymin, xmax, ymax] [m]")
+    walled: bool = Field(True, description="a wall stands along the bounds")
+    layout: Layout | None = Field(None, description="walls that are generated")
+    walls: tuple[Wall, ...] = Field((), max_length=MAX_OBSTACLES)
+    static: tuple[StaticGroup, ...] = Field((), max_length=100)
+    dynamic: tuple[DynamicGroup, ...] = Field((), max_length=100)
+    teams: tuple[Team, ...] = Field(min_length=1, max_length=100)
+    clock: Clock = Clock()
+    rules: Rules = Rules()
+    sensing: Sensing = Sensing()
+    tracks: Annotated[tuple[Track, ...], Field(min_length=1, max_length=4)] | None = Field(
+        None, description="in which it may be run; all that make sense if not given"
+    )
+    measurement_area: Bounds | None = Field(None, description="where density is measured [m]")
+
+    _folder: Path = PrivateAttr(default_factory=Path)
+
+    @property
+    def folder(self) -> Path:
+        """What file names in the scenario are relative to."""
+        return self._folder
+
+    def placed_in(self, folder: Path) -> "Scenario":
+        """The same scenario, its file names relative to ``folder``."""
+        copy = self.model_copy()
+        copy.__dict__.pop("hash", None)
+        copy._folder = folder
+        return copy
+
+    @property
+    def identity(self) -> str:
+        """``name@version``."""
+        return f"{self.name}@{self.version}"
+
+    @cached_property
+    def hash(self) -> str:
+        """16 hex digits of what decides the worlds: everything but prose, and all files' bytes."""
+        digest = hashlib.sha256()
+        resolved = self.model_dump(mode="json", exclude=_PROSE)
+        digest.update(json.dumps(resolved, sort_keys=True, separators=(",", ":")).encode())
+        for _, path in self.files():
+            digest.update(hashlib.sha256(path.read_bytes()).digest())
+        return digest.hexdigest()[:16]
+
+    @cached_property
+    def drivers(self) -> tuple[Driver, ...]:
+        """Background navigators by first team; an agent whose driver is k > 0 has entry k - 1."""
+        found: list[Driver] = []
+        for team in self.teams:
+            if not team.evaluated and team.driver not in found:
+                found.append(team.driver)
+        return tuple(found)
+
+    @property
+    def granted_tracks(self) -> tuple[Track, ...]:
+        """Knowledge tracks in which the scenario may be run; stale only where anything moves."""
+        if self.tracks is not None:
+            return self.tracks
+        moves = any(group.moved or group.relocate_at is not None for group in self.static)
+        return (
+            ("known", "stale", "partial", "unknown") if moves else ("known", "partial", "unknown")
+        )
+
+    def files(self) -> Iterator[tuple[tuple[PathKey, ...], Path]]:
+        """Where in the scenario a file is named, and its path; a ROS map's image comes with it."""
+        for i, wall in enumerate(self.walls):
+            if isinstance(wall.shape, Mesh | Occupancy):
+                key: tuple[PathKey, ...] = ("walls", i, "shape", "file")
+                path = self._folder / wall.shape.file
+                yield key, path
+                image = _image_of(path) if wall.shape.type == "occupancy" else None
+                if image is not None:
+                    yield key, image
+        for i, group in enumerate(self.dynamic):
+            if isinstance(group.law, RecordedTrack) and group.law.file is not None:
+                yield ("dynamic", i, "law", "file"), self._folder / group.law.file
+
+    @model_validator(mode="after")
+    def _check(self) -> "Scenario":
+        for path, problem in _problems(self):
+            raise FieldError(path, problem)
+        return self
+
+
+Problem = tuple[tuple[PathKey, ...], str]
+
+
+def _image_of(path: Path) -> Path | None:
+    """The image that a ROS map's YAML names."""
+    from benchnav.errors import ScenarioError
+    from benchnav.scenario.yaml_reader import read_yaml
+
+    if path.suffix not in {".yaml", ".yml"}:
+        return None
+    try:
+        data: Any = read_yaml(path).data
+    except ScenarioError:
+        return None  # the map's own reader says what is wrong with it
+    image = path.parent / str(data.get("image", "")) if isinstance(data, dict) else None
+    return image if image is not None and image.is_file() else None
+
+
+def _problems(scenario: Scenario) -> Iterator[Problem]:
+    """What no part can know alone."""
+    yield from _team_problems(scenario)
+    yield from _place_problems(scenario)
+    if scenario.layout is not None and (text := layout_problem(scenario.layout, scenario.bounds)):
+        yield ("layout",), text
+    most = sum(support(team.count)[1] for team in scenario.teams)
+    if most > MAX_AGENTS:
+        yield ("teams",), f"must have at most {MAX_AGENTS} agents in all; got up to {most:g}"
+    for key, groups in (("static", scenario.static), ("dynamic", scenario.dynamic)):
+        total = sum(len(g.at) if g.at else support(g.count or 1.0)[1] for g in groups)
+        if total > MAX_OBSTACLES:
+            yield (key,), f"must have at most {MAX_OBSTACLES} obstacles; got up to {total:g}"
+    area = scenario.measurement_area
+    if area is not None:
+        low, high = area[:2], area[2:]
+        if not (inside(scenario.bounds, *low) and inside(scenario.bounds, *high)):
+            yield ("measurement_area",), "must lie within the bounds"
+    tracks = scenario.tracks
+    if tracks is not None and len(set(tracks)) < len(tracks):
+        yield ("tracks",), "must not name a track twice"
+
+
+def _team_problems(scenario: Scenario) -> Iterator[Problem]:
+    names = [team.name for team in scenario.teams]
+    for i, team in enumerate(scenario.teams):
+        if names.index(team.name) < i:
+            yield (
+                ("teams", i, "name"),
+                f"must be unique; {team.name!r} is teams[{names.index(team.name)}]",
+            )
+        for j, other in enumerate(team.ignores):
+            if other not in names:
+                yield (
+                    ("teams", i, "ignores", j),
+                    f"must be the name of a team; got {other!r}.{did_you_mean(other, names)}",
+                )
+    if not any(team.evaluated and support(team.count)[0] >= 1 for team in scenario.teams):
+        yield ("teams",), "must hold at least one evaluated agent (a team without `driver`)"
+
+
+def _place_problems(scenario: Scenario) -> Iterator[Problem]:
+    bounds = scenario.bounds
+    for i, team in enumerate(scenario.teams):
+        for key, place in (("start", team.start), ("goal", team.goal)):
+            if isinstance(place, RegionStart | RegionGoal):
+                text = region_problem(place.region, bounds)
+                if text:
+                    yield ("teams", i, key, "region"), text
+            if isinstance(place, PointsStart | PointsGoal):
+                for j, point in enumerate(place.points):
+                    if not inside(bounds, *point):
+                        yield ("teams", i, key, "points", j), "must lie within the bounds"
+    groups: list[tuple[str, int, StaticGroup | DynamicGroup]] = [
+        *(("static", i, group) for i, group in enumerate(scenario.static)),
+        *(("dynamic", i, group) for i, group in enumerate(scenario.dynamic)),
+    ]
+    for key, i, group in groups:
+        if group.region is not None and (text := region_problem(group.region, bounds)):
+            yield (key, i, "region"), text
+        for j, point in enumerate(group.at or ()):
+            if not inside(bounds, *point):
+                yield (key, i, "at", j), "must lie within the bounds"

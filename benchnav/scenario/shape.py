@@ -1,0 +1,129 @@
+"""Shapes of walls and obstacles. Units: metres and radians; a shape stands about its origin."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from benchnav.scenario.base import Coordinate, Distance, Length, Point, Spec
+from benchnav.scenario.sampler import PositiveScalar, fixed, support
+from benchnav.scenario.validation import FieldError
+
+Axis = Literal["x", "y", "z"]
+
+
+class Box(Spec):
+    """A rectangle centred at the origin."""
+
+    type: Literal["box"]
+    width: PositiveScalar = Field(description="extent along x [m]")
+    depth: PositiveScalar | None = Field(
+        None, description="extent along y [m]; as wide if not given"
+    )
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance [m] of any point from the origin."""
+        w = support(self.width)[1]
+        d = w if self.depth is None else support(self.depth)[1]
+        return 0.5 * float((w * w + d * d) ** 0.5)
+
+
+class Disc(Spec):
+    """A disc centred at the origin."""
+
+    type: Literal["disc"]
+    radius: PositiveScalar = Field(description="[m]")
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance [m] of any point from the origin."""
+        return support(self.radius)[1]
+
+
+class Polygon(Spec):
+    """A simple polygon, its corners in either order."""
+
+    type: Literal["polygon"]
+    points: tuple[Point, ...] = Field(min_length=3, max_length=1000, description="corners [m]")
+
+    @model_validator(mode="after")
+    def _check(self) -> "Polygon":
+        import shapely
+
+        polygon = shapely.Polygon(self.points)
+        if not polygon.is_valid or polygon.area <= 0:
+            raise FieldError(
+                ("points",), "must go once round an area without crossing or touching themselves"
+            )
+        return self
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance [m] of any point from the origin."""
+        return max(float((x * x + y * y) ** 0.5) for x, y in self.points)
+
+
+class Polyline(Spec):
+    """A thin or thick wall along a line of points."""
+
+    type: Literal["polyline"]
+    points: tuple[Point, ...] = Field(min_length=2, max_length=1000, description="[m]")
+    thickness: Distance = Field(0.0, description="[m]; 0 is a wall without thickness")
+
+    @model_validator(mode="after")
+    def _check(self) -> "Polyline":
+        import shapely
+
+        line = shapely.LineString(self.points)
+        if not line.is_simple or line.is_closed or len(set(self.points)) < len(self.points):
+            raise FieldError(("points",), "must be an open line that does not cross itself")
+        return self
+
+    @property
+    def reach(self) -> float:
+        """Greatest distance [m] of any point from the origin."""
+        far = max(float((x * x + y * y) ** 0.5) for x, y in self.points)
+        return far + self.thickness  # half of it, and mitred corners
+
+
+class Mesh(Spec):
+    """The cross-section of a triangle mesh within the agents' height band."""
+
+    type: Literal["mesh"]
+    file: str = Field(min_length=1, max_length=500, description="relative to the scenario file")
+    unit: Length | None = Field(None, description="[m] per unit of the file; the file's own if not")
+    up: Axis | None = Field(None, description="vertical axis; the file's own if not given")
+    scale: tuple[Length, Length, Length] = Field((1.0, 1.0, 1.0), description="after unit")
+    band: tuple[Coordinate, Coordinate] = Field(
+        (0.05, 2.0), description="[low, high] heights [m] in which the mesh is an obstacle"
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> "Mesh":
+        if not self.band[0] < self.band[1]:
+            raise FieldError(("band",), f"must be [low, high] with low < high; got {self.band}")
+        return self
+
+
+class Occupancy(Spec):
+    """The blocked cells of an occupancy map."""
+
+    type: Literal["occupancy"]
+    file: str = Field(min_length=1, max_length=500, description="relative to the scenario file")
+    format: Literal["movingai", "ros"]
+    cell: Length | None = Field(
+        None, description="[m] per cell; the file's own (or 1) if not given"
+    )
+    unknown_is_free: bool = Field(False, description="agents may enter cells of unknown content")
+
+
+Movable = Annotated[Box | Disc | Polygon, Field(discriminator="type")]
+Placeable = Annotated[Box | Disc | Polygon | Polyline, Field(discriminator="type")]
+Shape = Annotated[Box | Disc | Polygon | Polyline | Mesh | Occupancy, Field(discriminator="type")]
+
+
+def shape_is_fixed(shape: "Shape") -> bool:
+    """True where every draw of the shape is the same."""
+    if isinstance(shape, Box):
+        return fixed(shape.width) and (shape.depth is None or fixed(shape.depth))
+    return fixed(shape.radius) if isinstance(shape, Disc) else True

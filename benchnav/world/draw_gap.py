@@ -1,0 +1,148 @@
+"""How far shapes are from solids: the one test that all placement uses."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from benchnav.arena.solid import Kind, Solid
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.geometry.capsule import nearest_on_segment, segments_cross
+
+
+class Barrier(NamedTuple):
+    """Solids as kernels read them."""
+
+    capsules: FloatArray  # (P, 5) x0, y0, x1, y1, radius
+    first: IntArray  # (S+1,) capsules of solid s are first[s]:first[s+1]
+    hollow: BoolArray  # (S,) True where the solid is what lies outside its loops
+
+
+def barrier(solids: Sequence[Solid]) -> Barrier:
+    """The solids as one barrier."""
+    parts = [solid.capsules for solid in solids]
+    first = np.zeros(len(parts) + 1, np.int64)
+    np.cumsum([len(p) for p in parts], out=first[1:])
+    capsules = np.ascontiguousarray(np.vstack([np.zeros((0, 5)), *parts]))
+    return Barrier(capsules, first, np.array([_hollow(solid) for solid in solids], np.bool_))
+
+
+def _hollow(solid: Solid) -> bool:
+    if solid.kind != Kind.WALL or solid.is_disc:
+        return False  # obstacles are never what lies outside their loops
+    c = solid.capsules
+    return float(np.dot(c[:, 0], c[:, 3]) - np.dot(c[:, 2], c[:, 1])) < 0.0
+
+
+def joined(one: Barrier, other: Barrier) -> Barrier:
+    """Both barriers as one."""
+    if not len(one.hollow) or not len(other.hollow):
+        return one if len(one.hollow) else other
+    return Barrier(
+        np.vstack([one.capsules, other.capsules]),
+        np.concatenate([one.first, one.first[-1] + other.first[1:]]),
+        np.concatenate([one.hollow, other.hollow]),
+    )
+
+
+def point_shapes(points: FloatArray) -> FloatArray:
+    """Points (N, 2) as shapes (N, 1, 5) for `clear`."""
+    shapes = np.zeros((len(points), 1, 5))
+    shapes[:, 0, 0:2] = points
+    shapes[:, 0, 2:4] = points
+    return shapes
+
+
+def shifted(shape: FloatArray, points: FloatArray) -> FloatArray:
+    """One shape (Q, 5) about the origin, standing at each of points (N, 2): (N, Q, 5)."""
+    shapes = np.repeat(shape[None], len(points), axis=0)
+    shapes[:, :, 0:2] += points[:, None]
+    shapes[:, :, 2:4] += points[:, None]
+    return shapes
+
+
+def clear(shapes: FloatArray, wall: Barrier, gap: float) -> BoolArray:
+    """(N,) True where a shape (N, Q, 5) is farther than ``gap`` [m] ≥ 0 from every solid.
+
+    A shape is a point, a chain of capsules, or one counter-clockwise loop of edges.
+    """
+    far: BoolArray = _clear(
+        np.ascontiguousarray(shapes), wall.capsules, wall.first, wall.hollow, gap
+    )
+    return far
+
+
+@njit(cache=True)
+def _clear(
+    shapes: FloatArray, capsules: FloatArray, first: IntArray, hollow: BoolArray, gap: float
+) -> BoolArray:
+    result = np.empty(len(shapes), np.bool_)
+    for n in range(len(shapes)):
+        result[n] = _apart(shapes[n], capsules, gap) and not _nested(
+            shapes[n], capsules, first, hollow
+        )
+    return result
+
+
+@njit(cache=True)
+def _apart(shape: FloatArray, capsules: FloatArray, gap: float) -> bool:
+    """No capsule of the shape (Q, 5) is within ``gap`` of any other."""
+    for p in range(len(capsules)):
+        for q in range(len(shape)):
+            if _near(shape[q], capsules[p], gap):
+                return False
+    return True
+
+
+@njit(cache=True)
+def _nested(shape: FloatArray, capsules: FloatArray, first: IntArray, hollow: BoolArray) -> bool:
+    """One holds the other; where their edges are apart, one point of each decides that."""
+    for s in range(len(hollow)):
+        edges = capsules[first[s] : first[s + 1]]
+        inside = _winding(shape[0, 0], shape[0, 1], edges) + (1 if hollow[s] else 0)
+        if inside > 0 or _winding(edges[0, 0], edges[0, 1], shape) > 0:
+            return True
+    return False
+
+
+@njit(cache=True)
+def _near(a: FloatArray, b: FloatArray, gap: float) -> bool:
+    """Two capsules (5,) are within ``gap`` of each other."""
+    reach = a[4] + b[4] + gap
+    if (
+        max(a[0], a[2]) + reach < min(b[0], b[2])
+        or max(b[0], b[2]) + reach < min(a[0], a[2])
+        or max(a[1], a[3]) + reach < min(b[1], b[3])
+        or max(b[1], b[3]) + reach < min(a[1], a[3])
+    ):
+        return False
+    if segments_cross(a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3]):
+        return True
+    least = min(
+        min(_distance2(a[0], a[1], b), _distance2(a[2], a[3], b)),
+        min(_distance2(b[0], b[1], a), _distance2(b[2], b[3], a)),
+    )
+    near: bool = least <= reach * reach
+    return near
+
+
+@njit(cache=True)
+def _distance2(x: float, y: float, c: FloatArray) -> float:
+    nx, ny = nearest_on_segment(x, y, c[0], c[1], c[2], c[3])
+    squared: float = (x - nx) * (x - nx) + (y - ny) * (y - ny)
+    return squared
+
+
+@njit(cache=True)
+def _winding(x: float, y: float, edges: FloatArray) -> int:
+    """How often the loops (P, 5) go round (x, y), counter-clockwise positive."""
+    turns = 0
+    for p in range(len(edges)):
+        x0, y0, x1, y1 = edges[p, 0], edges[p, 1], edges[p, 2], edges[p, 3]
+        side = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
+        if y0 <= y < y1 and side > 0.0:
+            turns += 1
+        elif y1 <= y < y0 and side < 0.0:
+            turns -= 1
+    return turns

@@ -1,0 +1,175 @@
+"""Static obstacles: drawn one after another, each clear of what stands already."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from benchnav.arena.body import Body, Law, LawKind
+from benchnav.arena.solid import Kind, Solid
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.scenario.obstacle import StaticGroup
+from benchnav.scenario.region import Region
+from benchnav.scenario.sampler import sample
+from benchnav.world.draw_gap import Barrier, barrier, clear, joined, shifted
+from benchnav.world.draw_place import draw_points, find_place
+from benchnav.world.draw_solid import draw_solid
+
+Bounds = tuple[float, float, float, float]
+Streams = Sequence[np.random.Generator]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One static obstacle: its shape, where it stands, and where else it stood or will stand."""
+
+    shape: Solid  # about the origin
+    place: FloatArray  # (2,) [m] at the start of the episode
+    before: FloatArray | None = None  # (2,) [m] where it stood before the episode
+    after: FloatArray | None = None  # (2,) [m] where it will stand within the episode
+    when: float = 0.0  # [s] from when on, once that place is free
+
+    @cached_property
+    def solid(self) -> Solid:
+        """Where it stands at the start."""
+        return self.shape.moved(self.place)
+
+    @cached_property
+    def before_solid(self) -> Solid:
+        """Where it stood before the episode."""
+        return self.solid if self.before is None else self.shape.moved(self.before)
+
+    @cached_property
+    def after_solid(self) -> Solid:
+        """Where it stands at the end."""
+        return self.solid if self.after is None else self.shape.moved(self.after)
+
+    @property
+    def body(self) -> Body:
+        """As something that is re-placed within the episode."""
+        points = np.vstack([self.place, self.place if self.after is None else self.after])
+        return Body(self.shape, Law(LawKind.RELOCATE, np.array([0.0, self.when]), points))
+
+
+def draw_pieces(
+    groups: Sequence[StaticGroup],
+    bounds: Bounds,
+    walls: Barrier,
+    keep_free: Barrier,
+    streams: Streams,
+    others: Streams,
+) -> list[Piece]:
+    """All static obstacles of one draw, in the order of their groups.
+
+    Args:
+        groups: as the scenario lists them.
+        bounds: of the arena [m].
+        walls: what stands before anything is drawn.
+        keep_free: fixed starts, goals and tracks, which sampled obstacles keep clear of.
+        streams: a generator per group, for shapes and for places at the start.
+        others: a generator per group, for places before the start and after it.
+
+    Raises:
+        NoPlaceError: an obstacle finds no place.
+    """
+    search = _Search(bounds, keep_free)
+    pieces: list[list[Piece]] = []
+    standing = walls
+    for i, (group, rng) in enumerate(zip(groups, streams, strict=True)):
+        pieces.append(search.group(group, f"static[{i}]", standing, rng))
+        standing = _with(standing, [piece.solid for piece in pieces[i]])
+    for i, (group, rng) in enumerate(zip(groups, others, strict=True)):
+        name = f"static[{i}]"
+        if group.relocate_at is not None:
+            pieces[i] = search.relocated(group, name, pieces[i], standing, rng)
+            standing = _with(standing, [piece.after_solid for piece in pieces[i]])
+    past = walls
+    for group, drawn in zip(groups, pieces, strict=True):
+        past = past if group.moved else _with(past, [piece.solid for piece in drawn])
+    for i, (group, rng) in enumerate(zip(groups, others, strict=True)):
+        if group.moved:
+            pieces[i] = search.displaced(group, f"static[{i}]", pieces[i], past, rng)
+            past = _with(past, [piece.before_solid for piece in pieces[i]])
+    return [piece for drawn in pieces for piece in drawn]
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Finds places that keep a group's gap to what stands and to what is kept free."""
+
+    bounds: Bounds
+    keep_free: Barrier
+
+    def group(
+        self, group: StaticGroup, name: str, standing: Barrier, rng: np.random.Generator
+    ) -> list[Piece]:
+        if group.at is not None:
+            return [Piece(_shape(group, rng), np.array(point)) for point in group.at]
+        count = 1 if group.count is None else int(sample(group.count, rng))
+        pieces: list[Piece] = []
+        for k in range(count):
+            what = f"{name} ({group.shape.type} {k + 1} of {count})"
+            shape = _shape(group, rng)
+            pieces.append(Piece(shape, self._place(shape, group, standing, what, rng)))
+            standing = _with(standing, [pieces[k].solid])
+        return pieces
+
+    def relocated(
+        self,
+        group: StaticGroup,
+        name: str,
+        pieces: list[Piece],
+        standing: Barrier,
+        rng: np.random.Generator,
+    ) -> list[Piece]:
+        """With places for later, clear of everything that stands now or will."""
+        result = []
+        for k, piece in enumerate(pieces):
+            what = f"the new place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
+            after = self._place(piece.shape, group, standing, what, rng)
+            when = 0.0 if group.relocate_at is None else sample(group.relocate_at, rng)
+            result.append(replace(piece, after=after, when=when))
+            standing = _with(standing, [result[k].after_solid])
+        return result
+
+    def displaced(
+        self,
+        group: StaticGroup,
+        name: str,
+        pieces: list[Piece],
+        past: Barrier,
+        rng: np.random.Generator,
+    ) -> list[Piece]:
+        """With places where they stood before, clear of all else that stood then."""
+        result = []
+        for k, piece in enumerate(pieces):
+            what = f"the old place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
+            before = self._place(piece.shape, group, past, what, rng)
+            result.append(replace(piece, before=before))
+            past = _with(past, [result[k].before_solid])
+        return result
+
+    def _place(
+        self,
+        shape: Solid,
+        group: StaticGroup,
+        standing: Barrier,
+        what: str,
+        rng: np.random.Generator,
+    ) -> FloatArray:
+        region: Region = group.region  # type: ignore[assignment] # groups without it have `at`
+        around = joined(standing, self.keep_free)
+
+        def accept(points: FloatArray) -> BoolArray:
+            return clear(shifted(shape.capsules, points), around, group.gap)
+
+        return find_place(lambda n: draw_points(region, self.bounds, n, rng), accept, what)
+
+
+def _shape(group: StaticGroup, rng: np.random.Generator) -> Solid:
+    return draw_solid(group.shape, group.heading, Kind.STATIC, rng)
+
+
+def _with(standing: Barrier, solids: Sequence[Solid]) -> Barrier:
+    return joined(standing, barrier(solids)) if solids else standing
