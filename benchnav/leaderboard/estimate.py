@@ -1,11 +1,12 @@
 """Value and 95 % interval of every column of a stratum, and of means over strata."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.stats import trim_mean
 
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.leaderboard.interval import (
     bca,
     cumulants,
@@ -16,6 +17,8 @@ from benchnav.leaderboard.interval import (
     wilson,
 )
 
+BLOCK = 64  # columns resampled at once
+
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
@@ -25,7 +28,7 @@ class Estimate:
     low: FloatArray
     high: FloatArray
 
-    def put(self, columns: BoolArray, low: FloatArray | float, high: FloatArray | float) -> None:
+    def put(self, columns: BoolArray | IntArray, low: FloatArray, high: FloatArray) -> None:
         """Set the interval of some columns."""
         self.low[columns] = low
         self.high[columns] = high
@@ -58,7 +61,7 @@ def estimate(sample: Sample, column: Column) -> Estimate:
     """
     value = mean(sample.value)
     count = (~np.isnan(sample.value)).sum(axis=0)
-    found = Estimate(value, np.full_like(value, np.nan), np.full_like(value, np.nan))
+    found = _unknown(value)
     rate = column.rate & (count > 0)
     size = effective_size(sample.value[:, rate], sample.agents[:, rate])
     found.put(rate, *wilson(value[rate], size))
@@ -92,34 +95,28 @@ def mean_over(parts: list[Estimate], samples: list[Sample], column: Column) -> E
     value, low, high = (
         np.array([getattr(part, name) for part in parts]) for name in ("value", "low", "high")
     )
-    found = Estimate(mean(value), np.full(value.shape[1], np.nan), np.full(value.shape[1], np.nan))
+    found = _unknown(mean(value))
+    has = ~np.isnan(value)
     varies = np.array([_varies(sample.value) for sample in samples])
     bounded = np.isfinite(column.least) & np.isfinite(column.most)
-    for c in range(value.shape[1]):
-        has = ~np.isnan(value[:, c])
-        one = np.arange(value.shape[1]) == c
-        if column.rate[c] or (bounded[c] and not varies[has, c].all()):
-            limits = column.least[c], column.most[c]
-            found.put(one, *recover(value[has, c], low[has, c], high[has, c], *limits))
-        elif varies[has, c].any():
-            chosen = [sample for sample, here in zip(samples, has, strict=True) if here]
-            found.put(one, *_stratified(chosen, one, found.value[one]))
+    recovered = column.rate | (bounded & (has & ~varies).any(axis=0))
+    for c in np.flatnonzero(recovered & has.any(axis=0)):
+        here, limits = has[:, c], (column.least[c], column.most[c])
+        found.low[c], found.high[c] = recover(value[here, c], low[here, c], high[here, c], *limits)
+    counts = _counts(samples)
+    usual = ~recovered & varies.any(axis=0) & (np.where(has, counts, np.inf).min(axis=0) > 1)
+    for strata, columns in _alike(has, usual):
+        chosen = [samples[s] for s in strata]
+        means = np.mean([resampled_means(s.value[:, columns], s.weights) for s in chosen], axis=0)
+        n = counts[strata][:, columns]
+        moments = np.array([cumulants(s.value[:, columns]) for s in chosen])  # (strata, 2, C)
+        second, third = (moments[:, 0] / n**2).sum(axis=0), (moments[:, 1] / n**3).sum(axis=0)
+        freedom = n.sum(axis=0) - len(strata)
+        interval = bca(
+            means, found.value[columns], third / (6 * second**1.5), n.min(axis=0), freedom
+        )
+        found.put(columns, *interval)
     return found
-
-
-def _stratified(
-    samples: list[Sample], one: BoolArray, value: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """(1,), (1,) bootstrap interval of the mean over strata of one column."""
-    counts = np.array([(~np.isnan(s.value[:, one])).sum() for s in samples], dtype=np.float64)
-    if counts.min() < 2:
-        return np.array([np.nan]), np.array([np.nan])
-    means = np.mean([resampled_means(s.value[:, one], s.weights) for s in samples], axis=0)
-    moments = np.array([cumulants(s.value[:, one]) for s in samples])  # (strata, 2, 1)
-    second = (moments[:, 0] / counts[:, None] ** 2).sum(axis=0)
-    third = (moments[:, 1] / counts[:, None] ** 3).sum(axis=0)
-    freedom = np.array([counts.sum() - len(samples)])
-    return bca(means, value, third / (6 * second**1.5), counts.min(keepdims=True), freedom)
 
 
 def interquartile_mean_over(samples: list[Sample]) -> Estimate:
@@ -130,16 +127,35 @@ def interquartile_mean_over(samples: list[Sample]) -> Estimate:
     precipice", NeurIPS 2021, with scenarios in the place of their runs.
     """
     values = np.array([mean(sample.value) for sample in samples])
-    counts = np.array([(~np.isnan(s.value)).sum(axis=0) for s in samples], dtype=np.float64)
     whole = ~np.isnan(values).any(axis=0)
-    centre = np.where(whole, trim_mean(np.nan_to_num(values), 0.25, axis=0), np.nan)
-    found = Estimate(centre, np.full_like(centre, np.nan), np.full_like(centre, np.nan))
-    for c in np.flatnonzero(whole & (counts.min(axis=0) > 1)):
-        one = np.arange(len(centre)) == c
-        drawn = [resampled_means(s.value[:, one], s.weights) for s in samples]
+    found = _unknown(np.where(whole, trim_mean(np.nan_to_num(values), 0.25, axis=0), np.nan))
+    counts = _counts(samples)
+    for _, columns in _alike(np.ones_like(values, dtype=np.bool_), counts.min(axis=0) > 1):
+        drawn = [resampled_means(s.value[:, columns], s.weights) for s in samples]
         means = np.asarray(trim_mean(drawn, 0.25, axis=0))
-        if _varies(means)[0]:
-            freedom = np.array([counts[:, c].sum() - len(samples)])
-            fewest = counts[:, c].min(keepdims=True)
-            found.put(one, *bca(means, centre[one], np.zeros(1), fewest, freedom))
+        n = counts[:, columns]
+        straight = np.zeros(len(columns))
+        freedom = n.sum(axis=0) - len(samples)
+        low, high = bca(means, found.value[columns], straight, n.min(axis=0), freedom)
+        varies = _varies(means)
+        found.put(columns[varies], low[varies], high[varies])
     return found
+
+
+def _unknown(value: FloatArray) -> Estimate:
+    return Estimate(value, np.full_like(value, np.nan), np.full_like(value, np.nan))
+
+
+def _counts(samples: list[Sample]) -> FloatArray:
+    """(strata, C) values that each stratum gives."""
+    return np.array([(~np.isnan(s.value)).sum(axis=0) for s in samples], dtype=np.float64)
+
+
+def _alike(has: BoolArray, wanted: BoolArray) -> Iterator[tuple[IntArray, IntArray]]:
+    """Strata with values and the wanted columns that have theirs there, few at a time."""
+    patterns, pattern = np.unique(has[:, wanted], axis=1, return_inverse=True)
+    columns = np.flatnonzero(wanted)
+    for p in range(patterns.shape[1]):
+        same = columns[pattern.ravel() == p]
+        for start in range(0, len(same), BLOCK):
+            yield np.flatnonzero(patterns[:, p]), same[start : start + BLOCK]

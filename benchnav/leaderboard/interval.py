@@ -34,7 +34,11 @@ def effective_size(rates: FloatArray, agents: FloatArray) -> FloatArray:
     and ρ the one-way analysis-of-variance estimate of the correlation of agents that
     share a world, held within [0, 1] so that sharing a world never narrows an interval.
     Where all agents agree ρ cannot be estimated and is taken as 1: the worlds count.
-    NaN rates are left out.
+    Few worlds estimate ρ badly, so the size shrinks by the squared ratio of Student's
+    quantiles at agents − 1 and worlds − 1, but never below the worlds (E. L. Korn and
+    B. I. Graubard, "Confidence intervals for proportions with small expected number of
+    positive counts estimated from survey data", Survey Methodology 24, 1998; the floor
+    is ours). NaN rates are left out.
     """
     known = ~np.isnan(rates)
     size = np.where(known, agents, 0.0)
@@ -49,8 +53,10 @@ def effective_size(rates: FloatArray, agents: FloatArray) -> FloatArray:
         rho = (between - within) / (between + (per_world - 1) * within)
     rho = np.clip(np.where(np.isfinite(rho), rho, 1.0), 0.0, 1.0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        worth: FloatArray = total / (1 + (total / worlds - 1) * rho)
-    return worth
+        worth = total / (1 + (total / worlds - 1) * rho)
+        shrink = t.ppf(1 - ALPHA / 2, total - 1) / t.ppf(1 - ALPHA / 2, worlds - 1)
+    effective: FloatArray = np.fmax(worth * shrink**2, worlds)
+    return effective
 
 
 def resample(count: int, rng: np.random.Generator) -> FloatArray:

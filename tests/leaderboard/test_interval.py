@@ -1,0 +1,126 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import stats
+
+from benchnav.leaderboard.interval import (
+    bca,
+    cumulants,
+    effective_size,
+    mean,
+    recover,
+    resample,
+    resampled_means,
+    wilson,
+)
+
+
+@pytest.mark.parametrize("size", [1, 5, 20, 100])
+def test_wilson_is_scipys(size):
+    won = np.arange(size + 1)
+    low, high = wilson(won / size, np.full(size + 1, float(size)))
+    for k in won:
+        known = stats.binomtest(int(k), size).proportion_ci(method="wilson")
+        assert (low[k], high[k]) == pytest.approx((known.low, known.high), abs=1e-12)
+
+
+@given(st.lists(st.sampled_from([0.0, 1.0]), min_size=2, max_size=30))
+def test_one_agent_a_world_is_worth_one_trial(rates):
+    values = np.array(rates)[:, None]
+    assert effective_size(values, np.ones_like(values)) == pytest.approx([len(rates)])
+
+
+def test_agents_that_share_their_fate_are_worth_their_worlds():
+    together = np.array([0.0, 1.0, 1.0, 0.0, 1.0])[:, None]
+    assert effective_size(together, np.full_like(together, 4.0)) == pytest.approx([5.0])
+
+
+def test_agents_that_all_agree_everywhere_are_worth_their_worlds():
+    assert effective_size(np.ones((6, 1)), np.full((6, 1), 4.0)) == pytest.approx([6.0])
+
+
+def test_independent_agents_are_worth_themselves():
+    rng = np.random.default_rng(0)
+    rates = rng.binomial(4, 0.5, (20_000, 1)) / 4
+    size = effective_size(rates, np.full_like(rates, 4.0))
+    assert size == pytest.approx([80_000], rel=0.05)
+
+
+@given(
+    st.lists(st.tuples(st.integers(0, 4), st.integers(1, 4)), min_size=1, max_size=20),
+)
+def test_effective_size_lies_between_worlds_and_agents(worlds):
+    agents = np.array([float(m) for _, m in worlds])[:, None]
+    rates = np.array([min(k, m) / m for k, m in worlds])[:, None]
+    size = effective_size(rates, agents)[0]
+    assert len(worlds) - 1e-9 <= size <= agents.sum() + 1e-9
+
+
+def test_effective_size_leaves_undefined_worlds_out():
+    rates = np.array([0.0, 0.5, 1.0, 0.25, np.nan, np.nan])[:, None]
+    agents = np.array([4.0, 4.0, 4.0, 4.0, 0.0, 4.0])[:, None]
+    assert effective_size(rates, agents) == pytest.approx(effective_size(rates[:4], agents[:4]))
+
+
+def test_the_bootstrap_is_scipys_where_the_expansion_vanishes():
+    rng = np.random.default_rng(5)
+    values = rng.exponential(size=(400, 1)) ** 1.5
+    weights = np.vstack([resample(400, np.random.default_rng(k)) for k in range(10)])
+    second, third = cumulants(values)
+    low, high = bca(
+        resampled_means(values, weights), mean(values), third / (6 * second**1.5),
+        np.array([400.0]), np.array([399.0]),
+    )  # fmt: skip
+    known = stats.bootstrap(
+        (values[:, 0],), np.mean, n_resamples=20_000, method="BCa", rng=np.random.default_rng(1)
+    ).confidence_interval
+    width = known.high - known.low
+    assert low[0] == pytest.approx(known.low, abs=0.03 * width)
+    assert high[0] == pytest.approx(known.high, abs=0.03 * width)
+
+
+def test_the_acceleration_is_that_of_the_jackknife():
+    values = np.random.default_rng(2).gamma(1.0, size=12)
+    jackknife = np.array([np.delete(values, i).mean() for i in range(12)])
+    gap = jackknife.mean() - jackknife
+    by_hand = (gap**3).sum() / (6 * (gap**2).sum() ** 1.5)
+    second, third = cumulants(values[:, None])
+    assert third[0] / (6 * second[0] ** 1.5) == pytest.approx(by_hand)
+
+
+def test_small_samples_get_students_width():
+    values = np.random.default_rng(8).normal(size=(6, 400))
+    weights = resample(6, np.random.default_rng(0))
+    low, high = bca(
+        resampled_means(values, weights), mean(values), np.zeros(400),
+        np.full(400, 6.0), np.full(400, 5.0),
+    )  # fmt: skip
+    student = 2 * stats.t.ppf(0.975, 5) * values.std(axis=0, ddof=1) / np.sqrt(6)
+    assert np.mean((high - low) / student) == pytest.approx(0.9, abs=0.1)
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.integers(1, 40), st.integers(0, 2**32))
+def test_resamples_are_made_of_the_values(count, seed):
+    weights = resample(count, np.random.default_rng(seed))
+    assert np.allclose(weights.sum(axis=1), 1.0)
+    assert np.allclose(weights * count, np.round(weights * count))
+
+
+def test_resampled_means_leave_undefined_values_out():
+    values = np.array([[1.0, 5.0], [np.nan, 5.0], [3.0, np.nan]])
+    weights = np.array([[1 / 3, 1 / 3, 1 / 3], [0.0, 2 / 3, 1 / 3], [0.0, 1.0, 0.0]])
+    assert resampled_means(values, weights) == pytest.approx(
+        np.array([[2.0, 5.0], [3.0, 5.0], [2.0, 5.0]])  # nothing drawn: the mean, 2
+    )
+
+
+def test_recovered_interval_of_one_stratum_is_its_own():
+    one = (np.array([0.4]), np.array([0.3]), np.array([0.6]))
+    assert recover(*one, 0.0, 1.0) == pytest.approx((0.3, 0.6))
+
+
+def test_recovered_interval_narrows_with_strata_and_stays_in_range():
+    value, low, high = np.full(4, 1.0), np.full(4, 0.84), np.full(4, 1.0)
+    assert recover(value, low, high, 0.0, 1.0) == pytest.approx((0.92, 1.0))

@@ -1,0 +1,204 @@
+import csv
+import html.parser
+import io
+import json
+import math
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from benchnav.errors import UsageError
+from benchnav.leaderboard import Leaderboard, NotApplicable, escape, leaderboard, render
+from benchnav.leaderboard.cell import number
+from tests.leaderboard.tables import METRICS, row, scores, simulated, table
+
+FORMATS = ("markdown", "csv", "latex", "html", "json")
+TIDY = ("navigator", "scenario", "track", "role", "metric", "value", "low", "high", "unit",
+        "better", "episodes", "rank_low", "rank_high")  # fmt: skip
+NASTY = (
+    "=cmd|' /C calc'!A0", "<script>alert(1)</script>", "| a | b |", "**bold** `code` [x](y)",
+    "\\input{/etc/passwd} $x_1$ 50% #1 & ~^{}", '"><img src=x onerror=alert(1)>', "a\nb\r\n- c",
+    "\x1b[31mred\x1b[0m", "\u202eright to left", "_emphasis_", "@SUM(1)", "-1+1", "+1", "\t=1",
+    "![image](http://x)", "<!-- ", "&lt;", "[x]: http://y",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def board():
+    rows = simulated(["alpha", "beta", "gamma"], 4, 12, np.random.default_rng(2))
+    missing = [NotApplicable("mapper", "leaders/s0@1", "unknown", "needs a map")]
+    return leaderboard(table(rows), METRICS, missing)
+
+
+def named(name):
+    return leaderboard(table(scores({name: [1.0, 0.0, 1.0], "plain": [1.0] * 3})), METRICS)
+
+
+def test_markdown_reads_well():
+    rows = scores({"good": [1.0] * 19 + [0.0], "bad": [0.0] * 20})
+    rows += scores(
+        {"good": [math.nan, *[3.25] * 10, *[4.75] * 9], "bad": [math.nan] * 20}, "time_to_goal"
+    )
+    rows[19]["failure"] = "raised ValueError"
+    text = render(leaderboard(table(rows), METRICS), "markdown")
+    assert text.startswith(
+        "### leaders/static@1, track unknown, leaders, 20 worlds\n"
+        "\n"
+        "| navigator      | rank | success ↑             | time_to_goal ↓           |\n"
+        "| -------------- | ---- | --------------------- | ------------------------ |\n"
+        "| good, 1 failed | 1    | **0.95 [0.76, 0.99]** | 3.92 [3.53, 4.30] s (18) |\n"
+        "| bad            | 2    | 0 [0, 0.16]           | –                        |\n"
+        "\n"
+        "value [low, high] is the mean"
+    )
+
+
+def test_default_tables_fit_a_wide_terminal(board):
+    tables = [line for line in render(board, "markdown").splitlines() if line.startswith("|")]
+    assert max(map(len, tables)) <= 140
+
+
+def test_unranked_entries_come_last_with_their_reason(board):
+    first = render(board, "markdown").split("\n\n")[1].splitlines()
+    assert re.match(r"\| mapper +\| – +\| n/a \(needs a map\) +\|", first[-1])
+
+
+def test_ties_are_bold_only_where_somebody_is_worse():
+    tied = leaderboard(table(scores({"a": [1.0, 0.0], "b": [0.0, 1.0]})), METRICS)
+    assert "**" not in render(tied, "markdown").split("value [")[0]
+    assert "| 1–2 " in render(tied, "markdown")
+
+
+def test_many_metrics_stand_below_each_other():
+    rows = [row(n, s, f"m{k}", float(s)) for n in "abcdefg" for s in range(3) for k in range(9)]
+    text = render(leaderboard(table(rows), METRICS), "markdown", ["all"])
+    assert "| metric    | a " in text
+    assert text.count("| m8 ") == 2  # five navigators abreast, then two
+
+
+def test_variants_of_a_scenario_say_what_differs():
+    rows = scores({"a": [1.0, 0.0]}) + scores({"b": [1.0, 0.0]}, horizon=30.0)
+    text = render(leaderboard(table(rows), METRICS), "markdown")
+    assert "horizon 30 s, dt 0.1 s, hash c0ffee00" in text
+    assert "horizon 60 s, dt 0.1 s, hash c0ffee00" in text
+
+
+def test_another_split_is_named():
+    text = render(leaderboard(table(scores({"a": [1.0]}, split="validation")), METRICS), "markdown")
+    assert "split validation" in text
+
+
+def test_other_coverage_is_explained_below_the_table():
+    rows = scores({"a": [1.0, 0.0], "b": [1.0, 0.0], "c": [1.0, None]})
+    text = render(leaderboard(table(rows), METRICS), "markdown")
+    assert "c is not ranked: attempted 1 worlds and not the same 2 as those that are." in text
+
+
+def test_the_aggregate_shows_the_middle_half(board):
+    text = render(board, "markdown")
+    assert "### all scenarios, track unknown, leaders, 48 worlds" in text
+    assert "| middle half |" in text
+
+
+def test_json_is_tidy(board):
+    rows = json.loads(render(board, "json"), parse_constant=pytest.fail)
+    assert len(rows) == len(board.records)
+    assert all(set(TIDY) <= set(r) for r in rows)
+    keys = [tuple(r[k] for k in ("navigator", "scenario", "track", "role", "metric")) for r in rows]
+    assert len(set(keys)) == len(keys)
+
+
+def test_csv_holds_what_json_holds(board):
+    tidy = json.loads(render(board, "json"))
+    read = list(csv.DictReader(io.StringIO(render(board, "csv"))))
+    for one, other in zip(tidy, read, strict=True):
+        assert list(one) == list(other)
+        assert other["value"] == ("" if one["value"] is None else repr(one["value"]))
+        assert other["rank_low"] == ("" if one["rank_low"] is None else str(one["rank_low"]))
+
+
+def test_named_metrics_alone_are_shown(board):
+    rows = json.loads(render(board, "json", ["spl"]))
+    assert {r["metric"] for r in rows} == {"spl"}
+    assert "success" not in render(board, "markdown", ["spl"]).split("value [")[0]
+
+
+@pytest.mark.parametrize("format", FORMATS)
+def test_every_format_is_the_same_each_time_and_ends_its_last_line(board, format):
+    assert render(board, format) == render(board, format)
+    assert render(board, format).endswith("\n")
+    assert render(Leaderboard((), ()), format).endswith("\n")
+
+
+def test_wrong_wishes_are_refused(board):
+    with pytest.raises(UsageError, match=r"one of markdown, csv, .* Did you mean 'latex'"):
+        render(board, "latx")
+    with pytest.raises(UsageError, match=r"Got 'sucess' instead\. Did you mean 'success'"):
+        render(board, "markdown", ["sucess"])
+
+
+class _Page(html.parser.HTMLParser):
+    def __init__(self):
+        super().__init__()
+        self.tags, self.cells = [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, tuple(attrs)))
+
+    def handle_data(self, data):
+        self.cells.append(data)
+
+
+@pytest.mark.parametrize("name", NASTY)
+def test_html_shows_names_and_runs_nothing(name):
+    page, plain = _Page(), _Page()
+    page.feed(render(named(name), "html"))
+    plain.feed(render(named("harmless"), "html"))
+    assert page.tags == plain.tags
+    assert escape.visible(name) in page.cells
+
+
+@pytest.mark.parametrize("name", NASTY)
+def test_markdown_keeps_its_columns_whatever_a_name_says(name):
+    lines = render(named(name), "markdown").splitlines()[2:6]
+    for line in lines:
+        assert len(re.split(r"(?<!\\)\|", line)) == 5  # three columns
+    assert not re.search(r"<|\x1b|(?<!\\)`|(?<!\\)\]\(", "".join(lines))
+
+
+@given(st.text(max_size=30))
+def test_markdown_text_cannot_end_a_cell(text):
+    assert not re.search(r"(?<!\\)(\\\\)*\|", escape.markdown(text))
+    assert "\n" not in escape.markdown(text)
+
+
+@given(st.text(max_size=30))
+def test_latex_text_holds_no_command_of_its_own(text):
+    rest = escape.latex(text)
+    for safe in sorted(escape._LATEX.values(), key=len, reverse=True):
+        rest = rest.replace(safe, "")
+    assert not set(rest) & set("\\&%$#_{}~^")
+
+
+@pytest.mark.parametrize("name", NASTY)
+def test_spreadsheets_see_no_formula(name):
+    for line in csv.reader(io.StringIO(render(named(name), "csv"))):
+        assert line[0][:1] not in ("=", "+", "-", "@", "\t", "\r")
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.text(alphabet=st.characters(exclude_categories=["Cs"]), min_size=1, max_size=12))
+def test_json_gives_any_name_back(name):
+    assert name in {r["navigator"] for r in json.loads(render(named(name), "json"))}
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(0.0, "0"), (0.1234, "0.12"), (0.05, "0.050"), (1.234, "1.23"), (12.34, "12.3"),
+     (1234.5, "1234"), (-3.456, "-3.46"), (0.000131, "0.00013"), (2.5e-7, "2.5e-07")],
+)  # fmt: skip
+def test_numbers_keep_about_three_figures(value, text):
+    assert number(value, value) == text
