@@ -16,8 +16,11 @@ from benchnav.metrics.metric import Metric
 from benchnav.testing.transform import moved, reordered
 from benchnav.testing.zoo import crowd, smooth, with_company, zoo
 
-ROUNDING = 1e-6  # relative: another place or order changes rounding only
-SAMPLING = 0.05  # relative: dt, dt/2 and dt/5 of the same smooth motion
+ROUNDING = (
+    1e-6  # of the greatest value in the episode: another place or order changes rounding only
+)
+SAMPLING = 0.05  # of the greatest value in the episode: dt, dt/2 and dt/5 of the same smooth motion
+FLOOR = 1e-9  # absolute: rounding of what is zero
 QUARTER = 0.5 * math.pi
 
 
@@ -92,7 +95,7 @@ def check_pure(metric: Metric) -> None:
 def check_blind(metric: Metric) -> None:
     """Neither names nor seeds nor, unless it says so, timings matter."""
     for title, episode in zoo().items():
-        other = replace(episode, identity=Identity("x/y@2", "f", "train", 7, "unknown", "other"))
+        other = replace(episode, identity=Identity("x/y@2", "f", "train", 7, "unknown", "somebody"))
         if metric.verifiable:
             slower = replace(other.timings, decision=10.0 * other.timings.decision, planning=9.0)
             other = replace(other, timings=slower)
@@ -199,8 +202,10 @@ def _same(
     title: str,
     tolerance: float = ROUNDING,
 ) -> None:
-    scale = np.maximum(np.maximum(np.abs(expected), np.abs(got)), 1.0 if tolerance else 0.0)
-    near = (expected == got) | (np.abs(expected - got) <= tolerance * scale)
+    sizes = np.abs(np.concatenate([expected, got]))
+    scale = float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
+    allowed = tolerance * scale + (FLOOR if tolerance else 0.0)
+    near = (expected == got) | (np.abs(expected - got) <= allowed)
     near |= np.isnan(expected) & np.isnan(got)
     _require(
         near.all(),
