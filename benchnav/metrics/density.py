@@ -85,14 +85,14 @@ def _without(free: Any, solid: Solid) -> Any:
     filled: list[Any] = []
     hollow: list[Any] = []
     for loop in solid.loops:
-        shape = shapely.make_valid(shapely.Polygon(loop))
-        clockwise = not shapely.LinearRing(loop).is_ccw
-        (hollow if clockwise and shape.area > 0.0 else filled).append(shape)
-    skin = shapely.union_all([shapely.LinearRing(loop).buffer(SKIN) for loop in solid.loops])
+        shape = shapely.make_valid(shapely.Polygon(loop)) if len(loop) > 2 else None
+        if shape is not None and shape.area > 0.0:
+            (filled if shapely.LinearRing(loop).is_ccw else hollow).append(shape)
+    rims = [shapely.LineString(np.vstack([loop, loop[:1]])) for loop in solid.loops]
+    skin = shapely.union_all([rim.buffer(SKIN) for rim in rims])
     hole = shapely.union_all(hollow)
-    if any(shape.area > 0.0 for shape in filled):
-        body = shapely.union_all(filled).difference(hole)
-        return free.difference(body.union(skin))
+    if filled:
+        return free.difference(shapely.union_all(filled).difference(hole).union(skin))
     return (free.intersection(hole) if hollow else free).difference(skin)
 
 

@@ -1,0 +1,82 @@
+"""The page of all metrics that ship, generated from the registry: docs/metrics.md."""
+
+import inspect
+import math
+from importlib import import_module
+
+from benchnav.metrics.measure import load_metric
+from benchnav.metrics.metric import Metric
+from benchnav.plugins import METRICS
+
+SECTIONS = (
+    "success", "safety", "efficiency", "smoothness", "congestion", "groups", "compute"
+)  # fmt: skip
+HEAD = """# Metrics
+
+Generated from the registry by `python -m benchnav.metrics.page > docs/metrics.md`; a test
+compares the two.
+
+A metric is a pure function of an episode. Agents' values are averaged over the evaluated
+agents of a role for which they are defined, leaders and followers apart, then over seeds.
+What is undefined is NaN, never a perfect score. Every agent's trajectory is cut at its
+arrival, its end or its navigator's failure. A metric that is defined for arrivals alone
+shows over how many it was taken, and never ranks; neither does one without a direction.
+Timings cannot be verified by others and are marked.
+
+Every metric keeps its value, to rounding, when the world is moved or turned and when its
+agents are reordered, and within 5 % when the same smooth motion is recorded at dt, dt/2
+and dt/5. `benchnav.testing.check_metric.check_metric` holds anybody's metric to the same.
+
+| metric | what | unit | better | range | of | reference |
+| --- | --- | --- | --- | --- | --- | --- |
+"""
+
+
+def page() -> str:
+    """Markdown: one table of all shipped metrics, then their definitions."""
+    shipped: dict[str, list[Metric]] = {section: [] for section in SECTIONS}
+    for name in METRICS.names():
+        module, _, _ = METRICS.source(name).value.partition(":")
+        section = module.removeprefix("benchnav.metrics.")
+        if section in shipped:
+            shipped[section].append(load_metric(name))
+    rows = [_row(metric) for section in SECTIONS for metric in shipped[section]]
+    parts = [_definitions(section, shipped[section]) for section in SECTIONS]
+    return HEAD + "\n".join(rows) + "\n\n" + "\n".join(parts)
+
+
+def _row(metric: Metric) -> str:
+    of = "group" if metric.scope == "group" else "agent"
+    marks = [
+        mark
+        for mark, holds in [
+            ("arrivals only", metric.conditional), ("not verifiable", not metric.verifiable),
+        ]
+        if holds
+    ]  # fmt: skip
+    cells = [
+        f"`{metric.name}`", metric.title, metric.unit or "–", metric.better or "–",
+        f"{_bound(metric.low, '[')}, {_bound(metric.high, ']')}", ", ".join([of, *marks]),
+        metric.reference,
+    ]  # fmt: skip
+    return f"| {' | '.join(cells)} |"
+
+
+def _bound(value: float, bracket: str) -> str:
+    if math.isinf(value):
+        return "(−∞" if value < 0 else "∞)"
+    return f"[{value:g}" if bracket == "[" else f"{value:g}]"
+
+
+def _definitions(section: str, metrics: list[Metric]) -> str:
+    module = import_module(f"benchnav.metrics.{section}")
+    lines = [f"## {section.capitalize()}", "", inspect.cleandoc(module.__doc__ or ""), ""]
+    for metric in metrics:
+        lines += [f"**{metric.name}** — {inspect.getdoc(metric.function)}", ""]
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    import sys
+
+    sys.stdout.write(page())

@@ -1,0 +1,128 @@
+"""Rows of the results table, and what several metrics share."""
+
+import gc
+import math
+import weakref
+from dataclasses import replace
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from benchnav.arena.agents import Role
+from benchnav.errors import PluginError
+from benchnav.geometry import geodesic
+from benchnav.metrics.analysis import analyse
+from benchnav.metrics.measure import all_metrics, load_metric, measure
+from benchnav.metrics.metric import Metric
+from benchnav.plugins import METRICS
+from benchnav.store.results import RESULTS
+from benchnav.testing.episodes import Setting, Walk, record, straight
+from benchnav.testing.zoo import smooth, zoo
+
+
+def _metric(function, name="x", **flags):
+    return Metric(name, "t", "", "higher", 0.0, 1.0, "r", function, **flags)
+
+
+def test_rows_are_those_of_the_results_table():
+    rows = measure(zoo()["smooth"], all_metrics())
+    table = pa.Table.from_pylist(rows, schema=RESULTS)
+    assert table.num_rows == 2 * len(METRICS.names())
+    assert set(rows[0]) == set(RESULTS.names)
+    assert table.column("role").unique().to_pylist() == ["leader", "follower"]
+    assert table.column("agents").unique().to_pylist() == [2, 3]
+    one = next(r for r in rows if r["metric"] == "success" and r["role"] == "leader")
+    assert (one["value"], one["defined"], one["horizon"], one["dt"]) == (0.5, 2, 12.0, 0.1)
+
+
+def test_background_agents_are_never_scored():
+    walks = [
+        Walk(straight((0.0, 0.0), (0.0, 0.0)), (5.0, 0.0)),
+        Walk(straight((0.0, 3.0), (1.0, 0.0)), (5.0, 3.0), driver=1, role=Role.FOLLOWER),
+    ]
+    rows = measure(record(walks), [load_metric("arrival")])
+    assert [(r["role"], r["value"], r["agents"]) for r in rows] == [("leader", 0.0, 1)]
+
+
+def test_mean_is_over_the_agents_where_it_is_defined():
+    walks = [
+        Walk(straight((0.0, 0.0), (0.0, 0.0)), (5.0, 0.0)),
+        Walk(straight((0.0, 3.0), (1.0, 0.0)), (5.0, 3.0)),
+    ]
+    (row,) = measure(record(walks), [load_metric("time_to_goal")])
+    assert row["value"] == pytest.approx(4.8)
+    assert (row["agents"], row["defined"]) == (2, 1)
+    (row,) = measure(record(walks[:1]), [load_metric("time_to_goal")])
+    assert math.isnan(row["value"])
+    assert row["defined"] == 0
+
+
+def test_failure_of_the_navigator_is_told_and_charged():
+    walk = Walk(straight((0.0, 0.0), (1.0, 0.0)), (5.0, 0.0))
+    failed = replace(record([walk]), failure="ValueError: no")
+    found = {r["metric"]: r for r in measure(failed, all_metrics())}
+    assert found["success"]["value"] == found["arrival"]["value"] == 0.0
+    assert found["spl"]["value"] == 0.0
+    assert found["failed"]["value"] == 1.0
+    assert math.isnan(found["time_to_goal"]["value"])
+    assert found["success"]["failure"] == "ValueError: no"
+
+
+def test_geodesic_is_computed_once_per_episode(monkeypatch):
+    calls = []
+    real = geodesic.geodesic_lengths
+
+    def counted(*arguments):
+        calls.append(1)
+        return real(*arguments)
+
+    monkeypatch.setattr(geodesic, "geodesic_lengths", counted)
+    measure(smooth().episode(), [load_metric(n) for n in ("efficiency", "spl", "sct")])
+    assert len(calls) == 1
+
+
+def test_analysis_lives_as_long_as_its_episode():
+    episode = smooth().episode()
+    assert analyse(episode) is analyse(episode)
+    kept = weakref.ref(analyse(episode))
+    del episode
+    gc.collect()
+    assert kept() is None
+
+
+def test_geodesic_is_undefined_where_walls_move():
+    from benchnav.arena.body import Body, Law, LawKind
+    from benchnav.arena.solid import Kind, Solid
+
+    law = Law(LawKind.RELOCATE, np.array([0.0, 3.0]), np.array([[2.0, 4.0], [3.0, 4.0]]))
+    setting = Setting(
+        bodies=(Body(Solid(Kind.STATIC, radius=0.5), law),),
+        body_paths=(lambda t: np.where(t[:, None] > 3.0, [[3.0, 4.0]], [[2.0, 4.0]]),),
+    )
+    episode = record([Walk(straight((0.0, 0.0), (1.0, 0.0)), (5.0, 0.0))], setting)
+    for name in ("geodesic_length", "efficiency", "spl", "sct"):
+        assert math.isnan(measure(episode, [load_metric(name)])[0]["value"])
+
+
+def test_metric_that_raises_is_named_with_its_episode():
+    def broken(episode):
+        raise ZeroDivisionError("oh")
+
+    with pytest.raises(PluginError, match=r"'x' failed on synthetic/walks@1 seed 0 of 'walks'"):
+        measure(zoo()["smooth"], [_metric(broken)])
+    with pytest.raises(PluginError, match="'x' failed"):
+        measure(zoo()["smooth"], [_metric(lambda e: np.zeros(1))])
+
+
+def test_names_are_checked():
+    with pytest.raises(PluginError, match=r"different names. Got x twice"):
+        measure(zoo()["smooth"], [_metric(lambda e: e.arrival), _metric(lambda e: e.arrival)])
+    METRICS.register("tests_no_metric")(dict)
+    with pytest.raises(PluginError, match=r"must be a benchnav.metrics.metric.Metric. Got type"):
+        load_metric("tests_no_metric")
+    METRICS.register("tests_other_name")(_metric(lambda e: e.arrival, "first_name"))
+    with pytest.raises(PluginError, match=r"must carry that name. Got 'first_name'"):
+        load_metric("tests_other_name")
+    del METRICS._local["tests_no_metric"], METRICS._local["tests_other_name"]
+    assert load_metric("benchnav.metrics.success:SUCCESS").name == "success"
