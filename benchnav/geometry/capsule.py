@@ -6,12 +6,12 @@ beside it. All are closed-form and use correctly rounded operations only.
 
 import math
 
-from numba import njit
+from benchnav.kernels import kernel
 
 APPROACH = 1e-9  # [m/s] a closing speed below this is none: rounding must not touch again
 
 
-@njit(cache=True, inline="always")
+@kernel
 def nearest_on_segment(
     px: float, py: float, x0: float, y0: float, x1: float, y1: float
 ) -> tuple[float, float]:
@@ -27,7 +27,7 @@ def nearest_on_segment(
     return x0 + t * dx, y0 + t * dy
 
 
-@njit(cache=True, inline="always")
+@kernel
 def disc_time(fx: float, fy: float, wx: float, wy: float, reach: float) -> float:
     """First t ≥ 0 at which f + w t is within ``reach`` of the origin, approaching; inf if never.
 
@@ -46,7 +46,7 @@ def disc_time(fx: float, fy: float, wx: float, wy: float, reach: float) -> float
     return c / (math.sqrt(root) - b)
 
 
-@njit(cache=True)
+@kernel
 def capsule_time(
     px: float, py: float, wx: float, wy: float, reach: float,
     x0: float, y0: float, x1: float, y1: float,
@@ -70,6 +70,9 @@ def capsule_time(
         across = (dx * (py - y0) - dy * (px - x0)) / length
         speed = (dx * wy - dy * wx) / length
         gap = abs(across) - reach
+        here = dx * (px - x0) + dy * (py - y0)
+        if gap <= 0.0 and 0.0 <= here <= length2:
+            return 0.0  # touching, though the squares above were rounded apart
         if gap > 0.0:
             closing = -speed if across > 0.0 else speed
             if closing <= 0.0:
@@ -83,7 +86,7 @@ def capsule_time(
     )
 
 
-@njit(cache=True, inline="always")
+@kernel
 def segments_cross(
     ax: float, ay: float, bx: float, by: float, x0: float, y0: float, x1: float, y1: float
 ) -> bool:

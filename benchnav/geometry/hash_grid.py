@@ -8,9 +8,9 @@ records with x, y, present, ci, cj.
 import math
 
 import numpy as np
-from numba import njit
 
 from benchnav.arrays import AnyArray, IntArray
+from benchnav.kernels import kernel
 
 
 def hash_tables(batch: int, points: int) -> tuple[IntArray, IntArray]:
@@ -19,13 +19,13 @@ def hash_tables(batch: int, points: int) -> tuple[IntArray, IntArray]:
     return np.zeros((batch, size + 1), np.int64), np.zeros((batch, max(points, 1)), np.int64)
 
 
-@njit(cache=True)
+@kernel
 def bucket(i: int, j: int, size: int) -> int:
     """Bucket of cell (i, j) in a table of ``size`` (a power of two)."""
     return ((i * 73856093) ^ (j * 19349663)) & (size - 1)
 
 
-@njit(cache=True)
+@kernel
 def fill(points: AnyArray, hashed: IntArray, sorted_: IntArray, side: float) -> None:
     """Sort the present points (A,) into cells of ``side`` [m].
 
@@ -36,7 +36,7 @@ def fill(points: AnyArray, hashed: IntArray, sorted_: IntArray, side: float) -> 
     for i in range(len(points)):
         p = points[i]
         if p.present:
-            p.ci, p.cj = int(math.floor(p.x / side)), int(math.floor(p.y / side))
+            p.ci, p.cj = math.floor(p.x / side), math.floor(p.y / side)
             hashed[bucket(p.ci, p.cj, size) + 1] += 1
     for k in range(size):
         hashed[k + 1] += hashed[k]

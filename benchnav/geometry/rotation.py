@@ -8,7 +8,8 @@ order, so that a simulated state is the same bits everywhere. Errors are below
 import math
 
 import numpy as np
-from numba import njit
+
+from benchnav.kernels import kernel
 
 TWO_PI = 2.0 * math.pi
 _HALF_PI = 0.5 * math.pi
@@ -19,13 +20,13 @@ _HALF_PI_C = 2.0222662487959506e-21
 _TAN_PI_8 = math.sqrt(2.0) - 1.0
 
 
-@njit(cache=True, inline="always")
+@kernel
 def wrap(angle: float) -> float:
     """The angle [rad] in [-pi, pi)."""
     return angle - TWO_PI * math.floor((angle + math.pi) / TWO_PI)
 
 
-@njit(cache=True)
+@kernel
 def cos_sin(angle: float) -> tuple[float, float]:
     """(cos, sin) of an angle [rad] of moderate size, by Taylor series on [-pi/4, pi/4]."""
     k = math.floor(angle / _HALF_PI + 0.5)
@@ -57,7 +58,7 @@ def cos_sin(angle: float) -> tuple[float, float]:
     return s, -c
 
 
-@njit(cache=True)
+@kernel
 def angle_of(x: float, y: float) -> float:
     """Direction [rad] of the vector (x, y) in [-pi, pi]; 0 for the zero vector."""
     ax, ay = abs(x), abs(y)
@@ -77,7 +78,7 @@ def angle_of(x: float, y: float) -> float:
     return -a if y < 0.0 else a
 
 
-@njit(cache=True)
+@kernel
 def _arctan_small(t: float) -> float:
     """arctan on |t| ≤ tan(pi/8): Euler's series, whose terms shrink by t²/(1+t²) ≤ 0.147."""
     q = t * t / (1.0 + t * t)

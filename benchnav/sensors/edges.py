@@ -4,12 +4,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.rotation import cos_sin
+from benchnav.kernels import kernel
 from benchnav.sensors.sight import FEW, in_sight
 
 CANDIDATES = 64  # nearest facing edges of which the visible ones are kept
@@ -19,7 +19,7 @@ _OCTAGON = 1.0 / math.cos(math.pi / 8.0)  # circumradius of the octagon about a 
 _SAMPLES = (0.5, 0.001, 0.999)  # where an edge is looked at if its nearest point is hidden
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def find_edges(
     low: int, high: int, chosen: IntArray, limit: float, occlusion: bool, worlds: AnyArray,
     agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray,
@@ -53,7 +53,7 @@ def find_edges(
         count[b, k] = kept
 
 
-@njit(cache=True)
+@kernel
 def _visible(
     a: Any, edge: FloatArray, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
     bodies: AnyArray, shapes: AnyArray,
@@ -69,7 +69,7 @@ def _visible(
     return False
 
 
-@njit(cache=True)
+@kernel
 def _sees(
     a: Any, x: float, y: float, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
     bodies: AnyArray, shapes: AnyArray,
@@ -79,7 +79,7 @@ def _sees(
     return in_sight(a.x, a.y, qx, qy, -1, world, capsules, start, item, bodies, shapes)
 
 
-@njit(cache=True)
+@kernel
 def _gather(
     a: Any, limit: float, world: Any, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
     start: IntArray, item: IntArray, best: FloatArray, found: FloatArray,
@@ -99,31 +99,31 @@ def _gather(
     return n
 
 
-@njit(cache=True)
+@kernel
 def _gather_cells(
     a: Any, limit: float, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
     best: FloatArray, found: FloatArray,
 ) -> int:  # fmt: skip
     """Over the cells within ``limit``; a capsule counts in the cell of its point nearest to a."""
     n, side = 0, world.side
-    i0 = max(0, int(math.floor((a.x - limit - world.origin_x) / side)))
-    j0 = max(0, int(math.floor((a.y - limit - world.origin_y) / side)))
-    i1 = min(world.nx - 1, int(math.floor((a.x + limit - world.origin_x) / side)))
-    j1 = min(world.ny - 1, int(math.floor((a.y + limit - world.origin_y) / side)))
+    i0 = max(0, math.floor((a.x - limit - world.origin_x) / side))
+    j0 = max(0, math.floor((a.y - limit - world.origin_y) / side))
+    i1 = min(world.nx - 1, math.floor((a.x + limit - world.origin_x) / side))
+    j1 = min(world.ny - 1, math.floor((a.y + limit - world.origin_y) / side))
     for i in range(i0, i1 + 1):
         for j in range(j0, j1 + 1):
             cell = world.grid + i * world.ny + j
             for at in range(start[cell], start[cell + 1]):
                 c = capsules[item[at]]
                 x, y = nearest_on_segment(a.x, a.y, c.x0, c.y0, c.x1, c.y1)
-                ci = int(math.floor((x - world.origin_x) / side))
-                cj = int(math.floor((y - world.origin_y) / side))
+                ci = math.floor((x - world.origin_x) / side)
+                cj = math.floor((y - world.origin_y) / side)
                 if ci == i and cj == j:
                     n = _consider(a, 0.0, 0.0, item[at], capsules, limit, n, best, found)
     return n
 
 
-@njit(cache=True)
+@kernel
 def _consider(
     a: Any, ox: float, oy: float, p: int, capsules: AnyArray, limit: float, n: int,
     best: FloatArray, found: FloatArray,
@@ -154,14 +154,14 @@ def _consider(
     return n
 
 
-@njit(cache=True)
+@kernel
 def _direction(c: Any) -> tuple[float, float]:
     dx, dy = c.x1 - c.x0, c.y1 - c.y0
     length = math.sqrt(dx * dx + dy * dy)
     return (dx / length, dy / length) if length > 0.0 else (0.0, 0.0)
 
 
-@njit(cache=True)
+@kernel
 def _offer(
     a: Any, x0: float, y0: float, x1: float, y1: float, bx: float, by: float, ax: float, ay: float,
     convex_0: bool, convex_1: bool, limit: float, n: int, best: FloatArray, found: FloatArray,

@@ -4,18 +4,18 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.geometry.hash_grid import bucket
+from benchnav.kernels import kernel
 from benchnav.sensors.sight import in_sight
 from benchnav.world.touch import BRUTE_FORCE
 
 _AGENT, _DYNAMIC = int(Kind.AGENT), int(Kind.DYNAMIC)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def find_neighbours(
     low: int, high: int, chosen: IntArray, limit: float, occlusion: bool, side: float,
     sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
@@ -52,7 +52,7 @@ def find_neighbours(
                 radius[b, k, s], kind[b, k, s] = body.bound, _DYNAMIC
 
 
-@njit(cache=True)
+@kernel
 def _gather(
     i: int, limit: float, occlusion: bool, side: float, sees: BoolArray, world: Any,
     agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray,
@@ -80,7 +80,7 @@ def _gather(
             )  # fmt: skip
         return n
     size = len(hashed) - 1
-    for ring in range(int(math.ceil(limit / side)) + 1):
+    for ring in range(math.ceil(limit / side) + 1):
         # nothing in this ring or beyond is nearer than ring - 1 whole cells
         if n == len(best) and best[n - 1] < ((ring - 1) * side) * ((ring - 1) * side):
             break
@@ -98,18 +98,18 @@ def _gather(
     return n
 
 
-@njit(cache=True)
+@kernel
 def _squared(a: Any, b: Any) -> float:
     dx, dy = b.x - a.x, b.y - a.y
     return float(dx * dx + dy * dy)
 
 
-@njit(cache=True)
+@kernel
 def _belongs(d2: float, limit: float, n: int, best: FloatArray) -> bool:
     return bool(d2 <= limit * limit and (n < len(best) or d2 < best[n - 1]))
 
 
-@njit(cache=True)
+@kernel
 def _consider(
     i: int, j: int, limit: float, hidden: bool, sees: BoolArray, world: Any, agents: AnyArray,
     bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray,
@@ -129,7 +129,7 @@ def _consider(
     return _insert(d2, j, n, best, code)
 
 
-@njit(cache=True)
+@kernel
 def _insert(d2: float, what: int, n: int, best: FloatArray, code: IntArray) -> int:
     """Insertion sort by (distance, code): the order of discovery does not matter."""
     if n < len(best):

@@ -6,7 +6,7 @@ A thick ray is a cast of the agent's own disc: it stops where the body would.
 import math
 from typing import Any
 
-from numba import njit
+import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
@@ -14,6 +14,7 @@ from benchnav.episode.episode import Status
 from benchnav.geometry.capsule import capsule_time, disc_time
 from benchnav.geometry.hash_grid import bucket
 from benchnav.geometry.rotation import cos_sin
+from benchnav.kernels import kernel
 from benchnav.sensors.sight import FEW
 from benchnav.world.touch import BRUTE_FORCE
 
@@ -21,7 +22,7 @@ _AGENT, _NOTHING, _DYNAMIC = int(Kind.AGENT), int(Kind.NOTHING), int(Kind.DYNAMI
 _ACTIVE = int(Status.ACTIVE)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def cast_rays(
     low: int, high: int, chosen: IntArray, angle: FloatArray, limit: float, thick: bool,
     side: float, sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
@@ -34,6 +35,7 @@ def cast_rays(
     ``side`` [m] is that of the hashed cells; ``sees`` (B, teams, teams).
     """
     width = chosen.shape[1]
+    front = np.empty((FEW, 6))  # relative to the agent: x0, y0, x1, y1, reach, kind
     for row in range(low, high):
         b, k = row // width, row % width
         if chosen[b, k] < 0 or not agents[b, chosen[b, k]].present:
@@ -41,12 +43,16 @@ def cast_rays(
         a = agents[b, chosen[b, k]]
         own = a.radius if thick else 0.0
         ca, sa = cos_sin(a.heading)
+        seen = _facing(a, own, limit, worlds[b], capsules, front)
         for r in range(len(angle)):
             cr, sr = cos_sin(angle[r])
             dx, dy = ca * cr - sa * sr, sa * cr + ca * sr
-            best, what = _first_fixed(
-                a.x, a.y, dx, dy, own, limit, worlds[b], capsules, start, item
-            )
+            if seen >= 0:
+                best, what = _first_facing(dx, dy, own, limit, seen, front)
+            else:
+                best, what = _first_fixed(
+                    a.x, a.y, dx, dy, own, limit, worlds[b], capsules, start, item
+                )
             best, m = _first_body(a.x, a.y, dx, dy, own, best, worlds[b].bodies, bodies[b], shapes)
             if m >= 0:
                 what = bodies[b, m].kind
@@ -65,14 +71,62 @@ def cast_rays(
             goal[b, k, r] = _goal_distance(a, dx, dy, reach, best)
 
 
-@njit(cache=True)
+@kernel
 def _goal_distance(a: Any, dx: float, dy: float, reach: float, best: float) -> float:
     fx, fy = a.x - a.goal_x, a.y - a.goal_y
     t = 0.0 if fx * fx + fy * fy <= reach * reach else disc_time(fx, fy, dx, dy, reach)
     return t if t <= best else math.inf
 
 
-@njit(cache=True)
+@kernel
+def _facing(
+    a: Any, own: float, limit: float, world: Any, capsules: AnyArray, front: FloatArray
+) -> int:
+    """Lists in ``front`` the few fixed capsules that any ray of agent a could meet; -1 if many.
+
+    An edge whose solid is on the agent's side cannot be met before another edge of
+    that solid: its loop is closed and the agent outside.
+    """
+    if world.last - world.first > FEW:
+        return -1
+    n = 0
+    for p in range(world.first, world.last):
+        c = capsules[p]
+        x0, y0, x1, y1 = c.x0 - a.x, c.y0 - a.y, c.x1 - a.x, c.y1 - a.y
+        reach = own + c.r
+        if c.r == 0.0 and y0 * (x1 - x0) - x0 * (y1 - y0) > 0.0:
+            continue
+        if min(x0, x1) > limit + reach or max(x0, x1) < -limit - reach:
+            continue
+        if min(y0, y1) > limit + reach or max(y0, y1) < -limit - reach:
+            continue
+        row = front[n]
+        row[0], row[1], row[2], row[3], row[4], row[5] = x0, y0, x1, y1, reach, c.kind
+        n += 1
+    return n
+
+
+@kernel
+def _first_facing(
+    dx: float, dy: float, own: float, limit: float, seen: int, front: FloatArray
+) -> tuple[float, int]:
+    """As `_first_fixed`, over the first ``seen`` capsules of ``front``."""
+    best, what = limit, float(_NOTHING)
+    for p in range(seen):
+        x0, y0, x1, y1, reach = front[p, 0], front[p, 1], front[p, 2], front[p, 3], front[p, 4]
+        across_0, across_1 = dx * y0 - dy * x0, dx * y1 - dy * x1
+        if min(across_0, across_1) > reach or max(across_0, across_1) < -reach:
+            continue
+        along_0, along_1 = dx * x0 + dy * y0, dx * x1 + dy * y1
+        if max(along_0, along_1) < -reach or min(along_0, along_1) - reach > best:
+            continue
+        t = capsule_time(0.0, 0.0, dx, dy, reach, x0, y0, x1, y1)
+        if t < best:
+            best, what = t, front[p, 5]
+    return best, int(what)
+
+
+@kernel
 def _capsule_distance(
     x: float, y: float, dx: float, dy: float, own: float, best: float, c: Any
 ) -> float:
@@ -88,22 +142,16 @@ def _capsule_distance(
     return capsule_time(x, y, dx, dy, reach, c.x0, c.y0, c.x1, c.y1)
 
 
-@njit(cache=True)
+@kernel
 def _first_fixed(
     x: float, y: float, dx: float, dy: float, own: float, limit: float, world: Any,
     capsules: AnyArray, start: IntArray, item: IntArray,
 ) -> tuple[float, int]:  # fmt: skip
     """(distance, kind) of the first fixed capsule within ``limit``; (limit, NOTHING) if none."""
     best, what = limit, _NOTHING
-    if world.last - world.first <= FEW:
-        for p in range(world.first, world.last):
-            t = _capsule_distance(x, y, dx, dy, own, best, capsules[p])
-            if t < best:
-                best, what = t, capsules[p].kind
-        return best, what
     side = world.side
-    i = int(math.floor((x - world.origin_x) / side))
-    j = int(math.floor((y - world.origin_y) / side))
+    i = math.floor((x - world.origin_x) / side)
+    j = math.floor((y - world.origin_y) / side)
     step_i, step_j = (1 if dx > 0.0 else -1), (1 if dy > 0.0 else -1)
     # distance along the ray to the next column and row of cells (Amanatides & Woo 1987)
     next_i = ((i + (dx > 0.0)) * side + world.origin_x - x) / dx if dx != 0.0 else math.inf
@@ -126,7 +174,7 @@ def _first_fixed(
     return best, what
 
 
-@njit(cache=True)
+@kernel
 def _first_body(
     x: float, y: float, dx: float, dy: float, own: float, best: float, count: int,
     bodies: AnyArray, shapes: AnyArray,
@@ -147,7 +195,7 @@ def _first_body(
     return best, who
 
 
-@njit(cache=True)
+@kernel
 def _first_agent(
     i: int, dx: float, dy: float, own: float, best: float, limit: float, side: float,
     sees: BoolArray, agents: AnyArray, hashed: IntArray, sorted_: IntArray,
@@ -160,7 +208,7 @@ def _first_agent(
         return nearest
     a = agents[i]
     size = len(hashed) - 1
-    rings = int(math.ceil(limit / side)) + 1
+    rings = math.ceil(limit / side) + 1
     for ci in range(a.ci - rings, a.ci + rings + 1):
         for cj in range(a.cj - rings, a.cj + rings + 1):
             k = bucket(ci, cj, size)
@@ -171,7 +219,7 @@ def _first_agent(
     return nearest
 
 
-@njit(cache=True)
+@kernel
 def _agent_distance(
     i: int, j: int, dx: float, dy: float, own: float, best: float, sees: BoolArray,
     agents: AnyArray,

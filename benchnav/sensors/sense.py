@@ -1,14 +1,13 @@
 """All sensors of some agents of a simulation, as the arrays of an observation."""
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.geometry.hash_grid import fill
+from benchnav.kernels import kernel
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.observation import Edges, Neighbours, Rays
 from benchnav.sensors.edges import find_edges
@@ -21,16 +20,9 @@ from benchnav.world.touch import BRUTE_FORCE
 LEAST = 64  # agents below which a second thread costs more than it saves
 
 
-@dataclass(frozen=True, eq=False)
-class Senses:
-    """What was sensed; None where it was not asked for."""
-
-    rays: Rays | None
-    neighbours: Neighbours | None
-    edges: Edges | None
-
-
-def sense(simulation: Simulation, chosen: IntArray, needs: frozenset[Need]) -> Senses:
+def sense(
+    simulation: Simulation, chosen: IntArray, needs: frozenset[Need]
+) -> tuple[Rays | None, Neighbours | None, Edges | None]:
     """What the chosen agents perceive now.
 
     Args:
@@ -54,7 +46,7 @@ def sense(simulation: Simulation, chosen: IntArray, needs: frozenset[Need]) -> S
         neighbours = _neighbours(simulation, chosen, sensing.neighbours, sensing.occlusion, side)
     if Need.EDGES in needs and sensing.edges is not None:
         edges = _edges(simulation, chosen, sensing.edges, sensing.occlusion)
-    return Senses(rays, neighbours, edges)
+    return rays, neighbours, edges
 
 
 def _cell_side(simulation: Simulation, sensing: Sensing) -> float:
@@ -65,7 +57,7 @@ def _cell_side(simulation: Simulation, sensing: Sensing) -> float:
     return max(0.5 * limit, 4.0 * float(simulation.agents["radius"].max()))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _sort_agents(
     low: int, high: int, agents: AnyArray, hashed: IntArray, sorted_: IntArray, side: float
 ) -> None:
@@ -116,9 +108,10 @@ def _neighbours(
 
 def _edges(simulation: Simulation, chosen: IntArray, sensor: EdgeSensor, occlusion: bool) -> Edges:
     shape = (*chosen.shape, sensor.count)
+    points = [np.zeros((*shape, 2)) for _ in range(4)]
     out = Edges(
-        *(np.zeros((*shape, 2)) for _ in range(4)), *(np.zeros(shape, np.bool_) for _ in range(2)),
-        np.zeros(chosen.shape, np.int64),
+        points[0], points[1], points[2], points[3], np.zeros(shape, np.bool_),
+        np.zeros(shape, np.bool_), np.zeros(chosen.shape, np.int64),
     )  # fmt: skip
     s = simulation
     run_rows(

@@ -6,15 +6,14 @@ Agents hide nobody. The test is against the same capsules that bodies touch.
 import math
 from typing import Any
 
-from numba import njit
-
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
+from benchnav.kernels import kernel
 
 FEW = 64  # capsules up to which testing all is cheaper than walking the grid
 
 
-@njit(cache=True)
+@kernel
 def hides(c: Any, px: float, py: float, qx: float, qy: float) -> bool:
     """Does capsule c cut the open segment pq?"""
     if c.r > 0.0:
@@ -24,7 +23,7 @@ def hides(c: Any, px: float, py: float, qx: float, qy: float) -> bool:
     return segments_cross(px, py, qx, qy, c.x0, c.y0, c.x1, c.y1)
 
 
-@njit(cache=True)
+@kernel
 def in_sight(
     px: float, py: float, qx: float, qy: float, skip: int, world: Any, capsules: AnyArray,
     start: IntArray, item: IntArray, bodies: AnyArray, shapes: AnyArray,
@@ -47,7 +46,7 @@ def in_sight(
     return _clear_along(px, py, qx, qy, world, capsules, start, item)
 
 
-@njit(cache=True)
+@kernel
 def _clear_along(
     px: float, py: float, qx: float, qy: float, world: Any, capsules: AnyArray, start: IntArray,
     item: IntArray,
@@ -55,12 +54,12 @@ def _clear_along(
     """As `in_sight`, over the cells along pq; their lists reach beyond them."""
     side = world.side
     dx, dy = qx - px, qy - py
-    steps = int(math.ceil(math.sqrt(dx * dx + dy * dy) / (0.5 * side))) + 1
+    steps = math.ceil(math.sqrt(dx * dx + dy * dy) / (0.5 * side)) + 1
     last = -1
     for k in range(steps + 1):
         x, y = px + dx * k / steps, py + dy * k / steps
-        i = min(max(int(math.floor((x - world.origin_x) / side)), 0), world.nx - 1)
-        j = min(max(int(math.floor((y - world.origin_y) / side)), 0), world.ny - 1)
+        i = min(max(math.floor((x - world.origin_x) / side), 0), world.nx - 1)
+        j = min(max(math.floor((y - world.origin_y) / side), 0), world.ny - 1)
         cell = world.grid + i * world.ny + j
         if cell != last:
             for at in range(start[cell], start[cell + 1]):

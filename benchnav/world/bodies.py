@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from benchnav.arena.body import Body, LawKind
 from benchnav.arena.solid import edge_chain
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
 from benchnav.geometry.rotation import cos_sin
+from benchnav.kernels import kernel
 from benchnav.world.records import BODY, CAPSULE, KNOT, capsule_records
 
 _TRACK = int(LawKind.TRACK)
@@ -60,7 +60,7 @@ def top_speed(worlds: Sequence[World]) -> float:
     return top
 
 
-@njit(cache=True)
+@kernel
 def body_at(body: Any, knots: AnyArray, time: float) -> tuple[float, float]:
     """Position [m] of a body at ``time`` [s]; of a re-placed one, where it stands now."""
     first, last = body.law_first, body.law_last - 1

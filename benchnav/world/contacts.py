@@ -3,13 +3,12 @@
 import math
 from typing import Any
 
-from numba import njit
-
 from benchnav.arena.world import ContactRule
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.episode.episode import Status
+from benchnav.kernels import kernel
 from benchnav.world.fixed import cell_at
-from benchnav.world.touch import AGENT, BODY, FIXED, GOAL, from_agent, from_body, from_fixed
+from benchnav.world.touch import AGENT, BODY, FIXED, GOAL, encloses, from_agent, from_body, from_fixed
 
 RELEASE = 0.01  # [m] a contact lasts until the gap is wider: sliding bodies part by a sagitta
 MAX_HITS = 8  # touches of one agent within a substep, after which it is wedged and stands
@@ -18,7 +17,7 @@ _ACTIVE, _ARRIVED, _ENDED = int(Status.ACTIVE), int(Status.ARRIVED), int(Status.
 _STOP, _END = int(ContactRule.STOP), int(ContactRule.END)
 
 
-@njit(cache=True)
+@kernel
 def touch(
     i: int, time: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, opened: AnyArray, closed: AnyArray,
@@ -49,7 +48,7 @@ def touch(
     return -1
 
 
-@njit(cache=True)
+@kernel
 def _touch_agent(
     i: int, j: int, time: float, world: Any, agents: AnyArray, opened: AnyArray, closed: AnyArray
 ) -> None:
@@ -71,13 +70,13 @@ def _touch_agent(
     _respond(i, nx, ny, give_i, time, world, a, opened[i], closed)
 
 
-@njit(cache=True)
+@kernel
 def _unit(dx: float, dy: float) -> tuple[float, float]:
     length = math.sqrt(dx * dx + dy * dy)
     return (dx / length, dy / length) if length > 0.0 else (1.0, 0.0)
 
 
-@njit(cache=True)
+@kernel
 def _respond(
     i: int, nx: float, ny: float, give: float, time: float, world: Any, a: Any, opened: AnyArray,
     closed: AnyArray,
@@ -94,7 +93,7 @@ def _respond(
         a.vy += give * ny
 
 
-@njit(cache=True)
+@kernel
 def _finish(
     i: int, status: int, vanish: bool, time: float, world: Any, a: Any, opened: AnyArray,
     closed: AnyArray,
@@ -108,7 +107,7 @@ def _finish(
     _close_all(i, time, world, a, opened, closed)
 
 
-@njit(cache=True)
+@kernel
 def _record(
     i: int, code: int, time: float, closing: float, charged: bool, world: Any, a: Any,
     opened: AnyArray, closed: AnyArray,
@@ -131,7 +130,7 @@ def _record(
     a.open = True
 
 
-@njit(cache=True)
+@kernel
 def _close(i: int, time: float, world: Any, event: Any, closed: AnyArray) -> None:
     """Move an open contact to the list of closed ones."""
     row = closed[world.closed]
@@ -141,7 +140,7 @@ def _close(i: int, time: float, world: Any, event: Any, closed: AnyArray) -> Non
     event.code = -1
 
 
-@njit(cache=True)
+@kernel
 def _close_all(i: int, time: float, world: Any, a: Any, opened: AnyArray, closed: AnyArray) -> None:
     for slot in range(len(opened)):
         if opened[slot].code >= 0:
@@ -149,7 +148,7 @@ def _close_all(i: int, time: float, world: Any, a: Any, opened: AnyArray, closed
     a.open = False
 
 
-@njit(cache=True)
+@kernel
 def follow_up(
     time: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
@@ -172,7 +171,7 @@ def follow_up(
                 a.open = True
 
 
-@njit(cache=True)
+@kernel
 def _gap(
     a: Any, code: int, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray,
@@ -182,7 +181,9 @@ def _gap(
     if code % 4 == AGENT:
         return from_agent(a, agents[k])[2] if agents[k].present else math.inf
     if code % 4 == BODY:
-        return from_body(a, bodies[k], shapes)[2]
+        body = bodies[k]
+        gap = from_body(a, body, shapes)[2]
+        return -gap - 2.0 * a.radius if encloses(body, shapes, a.x, a.y) else gap
     gap = math.inf
     cell = cell_at(world, a.x, a.y)
     for at in range(start[cell], start[cell + 1]):

@@ -2,12 +2,11 @@
 
 import math
 
-from numba import njit
-
 from benchnav.geometry.rotation import angle_of, cos_sin
+from benchnav.kernels import kernel
 
 
-@njit(cache=True)
+@kernel
 def limited(
     c0: float, c1: float, twist: bool, unicycle: bool, heading: float,
     max_speed: float, max_turn_rate: float, dt: float,
@@ -39,7 +38,7 @@ def limited(
     return c0, c1
 
 
-@njit(cache=True, inline="always")
+@kernel
 def planar_velocity(
     d0: float, d1: float, unicycle: bool, heading: float, h: float
 ) -> tuple[float, float]:

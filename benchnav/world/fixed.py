@@ -10,12 +10,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from benchnav.arena.solid import Solid, edge_chain
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
+from benchnav.kernels import kernel
 from benchnav.world.records import CAPSULE, capsule_records
 
 MAX_CELLS = 1 << 16  # of one arena's grid
@@ -81,7 +81,7 @@ def _frame(row: Any, world: World, capsules: AnyArray, margin: float) -> None:
     row["ny"] = max(1, math.ceil((y1 - y0) / side))
 
 
-@njit(cache=True)
+@kernel
 def _fill(worlds: AnyArray, capsules: AnyArray, start: IntArray, margin: float) -> IntArray:
     """Count, then place, by the same test; fills ``start`` and returns the items."""
     for g in range(len(worlds)):
@@ -102,7 +102,7 @@ def _fill(worlds: AnyArray, capsules: AnyArray, start: IntArray, margin: float) 
     return item
 
 
-@njit(cache=True)
+@kernel
 def _list_capsule(
     world: Any, capsule: Any, p: int, margin: float, cursor: IntArray, item: IntArray
 ) -> None:
@@ -127,11 +127,11 @@ def _list_capsule(
                 cursor[at] += 1
 
 
-@njit(cache=True)
+@kernel
 def cell_at(world: Any, x: float, y: float) -> int:
     """Index into ``start`` of the cell that holds (x, y), or of the nearest cell to it."""
-    i = int(math.floor((x - world.origin_x) / world.side))
-    j = int(math.floor((y - world.origin_y) / world.side))
+    i = math.floor((x - world.origin_x) / world.side)
+    j = math.floor((y - world.origin_y) / world.side)
     i = min(max(i, 0), world.nx - 1)
     j = min(max(j, 0), world.ny - 1)
     return int(world.grid + i * world.ny + j)

@@ -13,7 +13,8 @@ OPEN_CONTACTS = 8  # that an agent can have at once; one more closes the oldest
 
 
 def _record(**fields: str) -> np.dtype[np.void]:
-    return np.dtype(list(fields.items()), align=True)
+    # np.record: an interpreted kernel finds a record's fields as a compiled one does
+    return np.dtype((np.record, np.dtype(list(fields.items()), align=True)))
 
 
 # one world: its clock, rules, and where its part of the flat arrays lies
@@ -59,6 +60,8 @@ def field(records: AnyArray, name: str, width: int = 1) -> AnyArray:
     if width == 1:
         view: AnyArray = records[name]
         return view
+    if records.size == 0:
+        return np.zeros((*records.shape, width), kind)
     return np.ndarray(
         (*records.shape, width), kind, records.data, offset, (*records.strides, kind.itemsize)
     )

@@ -9,13 +9,12 @@ result depends on how worlds are batched or shared between threads.
 import math
 from typing import Any
 
-from numba import njit
-
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
 from benchnav.geometry.hash_grid import fill
 from benchnav.geometry.rotation import angle_of, wrap
+from benchnav.kernels import kernel
 from benchnav.world.bodies import body_at
 from benchnav.world.contacts import MAX_HITS, follow_up, touch
 from benchnav.world.dynamics import limited, planar_velocity
@@ -26,7 +25,7 @@ _ACTIVE = int(Status.ACTIVE)
 _STATIC = int(Kind.STATIC)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def step_worlds(
     low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
     worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
@@ -42,7 +41,7 @@ def step_worlds(
             )  # fmt: skip
 
 
-@njit(cache=True)
+@kernel
 def step_world(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
     bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
@@ -69,7 +68,7 @@ def step_world(
     world.running = goes_on(world, agents)
 
 
-@njit(cache=True)
+@kernel
 def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots: AnyArray) -> None:
     """Re-place the static obstacles whose time has come and whose new place is free.
 
@@ -96,12 +95,12 @@ def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots:
             world.revision += 1
 
 
-@njit(cache=True)
+@kernel
 def _within(dx: float, dy: float, reach: float) -> bool:
     return bool(dx * dx + dy * dy < reach * reach)
 
 
-@njit(cache=True)
+@kernel
 def obey(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray
 ) -> None:
@@ -118,7 +117,7 @@ def obey(
         executed[i, 0], executed[i, 1] = a.drive_0, a.drive_1
 
 
-@njit(cache=True)
+@kernel
 def aim_bodies(begin: float, end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
     """Velocities that carry the bodies straight to where their laws put them."""
     for m in range(world.bodies):
@@ -129,7 +128,7 @@ def aim_bodies(begin: float, end: float, world: Any, bodies: AnyArray, knots: An
         body.vx, body.vy = (x1 - x0) / world.h, (y1 - y0) / world.h
 
 
-@njit(cache=True)
+@kernel
 def aim_agents(world: Any, agents: AnyArray) -> None:
     """Velocities of this substep."""
     for i in range(world.agents):
@@ -140,7 +139,7 @@ def aim_agents(world: Any, agents: AnyArray) -> None:
             a.vx, a.vy = planar_velocity(a.drive_0, a.drive_1, a.unicycle, a.heading, world.h)
 
 
-@njit(cache=True)
+@kernel
 def find_all(
     world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
     start: IntArray, item: IntArray, hashed: IntArray, sorted_: IntArray, near: IntArray,
@@ -159,7 +158,7 @@ def find_all(
             )  # fmt: skip
 
 
-@njit(cache=True)
+@kernel
 def advance(
     begin: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
@@ -190,7 +189,7 @@ def advance(
     drift(left, world, agents, bodies)
 
 
-@njit(cache=True)
+@kernel
 def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
     """Could the next touch of a be with i or j, now that they move otherwise?"""
     if _within(a.x - agents[i].x, a.y - agents[i].y, reach):
@@ -198,7 +197,7 @@ def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
     return j >= 0 and _within(a.x - agents[j].x, a.y - agents[j].y, reach)
 
 
-@njit(cache=True)
+@kernel
 def earliest(world: Any, agents: AnyArray) -> int:
     """The agent whose next touch comes first; -1 if there is none."""
     best, who = math.inf, -1
@@ -208,7 +207,7 @@ def earliest(world: Any, agents: AnyArray) -> int:
     return who
 
 
-@njit(cache=True)
+@kernel
 def drift(t: float, world: Any, agents: AnyArray, bodies: AnyArray) -> None:
     """Everything moves straight for t seconds."""
     for i in range(world.agents):
@@ -222,7 +221,7 @@ def drift(t: float, world: Any, agents: AnyArray, bodies: AnyArray) -> None:
         body.y += body.vy * t
 
 
-@njit(cache=True)
+@kernel
 def land_bodies(time: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
     """Bodies are where their laws say, free of accumulated rounding."""
     for m in range(world.bodies):
@@ -230,7 +229,7 @@ def land_bodies(time: float, world: Any, bodies: AnyArray, knots: AnyArray) -> N
         body.x, body.y = body_at(body, knots, time)
 
 
-@njit(cache=True)
+@kernel
 def turn(world: Any, agents: AnyArray) -> None:
     """Unicycles turn at their rate; holonomic agents look where they are told to go."""
     for i in range(world.agents):
@@ -243,7 +242,7 @@ def turn(world: Any, agents: AnyArray) -> None:
             a.heading = wrap(angle_of(a.drive_0, a.drive_1))
 
 
-@njit(cache=True)
+@kernel
 def goes_on(world: Any, agents: AnyArray) -> bool:
     """True while an evaluated agent is active and the horizon is ahead."""
     if world.steps_done >= world.steps:

@@ -7,17 +7,16 @@ its solid), 4k + 3 body k.
 import math
 from typing import Any
 
-from numba import njit
-
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
 from benchnav.geometry.hash_grid import bucket
+from benchnav.kernels import kernel
 
 GOAL, AGENT, FIXED, BODY = 0, 1, 2, 3
 BRUTE_FORCE = 24  # agents up to which all pairs are cheaper than a grid
 
 
-@njit(cache=True)
+@kernel
 def candidates(i: int, agents: AnyArray, hashed: IntArray, item: IntArray, near: IntArray) -> int:
     """Lists in ``near`` (A,) the agents that i could touch in this substep; returns their number."""
     n = 0
@@ -41,7 +40,7 @@ def candidates(i: int, agents: AnyArray, hashed: IntArray, item: IntArray, near:
     return n
 
 
-@njit(cache=True)
+@kernel
 def goal_time(a: Any, tolerance: float) -> float:
     """Time until agent a touches its goal disc; 0 inside it."""
     fx, fy = a.x - a.goal_x, a.y - a.goal_y
@@ -50,19 +49,19 @@ def goal_time(a: Any, tolerance: float) -> float:
     return disc_time(fx, fy, a.vx, a.vy, tolerance)
 
 
-@njit(cache=True)
+@kernel
 def pair_time(a: Any, b: Any) -> float:
     """Time until agents a and b touch, moving as they do now."""
     return disc_time(a.x - b.x, a.y - b.y, a.vx - b.vx, a.vy - b.vy, a.radius + b.radius)
 
 
-@njit(cache=True)
+@kernel
 def fixed_time(a: Any, c: Any) -> float:
     """Time until agent a touches a fixed capsule."""
     return capsule_time(a.x, a.y, a.vx, a.vy, a.radius + c.r, c.x0, c.y0, c.x1, c.y1)
 
 
-@njit(cache=True)
+@kernel
 def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
     """Time until agent a touches a body; inf where it cannot within ``left`` [s]."""
     fx, fy = a.x - body.x, a.y - body.y
@@ -78,7 +77,7 @@ def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
     return best
 
 
-@njit(cache=True)
+@kernel
 def find_next(
     i: int, left: float, tolerance: float, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, sorted_: IntArray,
@@ -111,7 +110,7 @@ def find_next(
     a.tau, a.code = best, code
 
 
-@njit(cache=True)
+@kernel
 def from_fixed(a: Any, c: Any) -> tuple[float, float, float]:
     """(dx, dy, gap): from the capsule's nearest core point to agent a, and between the surfaces."""
     qx, qy = nearest_on_segment(a.x, a.y, c.x0, c.y0, c.x1, c.y1)
@@ -119,7 +118,7 @@ def from_fixed(a: Any, c: Any) -> tuple[float, float, float]:
     return dx, dy, math.sqrt(dx * dx + dy * dy) - c.r - a.radius
 
 
-@njit(cache=True)
+@kernel
 def from_body(a: Any, body: Any, shapes: AnyArray) -> tuple[float, float, float]:
     """As `from_fixed`, for the nearest of a body's capsules."""
     gap, dx, dy = math.inf, 0.0, 0.0
@@ -134,7 +133,19 @@ def from_body(a: Any, body: Any, shapes: AnyArray) -> tuple[float, float, float]
     return dx, dy, gap
 
 
-@njit(cache=True)
+@kernel
+def encloses(body: Any, shapes: AnyArray, x: float, y: float) -> bool:
+    """Is (x, y) inside the loops of a body (even-odd rule)? A disc has none: its core is a point."""
+    inside = False
+    fx, fy = x - body.x, y - body.y
+    for q in range(body.first, body.last):
+        c = shapes[q]
+        if (c.y0 > fy) != (c.y1 > fy) and fx < c.x0 + (fy - c.y0) / (c.y1 - c.y0) * (c.x1 - c.x0):
+            inside = not inside
+    return inside
+
+
+@kernel
 def from_agent(a: Any, b: Any) -> tuple[float, float, float]:
     """As `from_fixed`, for another agent."""
     dx, dy = a.x - b.x, a.y - b.y
