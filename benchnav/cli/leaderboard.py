@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from benchnav.cli.console import one_of, put, say, write
+from benchnav.errors import StoreError
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -59,6 +60,8 @@ def leaderboard(
         _warn_if_unfinished(folder)
     tables = [_measured(f.path, list(metrics.values()), recompute) for f in folders]
     missing = [gap for folder in folders for gap in _not_applicable(folder)]
+    if not sum(len(table) for table in tables):
+        raise StoreError(f"There must be episodes to make a table of. {runs[0]} holds none.")
     board = tabulate(pa.concat_tables(tables), metrics, missing)
     text = render(board, wanted.value, metric or None)
     if out is None:

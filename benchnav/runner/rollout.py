@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchnav.arena.world import World
+from benchnav.arena.sensing import Sensing
+from benchnav.arena.world import Clock, Rules, World
 from benchnav.episode.episode import Episode, Identity
 from benchnav.navigation.configure import Spec, make, split
 from benchnav.plugins import NAVIGATORS
@@ -66,12 +67,12 @@ def rollout(
 
 
 def _batches(worlds: Sequence[Seeded]) -> Iterator[list[Seeded]]:
-    """Consecutive worlds that share clock and rules and fit into memory together."""
+    """Consecutive worlds that share their terms and fit into memory together."""
     batch: list[Seeded] = []
     size = 0
     for seed, world in worlds:
         cost = len(world.agents) * world.clock.steps * _BYTES
-        alike = batch and (batch[0][1].clock, batch[0][1].rules) == (world.clock, world.rules)
+        alike = batch and _terms(batch[0][1]) == _terms(world)
         if batch and (not alike or len(batch) == MAX_WORLDS or size + cost > MAX_BYTES):
             yield batch
             batch, size = [], 0
@@ -79,6 +80,10 @@ def _batches(worlds: Sequence[Seeded]) -> Iterator[list[Seeded]]:
         size += cost
     if batch:
         yield batch
+
+
+def _terms(world: World) -> tuple[Clock, Rules, Sensing]:
+    return world.clock, world.rules, world.sensing
 
 
 def _split(batch: list[Seeded], failed: CallFailed) -> list[list[Seeded]]:

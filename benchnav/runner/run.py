@@ -80,7 +80,9 @@ def _tasks(suite: Suite, folder: RunFolder, cells: list[Cell], summary: Summary)
         missing = set(suite.seeds) - folder.done(cell.key)
         summary.total += len(suite.seeds)
         summary.stored += len(suite.seeds) - len(missing)
-        tasks += [Task(cell, folder.cell(cell.key), *chunk) for chunk in chunks(missing)]
+        tasks += [
+            Task(cell, folder.cell(cell.key), *chunk) for chunk in chunks(missing, cell.effort)
+        ]
     summary.found = summary.stored
     return sorted(tasks, key=lambda task: -task.cell.effort * len(task.seeds))
 

@@ -12,7 +12,8 @@ from benchnav.store.part import Part
 from benchnav.store.part_writer import PartWriter
 from benchnav.world.build import build
 
-CHUNK = 32  # seeds of a task: enough for lockstep to pay, few enough to lose to an interruption
+CHUNK = 64  # seeds of a task: enough for lockstep to pay, few enough to lose to an interruption
+EFFORT = 4_000_000  # agent-decisions of a task, as far as a cell can tell beforehand
 
 
 @dataclass(frozen=True)
@@ -44,18 +45,17 @@ class Outcome:
     failures: tuple[tuple[int, str], ...] = field(default=())  # (seed, reason)
 
 
-def chunks(seeds: Iterable[int]) -> Iterator[tuple[int, int]]:
-    """Ranges (first, stop) that cover ``seeds``, none across a multiple of `CHUNK`."""
-    first = previous = None
+def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
+    """Ranges (first, stop) that cover ``seeds``, each of which costs ``effort``."""
+    size = max(1, min(CHUNK, int(EFFORT / max(effort, 1.0))))
+    run: list[int] = []
     for seed in sorted(seeds):
-        if first is None or previous is None:
-            first = seed
-        elif seed != previous + 1 or seed % CHUNK == 0:
-            yield first, previous + 1
-            first = seed
-        previous = seed
-    if first is not None and previous is not None:
-        yield first, previous + 1
+        if run and (seed != run[-1] + 1 or len(run) == size):
+            yield run[0], run[-1] + 1
+            run = []
+        run.append(seed)
+    if run:
+        yield run[0], run[-1] + 1
 
 
 def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:

@@ -29,9 +29,11 @@ def test_seeds_are_a_number_or_a_range(text, seeds):
     assert parse_seeds(text) == seeds
 
 
-@pytest.mark.parametrize("text", ["", "0", "-1", "3:3", "5:2", "a:b", "1:2:3", "1.5", "²", "9" * 30])
+@pytest.mark.parametrize(
+    "text", ["", "0", "-1", "3:3", "5:2", "a:b", "1:2:3", "1.5", "²", "9" * 30]
+)
 def test_other_seeds_are_refused_with_the_rule(text):
-    with pytest.raises(ValueError, match="must be N .* or A:B"):
+    with pytest.raises(ValueError, match=r"must be N .* or A:B"):
         parse_seeds(text)
 
 

@@ -1,0 +1,132 @@
+"""Worlds in lockstep: no batching shows in the results, and everybody pays only for themselves."""
+
+import numpy as np
+import pytest
+
+from benchnav.episode.episode import Status
+from benchnav.runner import rollout as module
+from benchnav.store.digest import digest
+
+
+def digests(episodes):
+    return {seed: episode.digest for seed, episode in episodes.items()}
+
+
+@pytest.mark.parametrize("navigator", ["Walk", "orca"])
+def test_no_batch_size_changes_a_bit(play, monkeypatch, navigator):
+    together = digests(play(navigator, range(7)))
+    for size in (1, 3):
+        monkeypatch.setattr(module, "MAX_WORLDS", size)
+        assert digests(play(navigator, range(7))) == together
+    assert digests(play(navigator, [6, 2])) == {s: together[s] for s in (6, 2)}
+    assert len(set(together.values())) == 7
+
+
+def test_what_is_recorded_fits_together(play):
+    for seed, episode in play("orca").items():
+        world, steps = episode.world, len(episode.requested)
+        agents, bodies = len(world.agents), len(world.bodies)
+        assert episode.position.shape == (steps + 1, agents, 2)
+        assert episode.heading.shape == episode.status.shape == (steps + 1, agents)
+        assert episode.executed.shape == (steps, agents, 2)
+        assert episode.body_position.shape == (steps + 1, bodies, 2)
+        assert episode.timings.decision.shape == (steps,)
+        assert (episode.timings.decision > 0).all()
+        assert np.array_equal(episode.position[0], world.agents.start)
+        assert episode.digest == digest(episode)
+        assert episode.identity.seed == seed
+        assert (episode.failure, episode.reproducible) == ("", True)
+        mine = world.agents.evaluated
+        ended = (episode.status[-1, mine] != Status.ACTIVE).all()
+        assert ended or steps == world.clock.steps
+        assert (episode.status[:-1, mine] == Status.ACTIVE).any(axis=1).all()
+
+
+def test_the_background_is_driven_recorded_and_the_same_for_everybody(play):
+    walk, orca = play("Walk"), play("orca")
+    for seed in walk:
+        background = np.flatnonzero(~walk[seed].world.agents.evaluated)
+        assert len(background) == 1
+        assert np.abs(walk[seed].requested[0, background]).max() > 0.1
+        assert np.array_equal(
+            walk[seed].requested[0, background], orca[seed].requested[0, background]
+        )
+
+
+def test_requests_are_kept_as_they_were_and_executed_within_limits(play):
+    for episode in play("Walk").values():
+        speed = np.hypot(*np.moveaxis(episode.executed, 2, 0))
+        assert (speed <= episode.world.agents.max_speed + 1e-12).all()
+    asked = np.concatenate([e.requested.reshape(-1, 2) for e in play("Walk").values()])
+    assert np.hypot(*asked.T).max() > 1.5
+
+
+def test_twists_reach_the_agents_as_twists(play):
+    for episode in play("Rotor").values():
+        mine = np.flatnonzero(episode.world.agents.evaluated)
+        assert (episode.requested[0, mine] == [0.5, 0.3]).all()
+        turned = episode.heading[1, mine] - episode.heading[0, mine]
+        assert np.abs(turned).max() > 0.0
+
+
+FAILURES = {
+    "Raises": "act raised ValueError: lost my way at t = 0.6 s",
+    "Nan": r"act must return finite numbers. Got (",
+    "Shape": "act must return an array of shape (1, ",
+    "Nothing": "Got None instead at t = 0.6 s",
+    "Leaves": "act raised SystemExit: bye at t = 0.6 s",
+    "ResetRaises": "reset raised RuntimeError: no plan",
+}
+
+
+@pytest.mark.parametrize("navigator", FAILURES)
+def test_a_failure_costs_its_own_episodes_only(play, in_the_east, navigator):
+    """The others end bit for bit as with a navigator that never fails."""
+    whole, episodes = play("Walk", range(9)), play(navigator, range(9))
+    failed = {seed for seed, e in episodes.items() if e.failure}
+    assert failed == {seed for seed, e in whole.items() if in_the_east(e)}
+    assert 0 < len(failed) < 9
+    for seed, episode in episodes.items():
+        if seed not in failed:
+            assert episode.digest == whole[seed].digest
+            continue
+        assert FAILURES[navigator] in episode.failure
+        steps = 0 if navigator == "ResetRaises" else 3
+        assert len(episode.requested) == steps
+        assert np.array_equal(episode.position[: steps + 1], whole[seed].position[: steps + 1])
+        mine = episode.world.agents.evaluated
+        assert (episode.status[-1, mine] == Status.FAILED).all()
+        assert np.isnan(episode.arrival[mine]).all()
+
+
+def test_who_can_do_only_one_world_at_a_time_is_run_one_world_at_a_time(play):
+    alone = play("Alone")
+    assert digests(alone) == digests(play("Walk"))
+    assert {e.timings.batch for e in alone.values()} == {1}
+
+
+def test_a_background_that_fails_is_told_from_the_navigator(play, in_the_east):
+    episodes = play("orca", range(9), background=("troubled_navigators:ResetRaises",))
+    reasons = {e.failure for e in episodes.values()}
+    expected = (
+        "the scenario's background navigator 'troubled_navigators:ResetRaises':"
+        " reset raised RuntimeError: no plan"
+    )
+    assert reasons == {"", expected}
+
+
+def test_what_a_navigator_is_handed_is_its_own(play):
+    assert digests(play("Vandal")) == digests(play("Walk"))
+
+
+def test_one_agent_at_a_time_is_as_good_as_a_batch(play):
+    for episode in play("Agentwise").values():
+        assert episode.failure == ""
+        assert len(episode.requested) > 0
+
+
+def test_a_charged_world_is_recorded_without_being_run(play):
+    for episode in play("Dies", charge="killed by SIGSEGV").values():
+        assert episode.failure == "killed by SIGSEGV"
+        assert len(episode.requested) == 0
+        assert (episode.status[-1, episode.world.agents.evaluated] == Status.FAILED).all()

@@ -1,0 +1,217 @@
+"""A suite is run whole, however often it is interrupted, by however many workers."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from benchnav.errors import BenchnavError, RunConflictError, UnsolvableError
+from benchnav.plugins import register_navigator
+from benchnav.runner import task as task_module
+from benchnav.runner.progress import Progress
+from benchnav.runner.run import run_suite
+from benchnav.runner.suite import Selection, load_suite
+from benchnav.runner.task import chunks
+from benchnav.store.part import SEAL
+from benchnav.store.reading import read_episodes, read_results
+from benchnav.store.run_folder import RunFolder
+
+
+@pytest.fixture
+def suite_file(tmp_path, scenario_file, troubled):
+    path = tmp_path / "suite.yaml"
+    path.write_text(
+        f"name: small\nscenarios: [{scenario_file}]\n"
+        "navigators: [orca, {type: 'troubled_navigators:Walk', label: walk}]\nseeds: 6\n"
+    )
+    return path
+
+
+@pytest.fixture
+def small_tasks(monkeypatch):
+    monkeypatch.setattr(task_module, "CHUNK", 2)
+
+
+def digests(run):
+    return {(e.identity.navigator, e.identity.seed): e.digest for e in read_episodes(run)}
+
+
+def table(run):
+    """The results, timings aside."""
+    rows = read_results(run).to_pylist()
+    return {
+        (r["navigator"], r["seed"], r["role"], r["metric"]): repr(r["value"])
+        for r in rows
+        if not r["metric"].startswith(("decision_time", "planning_time"))
+    }
+
+
+class Counting(Progress):
+    def __init__(self):
+        self.done = 0
+
+    def begin(self, total, stored):
+        self.total, self.done = total, stored
+
+    def advance(self, episodes):
+        self.done += episodes
+
+
+def test_no_number_of_workers_and_no_chunk_size_changes_a_bit(suite_file, tmp_path, monkeypatch):
+    suite = load_suite(str(suite_file))
+    told = Counting()
+    summary = run_suite(suite, tmp_path / "here", workers=0, progress=told)
+    assert (summary.total, summary.stored, summary.found) == (12, 12, 0)
+    assert (told.total, told.done) == (12, 12)
+    monkeypatch.setattr(task_module, "CHUNK", 2)
+    told = Counting()
+    run_suite(suite, tmp_path / "there", workers=2, progress=told)
+    assert told.done == 12
+    assert digests(tmp_path / "there") == digests(tmp_path / "here")
+    assert table(tmp_path / "there") == table(tmp_path / "here")
+
+
+def test_what_is_missing_is_run_and_nothing_else(suite_file, tmp_path, small_tasks):
+    suite, out = load_suite(str(suite_file)), tmp_path / "run"
+    run_suite(suite, out, workers=0)
+    whole = digests(out)
+    gone, kept = sorted(out.glob(f"parts/*/*{SEAL}"))[::3], {}
+    for seal in gone:
+        seal.unlink()
+    kept = {seal: seal.stat().st_mtime_ns for seal in out.glob(f"parts/*/*{SEAL}")}
+    summary = run_suite(suite, out, workers=0)
+    assert summary.stored - summary.found == 2 * len(gone)
+    assert digests(out) == whole
+    assert all(seal.stat().st_mtime_ns == when for seal, when in kept.items())
+    again = run_suite(suite, out, workers=2)
+    assert again.found == again.stored == 12
+
+
+def test_another_suite_does_not_get_the_folder(suite_file, tmp_path):
+    out = tmp_path / "run"
+    run_suite(load_suite(str(suite_file), Selection(seeds="1")), out, workers=0)
+    before = digests(out)
+    with pytest.raises(RunConflictError, match="They differ in seeds"):
+        run_suite(load_suite(str(suite_file), Selection(seeds="2")), out, workers=0)
+    assert digests(out) == before
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_failures_are_counted_by_reason(suite_file, tmp_path, workers, in_the_east):
+    chosen = Selection(navigators=("troubled_navigators:Raises",))
+    summary = run_suite(load_suite(str(suite_file), chosen), tmp_path / "r", workers=workers)
+    failed = [e for e in read_episodes(tmp_path / "r") if e.failure]
+    assert all(in_the_east(e) for e in failed)
+    reason = "act raised ValueError: lost my way at t = 0.6 s"
+    assert summary.failures == {("troubled_navigators:Raises", reason): len(failed)}
+    assert 0 < len(failed) < 6
+
+
+def test_a_navigator_that_kills_its_process_pays_for_its_own_episodes(
+    suite_file, tmp_path, in_the_east
+):
+    chosen = Selection(navigators=("troubled_navigators:Dies", "walk"))
+    told = Counting()
+    run_suite(load_suite(str(suite_file), chosen), tmp_path / "r", workers=2, progress=told)
+    assert told.done == 12
+    episodes = list(read_episodes(tmp_path / "r"))
+    walk = {e.identity.seed: e for e in episodes if e.identity.navigator == "walk"}
+    dies = {e.identity.seed: e for e in episodes if e.identity.navigator != "walk"}
+    assert sorted(walk) == sorted(dies) == list(range(6))
+    for seed, episode in dies.items():
+        if in_the_east(walk[seed]):
+            assert episode.failure == "the navigator's process ended with exit status 7"
+        else:
+            assert (episode.failure, episode.digest) == ("", walk[seed].digest)
+
+
+def test_a_scenario_that_cannot_be_drawn_stops_the_run_and_says_so(
+    scenario_file, suite_file, tmp_path
+):
+    text = scenario_file.read_text().replace("max_speed: 1", "max_speed: 1", 1)
+    full = text.replace("count: {integers: [1, 3]}", "count: 400")
+    (tmp_path / "full.yaml").write_text(full)
+    chosen = Selection(scenarios=(str(tmp_path / "full.yaml"),), navigators=("orca",))
+    for workers in (0, 1):
+        with pytest.raises(UnsolvableError, match="tiny/crossing"):
+            run_suite(
+                load_suite(str(suite_file), chosen), tmp_path / f"r{workers}", workers=workers
+            )
+
+
+def test_what_a_navigator_prints_is_not_a_result(suite_file, tmp_path, capfd):
+    chosen = Selection(navigators=("troubled_navigators:Talks",))
+    run_suite(load_suite(str(suite_file), chosen), tmp_path / "r", workers=1)
+    out, err = capfd.readouterr()
+    assert out == ""
+    assert "hello from a navigator" in err
+
+
+def test_a_navigator_of_this_process_runs_in_this_process(suite_file, tmp_path):
+    from troubled_navigators import Walk
+
+    register_navigator("mine-for-a-test")(type("Mine", (Walk,), {}))
+    chosen = Selection(navigators=("mine-for-a-test",))
+    suite = load_suite(str(suite_file), chosen)
+    assert run_suite(suite, tmp_path / "here", workers=0).stored == 6
+    with pytest.raises(BenchnavError, match="no navigator 'mine-for-a-test'"):
+        run_suite(suite, tmp_path / "there", workers=1)
+
+
+def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file, tmp_path):
+    """The real thing: a process, a signal, and the run again."""
+    out, whole = tmp_path / "run", tmp_path / "whole"
+    command = [
+        sys.executable, "-c", "from benchnav.cli.main import main; main()",
+        "run", str(suite_file), "--seeds", "160", "--navigator", "orca", "--workers", "1",
+    ]  # fmt: skip
+    process = subprocess.Popen(
+        [*command, "--out", str(out)], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+        start_new_session=True,
+    )  # fmt: skip
+    deadline = time.monotonic() + 60
+    while not list(out.glob(f"parts/*/*{SEAL}")) and time.monotonic() < deadline:
+        time.sleep(0.01)
+    os.killpg(process.pid, signal.SIGINT)
+    stdout, stderr = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert stdout == ""
+    assert "Interrupted. " in stderr
+    assert f"--out {out} goes on from there" in stderr
+    assert "Traceback" not in stderr
+    stored = len(list(read_episodes(out)))
+    assert 0 < stored < 160
+    assert not list(out.glob("parts/*/.writing*"))
+    chosen = Selection(seeds="160", navigators=("orca",))
+    resumed = run_suite(load_suite(str(suite_file), chosen), out, workers=1)
+    assert resumed.found == stored
+    run_suite(load_suite(str(suite_file), chosen), whole, workers=1)
+    assert table(out) == table(whole)
+
+
+@pytest.mark.parametrize(
+    ("seeds", "effort", "expected"),
+    [
+        (range(5), 1, [(0, 5)]),
+        (range(64), 1, [(0, 64)]),
+        (range(130), 1, [(0, 64), (64, 128), (128, 130)]),
+        ([0, 1, 3, 4, 9], 1, [(0, 2), (3, 5), (9, 10)]),
+        (range(3), 1e9, [(0, 1), (1, 2), (2, 3)]),
+        ([], 1, []),
+    ],
+)
+def test_tasks_cover_what_is_missing_once(seeds, effort, expected):
+    assert list(chunks(seeds, effort)) == expected
+
+
+def test_two_runs_into_one_folder_at_once_are_refused(suite_file, tmp_path):
+    suite, out = load_suite(str(suite_file)), tmp_path / "run"
+    run_suite(suite, out, workers=0)
+    with (
+        RunFolder.open(out).writing(),
+        pytest.raises(RunConflictError, match="must have one writer"),
+    ):
+        run_suite(suite, out, workers=0)

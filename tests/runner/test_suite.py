@@ -1,0 +1,107 @@
+"""A suite is a lazy product, and says beforehand which of its cells cannot be."""
+
+import pytest
+
+from benchnav.errors import ConfigError, ScenarioError, UnknownPluginError, UsageError
+from benchnav.runner.suite import Selection, load_suite
+
+
+@pytest.fixture
+def write(tmp_path, scenario_file, troubled):
+    def write(**lines):
+        said = {
+            "name": "small", "scenarios": f"[{scenario_file}]",
+            "navigators": "[straight-line, orca]", "tracks": "[known, unknown]", "seeds": "3",
+            **lines,
+        }  # fmt: skip
+        path = tmp_path / "suite.yaml"
+        path.write_text("".join(f"{key}: {value}\n" for key, value in said.items()))
+        return str(path)
+
+    return write
+
+
+def test_cells_are_every_scenario_track_and_navigator(write):
+    cells = list(load_suite(write()).cells())
+    assert [(c.track, c.entry.label) for c in cells] == [
+        ("known", "straight-line"), ("known", "orca"),
+        ("unknown", "straight-line"), ("unknown", "orca"),
+    ]  # fmt: skip
+    assert len({cell.key for cell in cells}) == 4
+    assert all(cell.reason == "" for cell in cells)
+
+
+def test_a_cell_that_cannot_work_says_why(write, troubled):
+    (troubled / "needy.py").write_text(
+        "from benchnav.navigation.navigator import Navigator, Need\n"
+        "class Maps(Navigator):\n"
+        "    needs = frozenset({Need.MAP})\n"
+        "    def act(self, observation): return observation.velocity\n"
+    )
+    suite = load_suite(write(navigators="['needy:Maps']", tracks="[known, stale, unknown]"))
+    reasons = {cell.track: cell.reason for cell in suite.cells()}
+    assert reasons == {
+        "known": "",
+        "stale": "the scenario has no track 'stale'",
+        "unknown": "needs a map",
+    }
+
+
+def test_a_sensor_that_nobody_has_makes_a_cell_n_a(write, scenario_file, tmp_path):
+    blind = tmp_path / "blind.yaml"
+    blind.write_text(scenario_file.read_text() + "sensing: {neighbours: null}\n")
+    suite = load_suite(write(scenarios=f"[{blind}]", tracks="[known]"))
+    reasons = {cell.entry.label: cell.reason for cell in suite.cells()}
+    assert reasons == {
+        "straight-line": "", "orca": "needs neighbours, which nobody senses there"
+    }  # fmt: skip
+
+
+def test_the_same_navigator_with_other_parameters_is_another_entry(write):
+    suite = load_suite(write(navigators="[orca, {type: orca, label: far-sighted, time_horizon: 9.0}]"))
+    near, far = suite.entries
+    assert (near.label, far.label) == ("orca", "far-sighted")
+    assert near.spec["type"] == far.spec["type"] == "orca"
+    assert near.spec != far.spec
+    keys = [cell.key for cell in suite.cells()]
+    assert len(set(keys)) == len(keys)
+
+
+def test_what_is_selected_replaces_what_the_file_says(write):
+    path = write()
+    suite = load_suite(path, Selection((), ("partial",), ("orca", "random-walk"), "7:9"))
+    assert suite.tracks == ("partial",)
+    assert [entry.label for entry in suite.entries] == ["orca", "random-walk"]
+    assert suite.seeds == range(7, 9)
+
+
+def test_what_has_no_say_in_the_results_is_not_in_the_resolved_suite(write, tmp_path):
+    one = load_suite(write()).resolved()
+    other = load_suite(write(description="something else")).resolved()
+    assert one == other
+    assert load_suite(write(seeds="4")).resolved() != one
+
+
+@pytest.mark.parametrize(
+    ("lines", "kind", "complaint"),
+    [
+        ({"navigators": "[orca, orca]"}, UsageError, "'orca' more than once"),
+        ({"tracks": "[known, known]"}, UsageError, "'known' more than once"),
+        ({"navigators": "[orac]"}, UnknownPluginError, "Did you mean 'orca'"),
+        ({"navigators": "[{type: orca, time_horizn: 3.0}]"}, ConfigError, "suite.yaml:3: "),
+        ({"navigators": "[{type: orca, label: ''}]"}, ScenarioError, "label must have 1 to 80"),
+        ({"scenarios": "[no/such]"}, UnknownPluginError, "No scenario is called 'no/such'"),
+        ({"scenarios": "[gone.yaml]"}, ScenarioError, "gone.yaml:1: cannot be read"),
+    ],
+)
+def test_mistakes_are_named(write, lines, kind, complaint):
+    with pytest.raises(kind) as refused:
+        load_suite(write(**lines))
+    assert complaint in str(refused.value)
+
+
+def test_a_wrong_selection_is_asked_wrongly(write):
+    with pytest.raises(UsageError, match="Did you mean 'known'"):
+        load_suite(write(), Selection(tracks=("knwon",)))
+    with pytest.raises(UsageError, match="seeds must be N"):
+        load_suite(write(), Selection(seeds="x"))
