@@ -90,7 +90,8 @@ def test_configure_constructs_nothing(registry):
         ),
         (
             {"type": "mild", "zz": 2},
-            "The thing 'mild' has no parameter 'zz'. There is 'time_horizon', 'name', 'when', 'deep'.",
+            "The thing 'mild' has no parameter 'zz'."
+            " There is 'time_horizon', 'name', 'when', 'deep'.",
         ),
         ({"type": "empty", "zz": 2}, "The thing 'empty' has no parameter 'zz'. It has none."),
         (
