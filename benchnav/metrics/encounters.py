@@ -3,7 +3,8 @@
 Between states everything moves straight, so the smallest distance within a step is
 that of two segments, not of two samples. A partner that is far cannot matter for
 some steps to come: nobody is faster than its greatest speed, so those steps are
-skipped without changing any result.
+skipped without changing any result. Time to collision falls within a step, so its
+smallest value there is that of the step's end.
 """
 
 import math
@@ -149,8 +150,9 @@ def _thing_step(
     if gap - travel < clearance[a]:
         least = math.sqrt(segment_distance2(px, py, qx, qy, x0, y0, x1, y1)) - reach
         clearance[a] = min(clearance[a], least)
-    if gap < ttc[a] * math.sqrt(wx * wx + wy * wy):
-        ttc[a] = min(ttc[a], capsule_time(px, py, wx, wy, reach, x0, y0, x1, y1))
+    if moves and gap < (ttc[a] + dt) * math.sqrt(wx * wx + wy * wy):
+        time = capsule_time(px, py, wx, wy, reach, x0, y0, x1, y1)
+        ttc[a] = min(ttc[a], max(0.0, time - duration[a, k]))
     return gap
 
 
@@ -223,7 +225,7 @@ def _pair_step(
     for a in (i, j):
         if k < last[a]:
             clearance[a] = min(clearance[a], least)
-            ttc[a] = min(ttc[a], time)
+            ttc[a] = min(ttc[a], max(0.0, time - until))
     if i_for == j_for:
         return
     stays, goes = (i, j) if i_for < j_for else (j, i)

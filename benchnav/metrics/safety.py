@@ -61,12 +61,17 @@ def min_clearance(episode: Episode) -> FloatArray:
 
 
 def min_time_to_collision(episode: Episode) -> FloatArray:
-    """(A,) [s] smallest time to a touch if from some instant on all velocities stayed as they were.
+    """(A,) [s] smallest time to a touch, if all kept the velocities that they had at some instant.
 
-    Towards walls, obstacles and agents alike; at most 5 s, which is also the value of
-    an agent that is never on a collision course that is nearer than that.
+    Towards walls, obstacles and agents alike; 0 for an agent that did touch something,
+    charged or not; at most 5 s, which is also the value of an agent that is never on a
+    collision course that is nearer than that.
     """
-    return analyse(episode).encounters.time_to_collision
+    found, contacts = analyse(episode), episode.contacts
+    time = found.encounters.time_to_collision.copy()
+    during = contacts.start <= found.trajectories.end[contacts.agent]
+    time[contacts.agent[during]] = 0.0
+    return time
 
 
 def personal_space_intimate(episode: Episode) -> FloatArray:

@@ -167,7 +167,7 @@ def test_crash_at_once():
     assert safety.collided(episode) == [1.0]
     assert safety.collisions_wall(episode) == [1.0]
     assert safety.min_clearance(episode) == pytest.approx([0.0], abs=1e-12)
-    assert safety.min_time_to_collision(episode) == pytest.approx([0.1], abs=1e-9)
+    assert safety.min_time_to_collision(episode) == [0.0]
     assert np.isnan(efficiency.efficiency(episode)).all()
     assert efficiency.spl(episode) == [0.0]
     assert np.isnan(smoothness.turning(episode)).all()
@@ -204,8 +204,7 @@ def test_head_on_course_that_is_left_in_time():
 
     walks = [Walk(approach(-5.0, 1.0), (9.0, 0.0)), Walk(approach(5.0, -1.0), (-9.0, 0.0))]
     episode = record(walks, Setting(dt=0.1, horizon=12.0))
-    # the last instant on course is the beginning of the step that ends at 3 s
-    expected = (3.4 + 0.2) / 2.0
+    expected = 3.4 / 2.0
     assert safety.min_time_to_collision(episode) == pytest.approx([expected] * 2, abs=1e-9)
     assert safety.min_clearance(episode) == pytest.approx([3.4] * 2, abs=1e-9)
 

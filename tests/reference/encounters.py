@@ -71,7 +71,8 @@ def things(a, position, velocity, duration, last, radius, dt, capsules, body, of
             clearance = min(
                 clearance, _ternary(gap, 0.0, duration[a, k] if moves else 0.0), gap(0.0)
             )
-            ttc = min(ttc, _first_touch(gap, 10.0))
+            if moves:
+                ttc = min(ttc, max(0.0, _first_touch(gap, 10.0) - duration[a, k]))
     return clearance, ttc
 
 
@@ -103,5 +104,5 @@ def pair(i, j, position, velocity, duration, last, leaves, radius, dt):
 
         first = min(until, other)
         clearance = min(clearance, _ternary(gap, 0.0, first), _ternary(gap, first, until))
-        ttc = min(ttc, _first_touch(course, 10.0))
+        ttc = min(ttc, max(0.0, _first_touch(course, 10.0) - min(own, other)))
     return clearance, ttc, gaps, near
