@@ -43,11 +43,11 @@ def read_map(path: Path | str, cell: float = 1.0) -> Occupancy:
     lines = _lines(path, "a MovingAI map")
     width, height = _header(path, lines)
     rows = lines[4:]
-    while len(rows) > height and not rows[-1].strip():
+    while rows and not rows[-1].strip():
         rows.pop()
     if len(rows) != height:
         raise MapError(
-            f"{path}:{4 + min(len(rows), height + 1)}: the map must have the {height} rows that "
+            f"{path}:{5 + min(len(rows), height)}: the map must have the {height} rows that "
             f"line 2 or 3 declares; got {len(rows)}."
         )
     for number, row in enumerate(rows, 5):
