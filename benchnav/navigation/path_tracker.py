@@ -96,7 +96,7 @@ def _grown(old: AnyArray, shape: tuple[int, ...]) -> AnyArray:
     return new
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True)
 def track(
     low: int, high: int, rows: IntArray, active: BoolArray, position: FloatArray,
     path: FloatArray, arc: FloatArray, count: IntArray, ahead: FloatArray, cut: float,
@@ -124,7 +124,7 @@ def track(
         row = rows[b]
         for a in range(active.shape[1]):
             n = count[row, a]
-            if n == 0 or not active[b, a]:
+            if n < 2 or not active[b, a]:
                 continue
             x, y = position[b, a, 0], position[b, a, 1]
             way, along = path[row, a], arc[row, a]
@@ -132,11 +132,12 @@ def track(
             segment[row, a], progress[row, a] = k, s
             remaining[b, a] = along[n - 1] - s
             ex, ey = way[n - 1, 0] - x, way[n - 1, 1] - y
-            if n > 1 and ex * ex + ey * ey > cut * cut:
-                target[b, a] = _farthest(way, along, n, k, s + ahead[row, a], x, y, cut)
+            if ex * ex + ey * ey > cut * cut:
+                qx, qy = _farthest(way, along, n, k, s + ahead[row, a], x, y, cut)
+                target[b, a, 0], target[b, a, 1] = qx, qy
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True)
 def advanced(
     way: FloatArray, along: FloatArray, n: int, k: int, s: float, x: float, y: float, cut: float
 ) -> tuple[int, float]:
@@ -162,7 +163,7 @@ def advanced(
     return k, s
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _farthest(
     way: FloatArray, along: FloatArray, n: int, k: int, reach: float, x: float, y: float, cut: float
 ) -> tuple[float, float]:
@@ -188,14 +189,14 @@ def _farthest(
     return qx, qy
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _point(way: FloatArray, along: FloatArray, j: int, s: float) -> tuple[float, float]:
     """The point of segment j at arc length s."""
     t = (s - along[j]) / (along[j + 1] - along[j])
     return way[j, 0] + t * (way[j + 1, 0] - way[j, 0]), way[j, 1] + t * (way[j + 1, 1] - way[j, 1])
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, error_model="numpy", nogil=True)
 def _straight(
     way: FloatArray, first: int, last: int, x: float, y: float, cx: float, cy: float, cut: float
 ) -> bool:

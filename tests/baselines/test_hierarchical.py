@@ -1,0 +1,182 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from benchnav_baselines.hierarchical import Hierarchical, OmplOrca, OmplPure
+from pydantic import Field
+
+from benchnav.errors import ConfigError, UnknownPluginError
+from benchnav.navigation.configure import make
+from benchnav.navigation.controller import Controller
+from benchnav.navigation.map import Map
+from benchnav.navigation.navigator import Need, PluginConfig
+from benchnav.navigation.planner import UNSOLVED, Plan, Planner
+from benchnav.plugins import CONTROLLERS, NAVIGATORS, PLANNERS
+from tests.baselines.crowds import answers, briefing, joined, keyed, one_world, permuted
+
+BOUNDS = (-20.0, -20.0, 20.0, 20.0)
+
+
+class Detour(Planner):
+    """Start, a random point, goal."""
+
+    class Config(PluginConfig):
+        fails: bool = False
+        spread: float = Field(1.0, ge=0)
+        timed: bool = False
+
+    def __init__(self, config=None):
+        super().__init__(config)
+        self.calls = []
+
+    @property
+    def reproducible(self):
+        return not self.config.timed
+
+    def plan(self, map, start, goal, radius, tolerance, rng):
+        self.calls.append((map.revision, tuple(start), tuple(goal), radius, tolerance))
+        if self.config.fails:
+            return Plan(UNSOLVED, False, 3, "blocked")
+        middle = (start + goal) / 2 + self.config.spread * rng.random(2)
+        return Plan(np.array([start, middle, goal]), True, 3)
+
+
+class Spin(Controller):
+    """A controller that answers twists."""
+
+    command = "twist"
+    needs = frozenset({Need.RAYS})
+
+    def steer(self, observation, guide):
+        return np.ones((*observation.active.shape, 2))
+
+
+@pytest.fixture(autouse=True)
+def stubs(monkeypatch):
+    for registry, name, thing in (
+        (PLANNERS, "detour", Detour),
+        (CONTROLLERS, "spin", Spin),
+    ):
+        monkeypatch.setitem(registry._local, name, (thing, name))
+
+
+def stand(agents, goal, map=None, **options):
+    """(briefing, observation) of one world whose agents stand on the x axis."""
+    start = np.column_stack([np.arange(agents) * 2.0, np.zeros(agents)])
+    map = Map(BOUNDS, ()) if map is None else map
+    told = briefing(start, goal, map=map, **options)
+    _, seen = one_world(0, agents, mover=0)
+    changes = {"position": start[None], "goal": told.goal[None], "maps": (map,)}
+    return told, replace(seen, neighbours=None, edges=None, **changes)
+
+
+def test_it_goes_to_where_its_plan_leads():
+    told, seen = stand(1, [(6.0, 0.0)])
+    navigator = make(NAVIGATORS, {"type": "hierarchical", "planner": "detour"})
+    command = answers(navigator, [told], seen)[0, 0]
+    middle = navigator.plans[0][0].path[1]
+    np.testing.assert_allclose(command, middle / np.hypot(*middle), atol=1e-9)
+
+
+def test_the_planner_is_told_what_the_agents_are_told():
+    told, seen = stand(2, [(6.0, 0.0), (0.0, 5.0)], radius=0.25)
+    navigator = Hierarchical(Hierarchical.Config(planner="detour"))
+    answers(navigator, [told], seen)
+    assert navigator.planner.calls == [
+        (0, (0.0, 0.0), (6.0, 0.0), 0.25, 0.2),
+        (0, (2.0, 0.0), (0.0, 5.0), 0.25, 0.2),
+    ]
+
+
+def test_without_a_plan_the_goal_is_the_target_and_the_reason_is_kept():
+    told, seen = stand(1, [(0.0, 6.0)])
+    spec = {"type": "detour", "fails": True}
+    navigator = Hierarchical(Hierarchical.Config(planner=spec))
+    np.testing.assert_allclose(answers(navigator, [told], seen), [[(0.0, 1.0)]])
+    assert navigator.plans[0][0].reason == "blocked"
+
+
+@pytest.mark.parametrize(
+    ("replan", "times"),
+    [("never", []), ("map-change", [0.6]), ({"every": 0.4}, [0.4, 0.6, 1.0])],
+)
+def test_when_it_plans_again(replan, times):
+    """The map changes at 0.6 s; what is planned then starts where the agent is."""
+    told, seen = stand(1, [(6.0, 0.0)])
+    navigator = Hierarchical(Hierarchical.Config(planner="detour", replan=replan))
+    navigator.reset([told], seen.rows)
+    planned = []
+    for k in range(7):
+        map = Map(BOUNDS, (), revision=int(k >= 3))
+        position = np.array([[(0.1 * k, 0.0)]])
+        before = len(navigator.planner.calls)
+        navigator.act(replace(seen, time=np.array([k * 0.2]), position=position, maps=(map,)))
+        for call in navigator.planner.calls[before:]:
+            planned.append(round(k * 0.2, 1))
+            assert call[0] == map.revision
+            assert call[1] == tuple(position[0, 0])
+    assert planned == times
+
+
+def test_a_failed_new_plan_leaves_the_old_path():
+    told, seen = stand(1, [(6.0, 0.0)])
+    navigator = Hierarchical(Hierarchical.Config(planner="detour"))
+    first = answers(navigator, [told], seen)
+    navigator.planner.config = Detour.Config(fails=True)
+    after = navigator.act(replace(seen, maps=(Map(BOUNDS, (), revision=1),)))
+    np.testing.assert_array_equal(first, after)
+    assert not navigator.plans[0][0].solved
+
+
+def test_agents_that_are_done_are_not_planned_for_again():
+    told, seen = stand(2, [(6.0, 0.0), (0.0, 5.0)])
+    navigator = Hierarchical(Hierarchical.Config(planner="detour"))
+    answers(navigator, [told], seen)
+    active = np.array([[False, True]])
+    navigator.act(replace(seen, active=active, maps=(Map(BOUNDS, (), revision=1),)))
+    assert [call[0] for call in navigator.planner.calls] == [0, 0, 1]
+
+
+def test_batch_rows_and_numbering_do_not_matter():
+    worlds = []
+    for w in range(3):
+        told, seen = one_world(w, 5)
+        map = Map(BOUNDS, ())
+        worlds.append((replace(told, map=map), replace(seen, maps=(map,))))
+    told, seen = zip(*worlds, strict=True)
+
+    def fresh():
+        parts = {"planner": "detour", "controller": {"type": "orca", "margin": 0.02}}
+        return Hierarchical(Hierarchical.Config(**parts))
+
+    together = answers(fresh(), told, joined(seen))
+    order = np.array([4, 2, 0, 1, 3])
+    for w, (one, view) in enumerate(worlds):
+        alone = answers(fresh(), [replace(one, rng=keyed(w))], view)
+        np.testing.assert_array_equal(alone[0], together[w])
+        other, shuffled = permuted(replace(one, rng=keyed(w)), view, order)
+        np.testing.assert_array_equal(answers(fresh(), [other], shuffled)[0], together[w, order])
+
+
+def test_a_pair_needs_and_gives_what_its_parts_need_and_give():
+    spin = Hierarchical(Hierarchical.Config(planner="detour", controller="spin"))
+    assert spin.required == {Need.MAP, Need.RAYS}
+    assert spin.command == "twist"
+    assert Hierarchical.command == "velocity"
+    timed = Hierarchical(Hierarchical.Config(planner={"type": "detour", "timed": True}))
+    assert spin.reproducible
+    assert not timed.reproducible
+    orca = OmplOrca(OmplOrca.Config(planner="detour", orca={"time_horizon": 2.5}))
+    assert orca.required == {Need.MAP, Need.NEIGHBOURS, Need.EDGES}
+    assert orca.controller.config.time_horizon == 2.5
+    pure = OmplPure(OmplPure.Config(planner="detour"))
+    assert pure.required == {Need.MAP}
+
+
+def test_wrong_parts_are_refused_by_name():
+    with pytest.raises(ConfigError, match=r"^planner: .*'detour' has no parameter 'fail'.*'fails'"):
+        Hierarchical(Hierarchical.Config(planner={"type": "detour", "fail": True}))
+    with pytest.raises(UnknownPluginError, match="There is no controller 'orcaa'"):
+        Hierarchical(Hierarchical.Config(planner="detour", controller="orcaa"))
+    with pytest.raises(ConfigError, match="must be 'never' or 'map-change', or a valid dictionary"):
+        make(NAVIGATORS, {"type": "hierarchical", "replan": 3})
