@@ -94,7 +94,7 @@ def _facing(
         c = capsules[p]
         x0, y0, x1, y1 = c.x0 - a.x, c.y0 - a.y, c.x1 - a.x, c.y1 - a.y
         reach = own + c.r
-        if c.r == 0.0 and y0 * (x1 - x0) - x0 * (y1 - y0) > 0.0:
+        if c.r == 0.0 and x0 * (y1 - y0) - y0 * (x1 - x0) > 0.0:
             continue
         if min(x0, x1) > limit + reach or max(x0, x1) < -limit - reach:
             continue
