@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -60,6 +60,7 @@ def test_a_diagonal_wall_parts_the_room():
     assert sorted(area(loop) for loop in outline.loops) == [-3.0, -3.0]
 
 
+@settings(deadline=None)  # the first call imports
 @given(grids)
 def test_every_edge_of_a_free_cell_is_traced_once(blocked):
     traced = [
@@ -72,6 +73,7 @@ def test_every_edge_of_a_free_cell_is_traced_once(blocked):
     assert count == sum(map(len, parts))
 
 
+@settings(deadline=None)  # the first call imports
 @given(grids)
 def test_vertices_are_corners_and_areas_add_up(blocked):
     loops = [loop for outline in outlines(blocked) for loop in outline.loops]
@@ -82,6 +84,7 @@ def test_vertices_are_corners_and_areas_add_up(blocked):
     assert sum(map(area, loops)) == pytest.approx(-float((~blocked).sum()))
 
 
+@settings(deadline=None)  # the first call imports
 @given(grids)
 def test_a_clockwise_loop_of_free_cells_never_joins_cells_that_touch_at_a_corner(blocked):
     """Each clockwise loop bounds 4-connected free cells: it visits no lattice point twice

@@ -1,0 +1,143 @@
+import shutil
+
+import numpy as np
+import pytest
+import yaml
+
+from benchnav.errors import MapError, UsageError
+from benchnav.scenario.importers import import_movingai, import_ros_map, write_scenario
+from benchnav.scenario.load import load_scenario
+from benchnav.scenario.occupancy import occupancy_solids
+from tests.importers.data import published
+
+MAP = "type octile\nheight 4\nwidth 5\nmap\n.....\n.@T..\nG.OW.\n@...S\n"
+QUERIES = [
+    (0, (0, 0), (4, 3)), (1, (0, 0), (1, 0)), (1, (0, 2), (4, 3)), (1, (0, 2), (1, 2)),
+    (1, (3, 0), (3, 0)), (2, (4, 0), (4, 1)),
+]  # fmt: skip
+
+
+@pytest.fixture
+def tiny(tmp_path):
+    (tmp_path / "from").mkdir()
+    path = tmp_path / "from" / "Tiny Map!.map"
+    path.write_text(MAP)
+    rows = [
+        f"{bucket}\t{path.name}\t5\t4\t{a}\t{b}\t{c}\t{d}\t1" for bucket, (a, b), (c, d) in QUERIES
+    ]
+    path.with_suffix(".scen").write_text("\n".join(["version 1", *rows, ""]))
+    return path
+
+
+@pytest.fixture
+def ros(tmp_path):
+    folder = tmp_path / "lab"
+    (folder / "images").mkdir(parents=True)
+    (folder / "images" / "lab.pgm").write_bytes(
+        b"P5\n40 20\n255\n" + bytes([254] * 790) + bytes(5) + bytes([205] * 5)
+    )
+    path = folder / "lab.yaml"
+    path.write_text(
+        "image: images/lab.pgm\nresolution: 0.5\norigin: [1, 2, 0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    return path
+
+
+def test_the_first_queries_with_starts_and_goals_of_their_own(tiny):
+    mapping = import_movingai(tiny, tiny.with_suffix(".scen"), agents=3)
+    (team,) = mapping["teams"]
+    assert team["count"] == 3
+    assert team["start"]["points"] == [[0.5, 3.5], [0.5, 1.5], [4.5, 3.5]]
+    assert team["goal"]["points"] == [[4.5, 0.5], [1.5, 1.5], [4.5, 2.5]]
+    assert team["radius"] == pytest.approx(0.3)
+    assert mapping["bounds"] == [0.0, 0.0, 5.0, 4.0]
+    one = import_movingai(tiny, tiny.with_suffix(".scen"), agents=1, bucket=2, cell=2.0)
+    assert one["teams"][0]["start"]["points"] == [[9.0, 7.0]]
+    assert one["teams"][0]["radius"] == pytest.approx(0.6)
+
+
+def test_what_cannot_be_asked_for(tiny, tmp_path):
+    scen = tiny.with_suffix(".scen")
+    with pytest.raises(MapError, match=r"4 queries that share .*; there are 3\. Ask for fewer"):
+        import_movingai(tiny, scen, agents=4)
+    with pytest.raises(MapError, match=r"2 queries in bucket 7 .* there are 0"):
+        import_movingai(tiny, scen, agents=2, bucket=7)
+    with pytest.raises(UsageError, match=r"A bucket is one of a \.scen file; got 1"):
+        import_movingai(tiny, bucket=1)
+    with pytest.raises(UsageError, match="agents must be ≥ 1; got 0"):
+        import_movingai(tiny, agents=0)
+    with pytest.raises(UsageError, match="radius must be > 0 m; got -1"):
+        import_movingai(tiny, radius=-1)
+    full = tmp_path / "full.map"
+    full.write_text("type octile\nheight 1\nwidth 1\nmap\n@\n")
+    with pytest.raises(MapError, match="must have a free cell"):
+        import_movingai(full)
+
+
+def test_what_is_written_loads_alone(tiny, tmp_path):
+    out = tmp_path / "to" / "deep" / "tiny.yaml"
+    files = write_scenario(import_movingai(tiny, tiny.with_suffix(".scen"), agents=3), out)
+    assert files == [out, out.parent / tiny.name]
+    shutil.rmtree(tiny.parent)
+    scenario = load_scenario(out)
+    assert scenario.name == "movingai/tiny-map"
+    assert yaml.safe_load(out.read_text())["walls"][0]["shape"]["file"] == tiny.name
+    solids, bounds = occupancy_solids(out.parent / tiny.name, "movingai")
+    assert bounds == tuple(scenario.bounds)
+    assert sum(len(s.capsules) for s in solids) > 4
+
+
+def test_a_ros_map_takes_its_image_along(ros, tmp_path):
+    out = tmp_path / "to" / "lab-scenario.yaml"
+    files = write_scenario(import_ros_map(ros, agents=4), out)
+    assert [f.name for f in files] == ["lab-scenario.yaml", "lab.yaml", "lab.pgm"]
+    shutil.rmtree(ros.parent)
+    scenario = load_scenario(out)
+    assert scenario.name == "ros/lab"
+    assert scenario.bounds == (1.0, 2.0, 21.0, 12.0)
+    solids, _ = occupancy_solids(out.parent / "lab.yaml", "ros")
+    assert np.vstack([s.capsules for s in solids])[:, :2].max(axis=0).tolist() == [21.0, 12.0]
+    assert (
+        "unknown_is_free" not in import_ros_map(tmp_path / "to" / "lab.yaml")["walls"][0]["shape"]
+    )
+
+
+def test_nothing_is_overwritten_unless_forced(tiny, tmp_path):
+    out = tmp_path / "to" / "tiny.yaml"
+    mapping = import_movingai(tiny)
+    write_scenario(mapping, out)
+    before = out.read_text()
+    with pytest.raises(UsageError, match=r"tiny\.yaml, .*Map!\.map must not exist yet"):
+        write_scenario({**mapping, "title": "other"}, out)
+    assert out.read_text() == before
+    write_scenario({**mapping, "title": "other"}, out, force=True)
+    assert "other" in out.read_text()
+
+
+def test_beside_its_map_a_scenario_copies_nothing(ros, tiny):
+    files = write_scenario(import_movingai(tiny), tiny.parent / "tiny.yaml")
+    assert files == [tiny.parent / "tiny.yaml", tiny]
+    with pytest.raises(UsageError, match=r"lab\.yaml is the map's own name"):
+        write_scenario(import_ros_map(ros), ros)
+
+
+def test_where_nothing_can_be_written(tiny, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(UsageError, match="must be writable"):
+        write_scenario(import_movingai(tiny), tmp_path / "file" / "tiny.yaml")
+
+
+@pytest.mark.parametrize("name", ["room-32-32-4", "maze-32-32-2", "Berlin_1_256"])
+def test_published_movingai_maps_become_scenarios(name, tmp_path):
+    path = published(f"movingai/{name}.map")
+    scen = published(f"movingai/{name}-even-1.scen")
+    out = tmp_path / "scenario.yaml"
+    write_scenario(import_movingai(path, scen, agents=20), out)
+    assert load_scenario(out).teams[0].count == 20
+
+
+@pytest.mark.parametrize("name", ["depot", "tb3_sandbox", "turtlebot3/map", "testmap"])
+def test_published_ros_maps_become_scenarios(name, tmp_path):
+    write_scenario(import_ros_map(published(f"ros_maps/{name}.yaml")), tmp_path / "scenario.yaml")
+    assert load_scenario(tmp_path / "scenario.yaml").teams[0].count == 20
