@@ -70,19 +70,20 @@ _KINDS = ("uniform", "normal", "choice", "integers")
 
 
 def _kind(value: Any) -> str | None:
+    """The tag, which is no key, so that places of errors can be told from tags."""
     if isinstance(value, Spec):
-        return type(value).__name__.lower()
+        return f"a {type(value).__name__.lower()}"
     if isinstance(value, dict):
-        return next((kind for kind in _KINDS if kind in value), None)
-    return None if isinstance(value, list | tuple) else "number"
+        return next((f"a {kind}" for kind in _KINDS if kind in value), None)
+    return None if isinstance(value, list | tuple) else "a number"
 
 
 Scalar = Annotated[
-    Annotated[Number, Tag("number")]
-    | Annotated[Uniform, Tag("uniform")]
-    | Annotated[Normal, Tag("normal")]
-    | Annotated[Choice, Tag("choice")]
-    | Annotated[Integers, Tag("integers")],
+    Annotated[Number, Tag("a number")]
+    | Annotated[Uniform, Tag("a uniform")]
+    | Annotated[Normal, Tag("a normal")]
+    | Annotated[Choice, Tag("a choice")]
+    | Annotated[Integers, Tag("a integers")],
     Discriminator(
         _kind,
         custom_error_type="sampler",

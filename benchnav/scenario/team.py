@@ -116,7 +116,9 @@ class Team(Spec):
     heading: Literal["goal"] | Scalar = Field(
         "goal", description="at the start [rad], or goal: towards the goal"
     )
-    driver: Annotated[Driver, BeforeValidator(_named)] = Driver(type="evaluated")
+    driver: Annotated[Driver, BeforeValidator(_named, json_schema_input_type=str | Driver)] = (
+        Driver(type="evaluated")
+    )
     ignores: tuple[str, ...] = Field((), description="teams that these agents do not perceive")
 
     @property

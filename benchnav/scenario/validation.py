@@ -16,7 +16,7 @@ M = TypeVar("M", bound=BaseModel)
 Schema = dict[str, Any]
 
 _MUST_BE = {
-    "missing": "must be given",
+    "missing": "must be given", "union_tag_not_found": "must have the key `type`",
     "float_type": "must be a number", "int_type": "must be a whole number",
     "int_from_float": "must be a whole number", "bool_type": "must be true or false",
     "string_type": "must be text", "finite_number": "must be finite",
@@ -97,7 +97,8 @@ def _must_be(kind: str, context: dict[str, Any], message: str) -> str:
     if kind in _MUST_BE:
         return _MUST_BE[kind]
     if kind in _BOUND:
-        return _BOUND[kind].format(**context)
+        short = {k: f"{v:g}" if isinstance(v, float) else v for k, v in context.items()}
+        return _BOUND[kind].format(**short)
     return message[:1].lower() + message[1:].rstrip(".")
 
 
@@ -133,13 +134,22 @@ def _value(data: Any, path: Sequence[PathKey]) -> Any:
 def _real(data: Any, loc: Sequence[PathKey], kind: str) -> tuple[PathKey, ...]:
     """The location without the union tags that pydantic puts into it."""
     path: list[PathKey] = []
+    tag = _tag(data)
     for index, key in enumerate(loc):
-        if _holds(data, key):
+        if key == tag:
+            tag = None  # a union's tag comes first and may be the name of a key as well
+        elif _holds(data, key):
             data = data[key]
+            tag = _tag(data)
             path.append(key)
         elif kind == "missing" and index == len(loc) - 1:
             path.append(key)
     return tuple(path)
+
+
+def _tag(data: Any) -> str | None:
+    tag = data.get("type") if isinstance(data, dict) else None
+    return tag if isinstance(tag, str) else None
 
 
 @lru_cache(maxsize=32)

@@ -65,7 +65,7 @@ def shifted(shape: FloatArray, points: FloatArray) -> FloatArray:
 def clear(shapes: FloatArray, wall: Barrier, gap: float) -> BoolArray:
     """(N,) True where a shape (N, Q, 5) is farther than ``gap`` [m] ≥ 0 from every solid.
 
-    A shape is a point, a chain of capsules, or one counter-clockwise loop of edges.
+    A shape is one capsule (Q = 1) or one counter-clockwise loop of edges (Q > 2).
     """
     far: BoolArray = _clear(
         np.ascontiguousarray(shapes), wall.capsules, wall.first, wall.hollow, gap
@@ -98,10 +98,11 @@ def _apart(shape: FloatArray, capsules: FloatArray, gap: float) -> bool:
 @njit(cache=True)
 def _nested(shape: FloatArray, capsules: FloatArray, first: IntArray, hollow: BoolArray) -> bool:
     """One holds the other; where their edges are apart, one point of each decides that."""
+    closed = len(shape) > 2
     for s in range(len(hollow)):
         edges = capsules[first[s] : first[s + 1]]
         inside = _winding(shape[0, 0], shape[0, 1], edges) + (1 if hollow[s] else 0)
-        if inside > 0 or _winding(edges[0, 0], edges[0, 1], shape) > 0:
+        if inside > 0 or (closed and _winding(edges[0, 0], edges[0, 1], shape) > 0):
             return True
     return False
 

@@ -1,0 +1,72 @@
+"""The placement kernel against shapely."""
+
+import numpy as np
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from benchnav.arena.solid import Kind, Solid
+from benchnav.geometry.rotation import rotated
+from benchnav.world.draw_gap import barrier, clear, joined, point_shapes, shifted
+from benchnav.world.draw_solid import bounds_wall
+from tests.reference import clearance as slow
+
+_PLACE = st.tuples(st.floats(-4, 4), st.floats(-4, 4)).map(np.array)
+
+
+@st.composite
+def solids(draw):
+    """Discs, turned boxes, boxes with a hole, thin walls."""
+    at = draw(_PLACE)
+    size = draw(st.floats(0.2, 2.0))
+    kind = draw(st.sampled_from(["disc", "box", "frame", "line"]))
+    turn = draw(st.floats(0, 6.2))
+    square = rotated(size * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]]), turn)
+    loops = {
+        "disc": (),
+        "box": (square,),
+        "frame": (square, 0.8 * square[::-1]),
+        "line": (rotated(size * np.array([[-1, 0], [0, 0.5], [1, 0], [0, 0.5]]), turn),),
+    }[kind]
+    radius = size if kind == "disc" else 0.0
+    return Solid(Kind.WALL, loops, (0.0, 0.0), radius).moved(at)
+
+
+@st.composite
+def shapes(draw):
+    """Points, tracks and small boxes about the origin."""
+    kind = draw(st.sampled_from(["point", "track", "box"]))
+    if kind == "point":
+        return np.zeros((1, 5))
+    if kind == "track":
+        end = draw(_PLACE)
+        return np.array([[0.0, 0.0, *end, draw(st.floats(0.1, 1.0))]])
+    size = draw(st.floats(0.1, 5.0))
+    return Solid(Kind.STATIC, (size * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]]),)).capsules
+
+
+@settings(max_examples=300, deadline=None)
+@given(st.lists(solids(), max_size=4), shapes(), _PLACE, st.floats(0, 2), st.booleans())
+def test_agrees_with_shapely(walls, shape, place, gap, walled):
+    if walled:
+        walls = [bounds_wall((-5, -5, 5, 5)), *walls]
+    placed = shifted(shape, place[None])
+    true = slow.gap(placed[0], walls)
+    assume(abs(true - gap) > 1e-3)  # shapely's discs are polygons
+    assert clear(placed, barrier(walls), gap)[0] == (true > gap)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.lists(solids(), max_size=3), st.lists(solids(), max_size=3), _PLACE, st.floats(0, 1))
+def test_clear_of_joined_is_clear_of_both(some, more, place, gap):
+    shape = point_shapes(place[None])
+    both = joined(barrier(some), barrier(more))
+    apart = [clear(shape, barrier(part), gap)[0] for part in (some, more)]
+    assert clear(shape, both, gap)[0] == all(apart)
+
+
+def test_every_shape_is_judged_for_itself():
+    points = np.array([[0.0, 0.0], [3.0, 0.0], [0.6, 0.0]])
+    wall = barrier([Solid(Kind.STATIC, (), (0.0, 0.0), 0.5)])
+    assert clear(point_shapes(points), wall, 0.0).tolist() == [False, True, True]
+    assert clear(point_shapes(points), wall, 0.2).tolist() == [False, True, False]
+    assert clear(point_shapes(points), barrier([]), 9.0).all()

@@ -1,0 +1,57 @@
+"""Free space: both forms agree, and neither calls joined what is not."""
+
+import numpy as np
+import pytest
+
+from benchnav.arena.solid import Kind, Solid
+from benchnav.scenario import catalogue
+from benchnav.world.build import build
+from benchnav.world.draw_gap import barrier
+from benchnav.world.draw_solid import bounds_wall
+from benchnav.world.draw_space import JoinedSpace, PartedSpace
+from tests.reference import clearance as slow
+
+BOUNDS = (-10.0, -10.0, 10.0, 10.0)
+
+
+def ring(center, inner, outer):
+    square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]])
+    return Solid(Kind.WALL, (outer * square + center, (inner * square + center)[::-1]))
+
+
+def test_an_enclosed_yard_is_apart():
+    walls = [bounds_wall(BOUNDS), ring((0, 0), 2, 3)]
+    space = PartedSpace(barrier(walls), BOUNDS, True, 0.5)
+    yard, wall, outside, edge = space.labels(
+        np.array([[0, 0], [2.5, 0], [-8, 8], [9.6, 0]], dtype=float)
+    )
+    assert yard >= 0
+    assert outside >= 0
+    assert yard != outside
+    assert wall == edge == -1
+
+
+def test_nothing_is_free_where_the_disc_does_not_fit():
+    walls = [bounds_wall((0, 0, 1, 1))]
+    space = PartedSpace(barrier(walls), (0, 0, 1, 1), True, 0.6)
+    assert space.labels(np.array([[0.5, 0.5]]))[0] == -1
+
+
+def test_unwalled_arenas_may_be_left():
+    bar = Solid(Kind.WALL, (np.array([[-1, -10], [1, -10], [1, 10], [-1, 10.0]]),))
+    space = PartedSpace(barrier([bar]), BOUNDS, False, 0.5)
+    left, right = space.labels(np.array([[-5, 0], [5, 0]], dtype=float))
+    assert left == right >= 0
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_both_forms_agree_among_convex_solids_that_are_far_apart(seed):
+    world = build(catalogue.find("leaders/static"), "validation", seed)
+    wall = barrier(world.solids)
+    points = np.random.default_rng(seed).uniform(-10, 10, (400, 2))
+    one = JoinedSpace(wall, 0.5).labels(points)
+    other = PartedSpace(wall, world.bounds, True, 0.5).labels(points)
+    true = slow.clearances(points, world.solids)
+    sure = np.abs(true - 0.5) > 0.005
+    np.testing.assert_array_equal(one[sure], other[sure])
+    np.testing.assert_array_equal(one[sure] >= 0, true[sure] > 0.5)
