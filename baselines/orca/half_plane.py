@@ -8,7 +8,7 @@ are relative to the agent. Formulas: van den Berg, Guy, Lin and Manocha 2011,
 
 import math
 
-from numba import njit
+from benchnav.kernels import kernel
 
 from .shadow import edge_shadow
 
@@ -17,7 +17,7 @@ COVERED = 1e-5  # [m/s] an edge this little outside an earlier half-plane adds n
 HalfPlane = tuple[float, float, float, float]
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def neighbour_half_plane(
     px: float, py: float, vx: float, vy: float, ux: float, uy: float,
     reach: float, rate: float, step_rate: float, share: float,
@@ -50,7 +50,7 @@ def neighbour_half_plane(
     return ux + share * (along * dx - vx), uy + share * (along * dy - vy), dx, dy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _normal(
     wx: float, wy: float, w: float, px: float, py: float, distance2: float
 ) -> tuple[float, float]:
@@ -63,7 +63,7 @@ def _normal(
     return 1.0, 0.0
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def edge_half_plane(
     ax: float, ay: float, bx: float, by: float,
     before_x: float, before_y: float, after_x: float, after_y: float,
@@ -111,14 +111,14 @@ def edge_half_plane(
     )  # fmt: skip
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _corner(x: float, y: float) -> HalfPlane:
     """No nearer to a corner that is touched."""
     length = math.sqrt(x * x + y * y)
     return 0.0, 0.0, -y / length, x / length
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def covers(
     half_plane: HalfPlane, ax: float, ay: float, bx: float, by: float, radius: float, rate: float
 ) -> bool:

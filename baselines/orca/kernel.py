@@ -6,10 +6,10 @@ to the members of a tuple on every access.
 """
 
 import numpy as np
-from numba import njit
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
+from benchnav.kernels import kernel
 
 from .half_plane import covers, edge_half_plane, neighbour_half_plane
 from .program import least_excess, nearest_permitted
@@ -18,7 +18,7 @@ _MOVER = int(Kind.DYNAMIC)
 OWN = 9  # columns of an agent's own state: x, y, vx, vy, wanted vx, vy, radius, limit, 1 / step
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def edge_rows(
     i: int, px: float, py: float, vx: float, vy: float, radius: float, rate: float,
     start: FloatArray, end: FloatArray, before: FloatArray, after: FloatArray,
@@ -48,7 +48,7 @@ def edge_rows(
     return n
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def avoid(
     low: int, high: int, own: FloatArray, active: BoolArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,

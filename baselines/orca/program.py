@@ -7,21 +7,20 @@ den Berg et al. 2011, section 5, use it; half-planes come in a fixed order
 
 import math
 
-from numba import njit
-
 from benchnav.arrays import FloatArray
+from benchnav.kernels import kernel
 
 PARALLEL = 1e-5  # sine of the angle below which two boundaries count as parallel
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def excess(planes: FloatArray, i: int, x: float, y: float) -> float:
     """How far [m/s] (x, y) lies outside half-plane i; negative inside."""
     out: float = planes[i, 2] * (planes[i, 1] - y) - planes[i, 3] * (planes[i, 0] - x)
     return out
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def on_boundary(
     planes: FloatArray, i: int, speed: float, wx: float, wy: float, farthest: bool
 ) -> tuple[bool, float, float]:
@@ -57,7 +56,7 @@ def on_boundary(
     return True, x + t * dx, y + t * dy
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def nearest_permitted(
     planes: FloatArray, n: int, speed: float, wx: float, wy: float, farthest: bool
 ) -> tuple[int, float, float]:
@@ -81,7 +80,7 @@ def nearest_permitted(
     return n, x, y
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def least_excess(
     planes: FloatArray, n: int, fixed: int, first: int, speed: float, x: float, y: float,
     projected: FloatArray,
@@ -103,7 +102,7 @@ def least_excess(
     return x, y
 
 
-@njit(cache=True, error_model="numpy")
+@kernel
 def _bisectors(planes: FloatArray, fixed: int, i: int, projected: FloatArray) -> int:
     """Where half-plane i is exceeded no less than each earlier one; returns how many rows."""
     for j in range(fixed):

@@ -5,10 +5,10 @@ path comes back on the other side of a wall is not taken to be there already.
 """
 
 import numpy as np
-from numba import njit
 
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
+from benchnav.kernels import kernel
 from benchnav.navigation.controller import Guide
 from benchnav.navigation.observation import Observation
 from benchnav.threads import run_rows
@@ -96,7 +96,7 @@ def _grown(old: AnyArray, shape: tuple[int, ...]) -> AnyArray:
     return new
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def track(
     low: int, high: int, rows: IntArray, active: BoolArray, position: FloatArray,
     path: FloatArray, arc: FloatArray, count: IntArray, ahead: FloatArray, cut: float,
@@ -137,7 +137,7 @@ def track(
                 target[b, a, 0], target[b, a, 1] = qx, qy
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def advanced(
     way: FloatArray, along: FloatArray, n: int, k: int, s: float, x: float, y: float, cut: float
 ) -> tuple[int, float]:
@@ -163,7 +163,7 @@ def advanced(
     return k, s
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def _farthest(
     way: FloatArray, along: FloatArray, n: int, k: int, reach: float, x: float, y: float, cut: float
 ) -> tuple[float, float]:
@@ -189,14 +189,14 @@ def _farthest(
     return qx, qy
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def _point(way: FloatArray, along: FloatArray, j: int, s: float) -> tuple[float, float]:
     """The point of segment j at arc length s."""
     t = (s - along[j]) / (along[j + 1] - along[j])
     return way[j, 0] + t * (way[j + 1, 0] - way[j, 0]), way[j, 1] + t * (way[j + 1, 1] - way[j, 1])
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
+@kernel
 def _straight(
     way: FloatArray, first: int, last: int, x: float, y: float, cx: float, cy: float, cut: float
 ) -> bool:
