@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.sweep import segment_distance2
+from benchnav.kernels import kernel
 
 SLACK = 1e-8  # [m] of overlap that counts as touching: rounding must not close a passage
 _MAX_SIDE = 512  # cells along an axis
@@ -46,7 +46,7 @@ def capsule_grid(capsules: FloatArray, radius: float) -> CapsuleGrid:
     return CapsuleGrid(capsules, reach, start, item, x, y, side, nx, ny)
 
 
-@njit(cache=True)
+@kernel
 def _sorted(
     capsules: FloatArray, reach: FloatArray, x: float, y: float, side: float, nx: int, ny: int
 ) -> tuple[IntArray, IntArray]:
@@ -82,7 +82,7 @@ def _sorted(
     return start, item
 
 
-@njit(cache=True)
+@kernel
 def is_clear(grid: CapsuleGrid, ax: float, ay: float, bx: float, by: float) -> bool:
     """True where the disc may go straight from a to b, touching allowed."""
     if ax > bx:
@@ -110,7 +110,7 @@ def is_clear(grid: CapsuleGrid, ax: float, ay: float, bx: float, by: float) -> b
     return True
 
 
-@njit(cache=True)
+@kernel
 def nearby(grid: CapsuleGrid, x: float, y: float, radius: float) -> IntArray:
     """Capsules that may reach within ``radius`` of a point: all that do, and more, some twice."""
     side = grid.side
@@ -133,7 +133,7 @@ def nearby(grid: CapsuleGrid, x: float, y: float, radius: float) -> IntArray:
     return found
 
 
-@njit(cache=True)
+@kernel
 def longer(rows: FloatArray) -> FloatArray:
     """The same rows with room for twice as many."""
     more = np.empty((2 * rows.shape[0], rows.shape[1]))

@@ -9,11 +9,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid, longer, nearby
+from benchnav.kernels import kernel
 
 TWO_PI = 2.0 * math.pi
 _NARROW = 1e-9  # [rad] narrower arcs are none
@@ -72,7 +72,7 @@ def _circles(capsules: FloatArray, reach: FloatArray) -> FloatArray:
     return np.unique(ends, axis=0)
 
 
-@njit(cache=True)
+@kernel
 def _free_parts(grid: CapsuleGrid, circles: FloatArray) -> FloatArray:
     """(N, 5) x, y, radius, low, width of the free parts of circles (C, 3)."""
     rows = np.empty((16, 5))
@@ -105,7 +105,7 @@ def _free_parts(grid: CapsuleGrid, circles: FloatArray) -> FloatArray:
     return rows[:count]
 
 
-@njit(cache=True)
+@kernel
 def _crossings(grid: CapsuleGrid, near: IntArray, x: float, y: float, radius: float) -> FloatArray:
     """Angles at which a circle may enter or leave a grown capsule, rising, the first twice.
 
@@ -147,7 +147,7 @@ def _crossings(grid: CapsuleGrid, near: IntArray, x: float, y: float, radius: fl
     return angles[: size + 1]
 
 
-@njit(cache=True)
+@kernel
 def _add(angles: FloatArray, count: int, facing: float, cosine: float) -> int:
     """Appends facing ± arccos(cosine), if there is such an angle, turned into [0, 2 pi)."""
     if abs(cosine) > 1.0 + _TANGENT:
@@ -160,7 +160,7 @@ def _add(angles: FloatArray, count: int, facing: float, cosine: float) -> int:
     return count + 2
 
 
-@njit(cache=True)
+@kernel
 def _is_free(grid: CapsuleGrid, near: IntArray, x: float, y: float) -> bool:
     for p in near:
         c, reach = grid.capsules[p], grid.reach[p] - SLACK

@@ -11,7 +11,7 @@ the goal disc, where its rim meets the boundary of free space.
 """
 
 import math
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -170,11 +170,14 @@ def geodesic_lengths(
     Raises:
         ValueError: a radius is not above 1e-8.
     """
-    spaces: dict[float, FreeSpace] = {}
+    solid = np.ascontiguousarray(capsules, np.float64).tobytes()
     lengths = np.empty(len(start))
     for a in range(len(start)):
-        size = float(radius[a])
-        if size not in spaces:
-            spaces[size] = FreeSpace(capsules, size)
-        lengths[a] = spaces[size].length(start[a], goal[a], tolerance)
+        lengths[a] = _space(solid, float(radius[a])).length(start[a], goal[a], tolerance)
     return lengths
+
+
+@lru_cache(maxsize=16)
+def _space(capsules: bytes, radius: float) -> FreeSpace:
+    """The graph of a map outlives the episode: the next one has the same walls."""
+    return FreeSpace(np.frombuffer(capsules).reshape(-1, 5), radius)

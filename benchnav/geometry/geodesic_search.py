@@ -10,10 +10,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.free_arc import TWO_PI, Arcs
+from benchnav.kernels import kernel
 
 
 class Tangents(NamedTuple):
@@ -56,7 +56,7 @@ def tangents(arcs: Arcs, rows: FloatArray) -> Tangents:
     return Tangents(first, arc, angle, arcs.center[arc] + rim, other, length)
 
 
-@njit(cache=True)
+@kernel
 def search(
     arcs: Arcs, graph: Tangents, leave: FloatArray, arrive: FloatArray,
     goal_x: float, goal_y: float, tolerance: float,
@@ -97,7 +97,7 @@ def search(
     return _found(parent, best, first, last, node)
 
 
-@njit(cache=True)
+@kernel
 def _on_one_arc(arcs: Arcs, leave: FloatArray, arrive: FloatArray) -> tuple[float, int, int]:
     """The shortest path of one arc between two links: (length, first, last); inf: none."""
     best, first, last = math.inf, -1, -1
@@ -111,7 +111,7 @@ def _on_one_arc(arcs: Arcs, leave: FloatArray, arrive: FloatArray) -> tuple[floa
     return best, first, last
 
 
-@njit(cache=True)
+@kernel
 def _beside(arcs: Arcs, graph: Tangents, links: FloatArray) -> tuple[FloatArray, IntArray]:
     """(N,) length from each node through the better link next to it on its arc; (N,) that link.
 
@@ -128,7 +128,7 @@ def _beside(arcs: Arcs, graph: Tangents, links: FloatArray) -> tuple[FloatArray,
     return length, link
 
 
-@njit(cache=True)
+@kernel
 def _found(parent: IntArray, best: float, first: int, last: int, node: int) -> Found:
     count, n = 0, node
     while n >= 0:
@@ -144,14 +144,14 @@ def _found(parent: IntArray, best: float, first: int, last: int, node: int) -> F
     return Found(best, first, last, nodes)
 
 
-@njit(cache=True)
+@kernel
 def _least(graph: Tangents, n: int, x: float, y: float, tolerance: float) -> float:
     """A path from node n to the goal is at least this long [m]."""
     dx, dy = graph.point[n, 0] - x, graph.point[n, 1] - y
     return max(0.0, math.sqrt(dx * dx + dy * dy) - tolerance)
 
 
-@njit(cache=True)
+@kernel
 def _after(graph: Tangents, arc: int, angle: float) -> int:
     """The first node of an arc that lies beyond an angle."""
     low, high = graph.first[arc], graph.first[arc + 1]
@@ -164,7 +164,7 @@ def _after(graph: Tangents, arc: int, angle: float) -> int:
     return int(low)
 
 
-@njit(cache=True)
+@kernel
 def _push(key: FloatArray, item: IntArray, count: int, value: float, what: int) -> int:
     at = count
     while at > 0 and key[(at - 1) // 2] > value:
@@ -174,7 +174,7 @@ def _push(key: FloatArray, item: IntArray, count: int, value: float, what: int) 
     return count + 1
 
 
-@njit(cache=True)
+@kernel
 def _pop(key: FloatArray, item: IntArray, count: int) -> int:
     """Removes the least key; returns how many are left."""
     count -= 1

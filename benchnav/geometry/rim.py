@@ -3,13 +3,13 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from benchnav.arrays import FloatArray
 from benchnav.geometry.capsule_grid import CapsuleGrid, is_clear, nearby
+from benchnav.kernels import kernel
 
 
-@njit(cache=True)
+@kernel
 def rim_points(grid: CapsuleGrid, x: float, y: float, radius: float) -> FloatArray:
     """(E, 2) free points [m] at ``radius`` from (x, y) that touch a capsule."""
     near = nearby(grid, x, y, radius)
@@ -30,7 +30,7 @@ def rim_points(grid: CapsuleGrid, x: float, y: float, radius: float) -> FloatArr
     return points[:kept]
 
 
-@njit(cache=True)
+@kernel
 def _on_circle(
     points: FloatArray, count: int,
     x: float, y: float, radius: float, cx: float, cy: float, reach: float,
@@ -51,7 +51,7 @@ def _on_circle(
     return count + 1
 
 
-@njit(cache=True)
+@kernel
 def _on_edge(
     points: FloatArray, count: int,
     x: float, y: float, radius: float, c: FloatArray, offset: float,

@@ -3,23 +3,23 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from benchnav.arrays import FloatArray
 from benchnav.geometry.capsule_grid import CapsuleGrid, is_clear, longer
 from benchnav.geometry.free_arc import TWO_PI, Arcs
+from benchnav.kernels import kernel
 
 _ON_ARC = 1e-12  # slack of the cosine that tells whether an arc reaches to a point of tangency
 
 
-@njit(cache=True, inline="always")
+@kernel
 def _on_arc(arcs: Arcs, k: int, ux: float, uy: float) -> bool:
     cosine: float = ux * arcs.middle[k, 0] + uy * arcs.middle[k, 1]
     least: float = arcs.spread[k] - _ON_ARC
     return cosine >= least
 
 
-@njit(cache=True)
+@kernel
 def _angle_on(arcs: Arcs, k: int, ux: float, uy: float) -> float:
     """[rad] from the beginning of arc k to the direction u, which lies on it."""
     turn: float = (math.atan2(uy, ux) - arcs.low[k]) % TWO_PI
@@ -29,7 +29,7 @@ def _angle_on(arcs: Arcs, k: int, ux: float, uy: float) -> float:
     return 0.0 if turn - width > 0.5 * (TWO_PI - width) else width
 
 
-@njit(cache=True)
+@kernel
 def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
     """(M, 5) arc i, angle on i, arc j, angle on j, length of all free tangents of two arcs."""
     rows = np.empty((256, 5))
@@ -71,7 +71,7 @@ def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
     return rows[:count]
 
 
-@njit(cache=True)
+@kernel
 def point_tangents(grid: CapsuleGrid, arcs: Arcs, px: float, py: float, short: float) -> FloatArray:
     """(L, 3) arc, angle on it, length of the free tangents from a point.
 
