@@ -38,7 +38,9 @@ class FreeSpace:
     """Where the centre of a disc of ``radius`` [m] may be among capsules (P, 5).
 
     Loops must have what is solid on their left. Touching is allowed, and so is
-    overlap of up to 1e-8 m. Tangents are found when a query first needs them.
+    overlap of up to 1e-8 m. Only edges are looked at: a place deep inside a solid
+    counts as free, though nothing leads out of it. Tangents are found when a query
+    first needs them.
 
     Raises:
         ValueError: the radius is not above 1e-8.

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, Literal
 
@@ -91,11 +92,10 @@ def _bytes(path: Path) -> bytes:
 def _load(path: Path) -> tuple[FloatArray, IntArray]:
     try:
         import trimesh
-
-        if path.suffix.lower() == ".dae":
-            import collada  # noqa: F401  trimesh needs it and would only log that it is absent
     except ImportError:
         raise MissingExtraError(f"the mesh {path}", "plan") from None
+    if path.suffix.lower() == ".dae" and find_spec("collada") is None:
+        raise MissingExtraError(f"the mesh {path}", "plan")
     try:
         scene: Any = trimesh.load_scene(str(path), process=False)
         mesh = scene.to_mesh()
