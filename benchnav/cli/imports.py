@@ -1,10 +1,69 @@
 """`benchnav import`: other projects' maps become scenario files."""
 
+from pathlib import Path
+from typing import Annotated, Any
+
 import typer
+
+from benchnav.cli.console import put
 
 import_app = typer.Typer(help="Make a scenario of a published map.", no_args_is_help=True)
 
+Out = Annotated[
+    Path,
+    typer.Option(metavar="FILE", help="Scenario file to write; the map is copied beside it."),
+]
+Agents = Annotated[int, typer.Option(metavar="N", help="How many agents.")]
+Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there.")]
 
-@import_app.callback()
-def _kinds() -> None:
-    """Formats are verbs of their own."""
+
+@import_app.command("movingai")
+def movingai(
+    map: Annotated[Path, typer.Argument(metavar="MAP", help="A .map file.")],
+    out: Out,
+    scen: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE", help="Starts and goals from this .scen file. [default: drawn]"
+        ),
+    ] = None,
+    agents: Agents = 20,
+    bucket: Annotated[
+        int | None, typer.Option(metavar="N", help="Only queries of this bucket of the .scen file.")
+    ] = None,
+    cell: Annotated[float, typer.Option(metavar="M", help="Side of a cell [m].")] = 1.0,
+    radius: Annotated[
+        float | None, typer.Option(metavar="M", help="Of an agent [m]. [default: 0.3 cells]")
+    ] = None,
+    force: Force = False,
+) -> None:
+    """A grid map of the MovingAI benchmarks."""
+    from benchnav.scenario.importers import import_movingai
+
+    said = import_movingai(map, scen, agents=agents, bucket=bucket, cell=cell, radius=radius)
+    _write(said, out, force)
+
+
+@import_app.command("ros-map")
+def ros_map(
+    map: Annotated[Path, typer.Argument(metavar="YAML", help="The map's YAML file.")],
+    out: Out,
+    agents: Agents = 20,
+    radius: Annotated[float, typer.Option(metavar="M", help="Of an agent [m].")] = 0.2,
+    unknown_is_free: Annotated[
+        bool, typer.Option("--unknown-is-free", help="Agents may enter what the map does not know.")
+    ] = False,
+    force: Force = False,
+) -> None:
+    """An occupancy map of the ROS map_server."""
+    from benchnav.scenario.importers import import_ros_map
+
+    said = import_ros_map(map, agents=agents, radius=radius, unknown_is_free=unknown_is_free)
+    _write(said, out, force)
+
+
+def _write(said: dict[str, Any], out: Path, force: bool) -> None:
+    from benchnav.scenario.importers import write_scenario
+
+    for path in write_scenario(said, out, force):
+        put(str(path))

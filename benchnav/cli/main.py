@@ -3,12 +3,12 @@
 import os
 import sys
 from collections.abc import Sequence
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 
 import benchnav
-from benchnav.cli.console import say
+from benchnav.cli.console import put, say
 from benchnav.cli.doctor import doctor
 from benchnav.cli.imports import import_app
 from benchnav.cli.leaderboard import leaderboard
@@ -52,13 +52,20 @@ app.add_typer(new_app, name="new")
 app.command("doctor")(doctor)
 
 
+def _version(asked: bool) -> None:
+    if asked:
+        put(benchnav.__version__)
+        raise typer.Exit
+
+
 @app.callback()
 def _options(
-    version: bool = typer.Option(False, "--version", help="Print the version.", is_eager=True),
+    version: Annotated[
+        bool,
+        typer.Option("--version", help="Print the version.", callback=_version, is_eager=True),
+    ] = False,
 ) -> None:
-    if version:
-        typer.echo(benchnav.__version__)
-        raise typer.Exit
+    """What stands before a verb."""
 
 
 def status(arguments: Sequence[str]) -> int:

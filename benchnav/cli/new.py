@@ -50,7 +50,7 @@ class {cls}(AgentNavigator):
 _README = """\
 # {name}
 
-A navigator for [benchnav](https://pypi.org/project/benchnav/).
+A navigator for benchnav.
 
     pip install -e .
     benchnav show {name}

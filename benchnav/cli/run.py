@@ -94,13 +94,16 @@ def _conclude(summary: "Summary", seconds: float) -> str:
     fresh = summary.stored - summary.found
     lines = [f"{summary.stored} episodes stored, {fresh} of them run in {seconds:.1f} s"]
     if fresh and seconds > 0:
-        lines[0] += f" ({fresh / seconds:.0f} a second)"
+        lines[0] += f" ({fresh / seconds:.3g} a second)"
     if summary.redraws:
         lines.append(f"{summary.redraws} draws of worlds were not solvable and drawn again")
     reasons = Counter[tuple[str, str]]()
     for cell, reason in summary.not_applicable:
         reasons[cell.entry.label, f"{reason} ({cell.track})"] += 1
-    lines += [f"n/a: {who} {why}, {n} cells" for (who, why), n in sorted(reasons.items())]
+    lines += [
+        f"n/a: {who} {why}, {n} {'cell' if n == 1 else 'cells'}"
+        for (who, why), n in sorted(reasons.items())
+    ]
     lines += [
         f"failed: {who} in {n} episodes: {why}"
         for (who, why), n in summary.failures.most_common(10)

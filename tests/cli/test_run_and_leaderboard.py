@@ -1,0 +1,125 @@
+"""From a suite to a table: results on stdout, talk on stderr."""
+
+import csv
+import io
+import json
+
+import pytest
+
+from benchnav.store.part import RESULTS_FILE
+
+
+@pytest.fixture
+def run(call, suite, tmp_path):
+    out = tmp_path / "out"
+    code, stdout, stderr = call("run", suite, "--out", out, "--workers", 0)
+    assert (code, stdout) == (0, f"{out}\n")
+    assert "tiny@1: 1 scenario × 2 tracks × 2 navigators × 2 seeds" in stderr
+    assert "8 of 8 episodes" in stderr
+    assert "8 episodes stored, 8 of them run in" in stderr
+    return out
+
+
+def test_a_second_run_finds_everything_and_a_quiet_one_says_nothing(call, suite, run):
+    code, stdout, stderr = call("run", suite, "--out", run, "--workers", 0)
+    assert "8 episodes stored, 0 of them run" in stderr
+    code, stdout, stderr = call("run", suite, "--out", run, "--workers", 0, "--quiet")
+    assert (code, stdout, stderr) == (0, f"{run}\n", "")
+
+
+@pytest.mark.parametrize("format", ["markdown", "csv", "latex", "html", "json"])
+def test_the_table_comes_in_every_format(call, run, tmp_path, format):
+    code, stdout, stderr = call("leaderboard", run, "--format", format)
+    assert (code, stderr) == (0, "")
+    assert "straight-line" in stdout
+    assert "tiny/open" in stdout
+    file = tmp_path / "table"
+    code, nothing, talk = call("leaderboard", run, "--format", format, "--out", file)
+    assert (code, nothing) == (0, "")
+    assert file.read_text().rstrip("\n") == stdout.rstrip("\n")
+    assert str(file) in talk
+
+
+def test_machines_get_a_record_per_metric(call, run):
+    rows = json.loads(call("leaderboard", run, "--format", "json")[1])
+    found = list(csv.DictReader(io.StringIO(call("leaderboard", run, "--format", "csv")[1])))
+    assert len(rows) == len(found) > 0
+    columns = {"navigator", "scenario", "track", "role", "metric", "value", "low", "high", "unit",
+               "better", "episodes", "rank_low", "rank_high"}  # fmt: skip
+    assert columns <= set(rows[0])
+    assert {row["track"] for row in rows} == {"known", "unknown"}
+
+
+def test_measuring_the_stored_episodes_again_gives_the_same_table(call, run):
+    table = call("leaderboard", run, "--format", "csv")[1]
+    assert call("leaderboard", run, "--format", "csv", "--recompute")[1] == table
+
+
+def test_one_metric_can_be_asked_for_and_a_wrong_one_is_corrected(call, run):
+    code, stdout, _ = call("leaderboard", run, "--metric", "path_length")
+    assert code == 0
+    assert "path_length" in stdout
+    assert "spl" not in stdout.split("value [low")[0]
+    code, _, stderr = call("leaderboard", run, "--metric", "path_lenght")
+    assert code == 2
+    assert "path_length" in stderr
+
+
+def test_an_unfinished_run_says_so_and_a_damaged_one_is_refused(call, run):
+    parts = sorted(run.glob("parts/*/*.seal.json"))
+    parts[0].unlink()
+    code, _, stderr = call("leaderboard", run)
+    assert code == 0
+    assert f"{run} holds 6 of 8 episodes" in stderr
+    damaged = next(iter(parts[1].parent.glob(f"*{RESULTS_FILE}")))
+    damaged.write_bytes(b"x" * damaged.stat().st_size)
+    code, stdout, stderr = call("leaderboard", run)
+    assert (code, stdout) == (1, "")
+    assert str(damaged) in stderr
+
+
+def test_what_is_no_run_is_refused(call, tmp_path):
+    code, _, stderr = call("leaderboard", tmp_path)
+    assert code == 1
+    assert "must be a run folder" in stderr
+
+
+def test_another_suites_folder_is_refused_by_both_names(call, suite, run):
+    code, _, stderr = call("run", suite, "--out", run, "--seeds", 3, "--workers", 0)
+    assert code == 1
+    assert stderr.count("tiny@1 (") == 2
+    assert "They differ in seeds" in stderr
+
+
+def test_navigators_scenarios_tracks_and_seeds_can_be_chosen(call, suite, tmp_path):
+    code, _, stderr = call(
+        "run", suite, "--out", tmp_path / "o", "--workers", 0, "--seeds", "4:5", "--navigator",
+        "random-walk", "--navigator", "orca", "--track", "known", "--scenario",
+        tmp_path / "open.yaml",
+    )  # fmt: skip
+    assert code == 0
+    assert "1 scenario × 1 track × 2 navigators × 1 seed" in stderr
+    table = call("leaderboard", tmp_path / "o")[1]
+    assert "random-walk" in table
+    assert "straight-line" not in table
+
+
+def test_failures_and_cells_that_are_n_a_are_told(call, suite, tmp_path, monkeypatch):
+    (tmp_path / "rude.py").write_text(
+        "from benchnav.navigation.navigator import Navigator, Need\n"
+        "class Rude(Navigator):\n"
+        "    def act(self, observation): raise ValueError('no')\n"
+        "class Maps(Navigator):\n"
+        "    needs = frozenset({Need.MAP})\n"
+        "    def act(self, observation): return observation.velocity\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    code, _, stderr = call(
+        "run", suite, "--out", tmp_path / "o", "--workers", 0, "--navigator", "rude:Rude",
+        "--navigator", "rude:Maps",
+    )  # fmt: skip
+    assert code == 0
+    assert "failed: rude:Rude in 4 episodes: act raised ValueError: no at t = 0 s" in stderr
+    assert "n/a: rude:Maps needs a map (unknown), 1 cell" in stderr
+    table = call("leaderboard", tmp_path / "o")[1]
+    assert "n/a (needs a map)" in table
