@@ -12,11 +12,11 @@ x0, y0, x1, y1, radius [m].
 
 import math
 from collections.abc import Sequence
+from typing import Protocol
 
 import numpy as np
 from numba import njit
 
-from benchnav.arena.solid import Solid
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
 
@@ -120,7 +120,18 @@ def inside_solid(
     return False
 
 
-def solid_index(solids: Sequence[Solid]) -> tuple[IntArray, IntArray]:
+class Outlined(Protocol):
+    """A solid, as far as it matters here (`benchnav.arena.solid.Solid`, a layer above)."""
+
+    @property
+    def loops(self) -> tuple[FloatArray, ...]: ...
+    @property
+    def capsules(self) -> FloatArray: ...
+    @property
+    def is_disc(self) -> bool: ...
+
+
+def solid_index(solids: Sequence[Outlined]) -> tuple[IntArray, IntArray]:
     """(first (S+1,), outside (S,)) for `inside_solid`.
 
     ``outside`` is 1 where the solid reaches to infinity: the inside of a walled arena
@@ -134,7 +145,7 @@ def solid_index(solids: Sequence[Solid]) -> tuple[IntArray, IntArray]:
     return first, outside
 
 
-def _reaches_to_infinity(solid: Solid) -> bool:
+def _reaches_to_infinity(solid: Outlined) -> bool:
     """True where the loops enclose a negative area by more than rounding makes of thin walls."""
     extent = float(np.ptp(np.vstack(solid.loops), axis=0).max())
     return sum(map(_area, solid.loops)) < -1e-12 * extent * extent
