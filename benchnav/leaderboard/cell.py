@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 from benchnav.leaderboard.record import Record
 
+ROUNDING = 1e-12  # what is smaller is left over from arithmetic
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -54,7 +56,7 @@ def heading(r: Record) -> Cell:
 
 def number(value: float, scale: float) -> str:
     """About three figures, with as many decimals as ``scale`` takes."""
-    if scale == 0.0 or value == 0.0:
+    if max(abs(scale), abs(value)) < ROUNDING or value == 0.0:
         return "0"
     size = math.floor(math.log10(abs(scale)))
     if size < -4 or size > 5:

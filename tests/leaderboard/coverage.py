@@ -3,7 +3,7 @@
 import numpy as np
 
 from benchnav.leaderboard.estimate import Column, Sample, estimate
-from benchnav.leaderboard.interval import resample
+from benchnav.leaderboard.interval import resample, resampled_means
 
 SHAPES = {
     "normal": (lambda rng, size: rng.normal(size=size), 0.0),
@@ -34,6 +34,14 @@ def covered(shape, worlds, tables, rng):
     return float(np.mean((found.low <= truth) & (truth <= found.high)))
 
 
+def covered_by_percentiles(shape, worlds, tables, rng):
+    """The same for the plain percentile bootstrap, which the table of docs compares with."""
+    draw, truth = SHAPES[shape]
+    means = resampled_means(draw(rng, (worlds, tables)), resample(worlds, rng))
+    low, high = np.quantile(means, [0.025, 0.975], axis=0)
+    return float(np.mean((low <= truth) & (truth <= high)))
+
+
 def covered_rate(truth, agents, correlation, worlds, tables, rng):
     """The same for a rate: agents that share a world agree more than others."""
     chance = np.full((worlds, tables), truth)
@@ -52,8 +60,12 @@ def main():
     print(f"| values of a world | {' | '.join(f'n = {n}' for n in counts)} |")
     print("| --- |" + " --- |" * len(counts))
     for shape in SHAPES:
-        shares = [covered(shape, n, 4000, np.random.default_rng(n)) for n in counts]
-        print(f"| {shape} | {' | '.join(f'{s:.3f}' for s in shares)} |")
+        for name, method in (
+            (shape, covered),
+            (f"{shape}, by percentiles", covered_by_percentiles),
+        ):
+            shares = [method(shape, n, 4000, np.random.default_rng(n)) for n in counts]
+            print(f"| {name} | {' | '.join(f'{s:.3f}' for s in shares)} |")
     for p, agents, mix in RATES:
         shares = [covered_rate(p, agents, mix, n, 4000, np.random.default_rng(n)) for n in counts]
         name = f"rate {p}, {agents} agent{'s' * (agents > 1)}, correlation {mix}"

@@ -198,7 +198,8 @@ def test_json_gives_any_name_back(name):
 @pytest.mark.parametrize(
     ("value", "text"),
     [(0.0, "0"), (0.1234, "0.12"), (0.05, "0.050"), (1.234, "1.23"), (12.34, "12.3"),
-     (1234.5, "1234"), (-3.456, "-3.46"), (0.000131, "0.00013"), (2.5e-7, "2.5e-07")],
+     (1234.5, "1234"), (-3.456, "-3.46"), (0.000131, "0.00013"), (2.5e-7, "2.5e-07"),
+     (5.2e-16, "0")],
 )  # fmt: skip
 def test_numbers_keep_about_three_figures(value, text):
     assert number(value, value) == text

@@ -1,0 +1,113 @@
+"""Takes documents apart and executes what they tell a reader to do."""
+
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+FENCE = re.compile(r"^```(?P<language>\S*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
+NAMED = re.compile(r"# file: (?P<name>\S+)\n")
+SHOWN = {"text", "markdown", "latex", "csv", "json"}  # read by people, not executed
+FEWER = ["--seeds", "1", "--workers", "0"]
+QUICKER = ["--scenario", "circle/antipodal", "--scenario", "trap/u"]
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block of a document."""
+
+    language: str
+    text: str
+    line: int
+
+
+def documents():
+    """Every document of the project."""
+    return sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("scenarios/**/*.md")])
+
+
+def blocks(document):
+    """Its fenced blocks, in order."""
+    text = document.read_text(encoding="utf-8")
+    return [
+        Block(found["language"], found["text"], text.count("\n", 0, found.start()) + 1)
+        for found in FENCE.finditer(text)
+    ]
+
+
+class Reader:
+    """Somebody who follows a document, in an empty folder."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.installed = folder / ".installed"
+        self.installed.mkdir()
+        self.path = [str(folder), str(self.installed)]
+
+    def follow(self, block):
+        """Write the file that the block is, or do what it says."""
+        named = NAMED.match(block.text)
+        if named:
+            target = self.folder / named["name"]
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(block.text, encoding="utf-8")
+        elif block.language == "python":
+            self.call([sys.executable, "-W", "error", "-c", block.text])
+        elif block.language == "shell":
+            for line in block.text.splitlines():
+                self.command(shlex.split(line, comments=True))
+        else:
+            assert block.language in SHOWN, f"line {block.line}: a {block.language!r} block"
+
+    def command(self, words):
+        match words:
+            case []:
+                return
+            case ["benchnav", "run", suite, *_]:
+                fewer = FEWER if "--seeds" not in words else FEWER[2:]
+                self.benchnav([*words[1:], *fewer, *(QUICKER if suite == "quick" else [])])
+            case ["benchnav", *rest]:
+                self.benchnav(rest)
+            case ["make", target]:
+                targets = (ROOT / "Makefile").read_text(encoding="utf-8")
+                assert re.search(rf"^{re.escape(target)}:", targets, re.MULTILINE), target
+            case ["pip", "install", "-e", project]:
+                self.install(self.folder / project)
+            case ["git", "clone", *_] | ["cd", _]:
+                return
+            case _:
+                raise AssertionError(f"{shlex.join(words)}: nobody checks this command")
+
+    def benchnav(self, arguments):
+        code = "from benchnav.cli.main import main; main()"
+        self.call([sys.executable, "-c", code, *arguments])
+
+    def call(self, command):
+        inherited = os.environ.get("PYTHONPATH", "")
+        path = os.pathsep.join([*self.path, *([inherited] if inherited else [])])
+        done = subprocess.run(
+            command, cwd=self.folder, env={**os.environ, "PYTHONPATH": path, "COLUMNS": "140"},
+            capture_output=True, text=True, timeout=300, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, f"{shlex.join(command[2:])}\n{done.stdout}{done.stderr}"
+        assert "Traceback" not in done.stderr
+
+    def install(self, project):
+        """What `pip install -e` leaves behind, without the network: metadata and a path."""
+        said = tomllib.loads((project / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+        record = self.installed / f"{said['name'].replace('-', '_')}-{said['version']}.dist-info"
+        record.mkdir()
+        metadata = f"Metadata-Version: 2.1\nName: {said['name']}\nVersion: {said['version']}\n"
+        (record / "METADATA").write_text(metadata, encoding="utf-8")
+        lines = [
+            line
+            for group, entries in said["entry-points"].items()
+            for line in (f"[{group}]", *(f"{name} = {value}" for name, value in entries.items()))
+        ]
+        (record / "entry_points.txt").write_text("\n".join(lines), encoding="utf-8")
+        self.path.append(str(project))

@@ -1,0 +1,120 @@
+"""pyproject.toml says what the folders are, and layers import downwards only."""
+
+import ast
+import tomllib
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+
+import benchnav
+
+ROOT = Path(benchnav.__file__).parents[1]
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+FOLDERS = PROJECT["tool"]["setuptools"]["package-dir"]
+LAYERS = (
+    {"cli"},
+    {"leaderboard", "testing", "viewer"},
+    {"envs"},
+    {"runner"},
+    {"store", "metrics"},
+    {"sensors"},
+    {"navigation", "world"},
+    {"scenario", "episode"},
+    {"arena"},
+    {"geometry", "plugins"},
+    {"kernels", "threads"},
+    {"errors", "arrays"},
+)
+HEIGHT = {name: -place for place, layer in enumerate(LAYERS) for name in layer}
+SOURCES = sorted((ROOT / "benchnav").rglob("*.py"))
+
+
+def packages():
+    for package, folder in FOLDERS.items():
+        yield package
+        for init in sorted((ROOT / folder).rglob("*/__init__.py")):
+            yield ".".join([package, *init.parent.relative_to(ROOT / folder).parts])
+
+
+def imports(source):
+    """Names of benchnav modules that a file imports anywhere, lazily too."""
+    for node in ast.walk(ast.parse(source.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0 and node.module:
+            yield node.module
+
+
+def test_the_packages_list_equals_the_folders():
+    assert sorted(PROJECT["tool"]["setuptools"]["packages"]) == sorted(packages())
+
+
+def test_every_folder_with_code_is_a_package():
+    for folder in FOLDERS.values():
+        for source in (ROOT / folder).rglob("*.py"):
+            assert (source.parent / "__init__.py").exists(), source
+
+
+@pytest.mark.parametrize(
+    "value",
+    sorted(v for group in PROJECT["project"]["entry-points"].values() for v in group.values()),
+)
+def test_entry_points_lead_somewhere(value):
+    module, _, name = value.partition(":")
+    package, _, rest = module.partition(".")
+    folder = ROOT / FOLDERS[package] / Path(*rest.split("."))
+    source = (
+        folder.with_suffix(".py") if folder.with_suffix(".py").exists() else folder / "__init__.py"
+    )
+    names = {
+        getattr(node, "name", None) or ast.unparse(node.targets[0])
+        for node in ast.parse(source.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.Assign)
+    }
+    assert name in names or hasattr(import_module(module), name)
+
+
+def test_versions_agree():
+    assert PROJECT["project"]["version"] == benchnav.__version__
+    assert f"version: {benchnav.__version__}" in (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+
+
+def test_the_licence_is_complete():
+    text = (ROOT / "LICENSE").read_text(encoding="utf-8")
+    assert text.lstrip().startswith("Apache License\n                           Version 2.0")
+    assert "END OF TERMS AND CONDITIONS" in text
+    assert PROJECT["project"]["license"] == "Apache-2.0"
+
+
+@pytest.mark.parametrize("folder", ["baselines", "scenarios"])
+def test_a_folder_is_not_importable_under_its_own_name(folder):
+    namespace = {"__name__": folder}
+    code = (ROOT / folder / "__init__.py").read_text(encoding="utf-8")
+    with pytest.raises(ImportError, match=f"Import benchnav_{folder}"):
+        exec(compile(code, folder, "exec"), namespace)
+
+
+@pytest.mark.parametrize("source", [pytest.param(s, id=str(s.relative_to(ROOT))) for s in SOURCES])
+def test_modules_import_downwards_only(source):
+    parts = source.relative_to(ROOT / "benchnav").with_suffix("").parts
+    own = parts[0]
+    for name in imports(source):
+        root, _, rest = name.partition(".")
+        assert root not in ("benchnav_baselines", "benchnav_scenarios")
+        if root != "benchnav" or own == "__init__" or not rest:
+            continue
+        other = rest.partition(".")[0]
+        assert other == own or HEIGHT[other] < HEIGHT[own], f"{source.name} imports {name}"
+
+
+def test_baselines_and_scenarios_import_their_own_relatively():
+    for folder in ("baselines", "scenarios"):
+        for source in (ROOT / folder).rglob("*.py"):
+            assert not any(name.startswith(f"benchnav_{folder}") for name in imports(source)), (
+                source
+            )
+
+
+def test_nobody_suppresses_warnings_wholesale():
+    assert PROJECT["tool"]["pytest"]["ini_options"]["filterwarnings"][0] == "error"
