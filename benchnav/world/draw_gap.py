@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
+from benchnav.kernels import kernel
 
 
 class Barrier(NamedTuple):
@@ -73,7 +73,7 @@ def clear(shapes: FloatArray, wall: Barrier, gap: float) -> BoolArray:
     return far
 
 
-@njit(cache=True)
+@kernel
 def _clear(
     shapes: FloatArray, capsules: FloatArray, first: IntArray, hollow: BoolArray, gap: float
 ) -> BoolArray:
@@ -85,7 +85,7 @@ def _clear(
     return result
 
 
-@njit(cache=True)
+@kernel
 def _apart(shape: FloatArray, capsules: FloatArray, gap: float) -> bool:
     """No capsule of the shape (Q, 5) is within ``gap`` of any other."""
     for p in range(len(capsules)):
@@ -95,7 +95,7 @@ def _apart(shape: FloatArray, capsules: FloatArray, gap: float) -> bool:
     return True
 
 
-@njit(cache=True)
+@kernel
 def _nested(shape: FloatArray, capsules: FloatArray, first: IntArray, hollow: BoolArray) -> bool:
     """One holds the other; where their edges are apart, one point of each decides that."""
     closed = len(shape) > 2
@@ -107,7 +107,7 @@ def _nested(shape: FloatArray, capsules: FloatArray, first: IntArray, hollow: Bo
     return False
 
 
-@njit(cache=True)
+@kernel
 def _near(a: FloatArray, b: FloatArray, gap: float) -> bool:
     """Two capsules (5,) are within ``gap`` of each other."""
     reach = a[4] + b[4] + gap
@@ -128,14 +128,14 @@ def _near(a: FloatArray, b: FloatArray, gap: float) -> bool:
     return near
 
 
-@njit(cache=True)
+@kernel
 def _distance2(x: float, y: float, c: FloatArray) -> float:
     nx, ny = nearest_on_segment(x, y, c[0], c[1], c[2], c[3])
     squared: float = (x - nx) * (x - nx) + (y - ny) * (y - ny)
     return squared
 
 
-@njit(cache=True)
+@kernel
 def _winding(x: float, y: float, edges: FloatArray) -> int:
     """How often the loops (P, 5) go round (x, y), counter-clockwise positive."""
     turns = 0

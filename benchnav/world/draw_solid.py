@@ -52,7 +52,9 @@ def draw_wall(wall: Wall, folder: Path, rng: np.random.Generator) -> tuple[list[
         at = (float(wall.at[0]), float(wall.at[1]))  # type: ignore[arg-type]
         yaw = float(wall.heading)  # type: ignore[arg-type]
         path = folder / shape.file
-        solids, mesh = _mesh(path, shape.unit, shape.up, shape.scale, shape.band, yaw, at)
+        solids, mesh = _mesh(
+            path, shape.unit, shape.up, shape.scale, shape.band, yaw, at, Kind.WALL
+        )
         return list(solids), mesh
     solid = draw_solid(shape, wall.heading, Kind.WALL, rng)
     return [solid.moved(np.array([sample(wall.at[0], rng), sample(wall.at[1], rng)]))], None
