@@ -48,20 +48,21 @@ def disc_time(fx: float, fy: float, wx: float, wy: float, reach: float) -> float
 
 @kernel
 def capsule_time(
-    px: float, py: float, wx: float, wy: float, reach: float,
+    px: float, py: float, wx: float, wy: float, reach: float, way: float,
     x0: float, y0: float, x1: float, y1: float,
 ) -> float:  # fmt: skip
     """First t ≥ 0 at which p + w t is within ``reach`` of the segment, approaching; inf if never.
 
-    ``reach`` is the sum of the two radii. A point that is within reach already
+    ``reach`` is the sum of the two radii; what is farther off than ``way`` may be left out. A point that is within reach already
     and approaches has 0; one that separates has inf, because the distance to a
     convex set along a line is convex.
     """
     qx, qy = nearest_on_segment(px, py, x0, y0, x1, y1)
     fx, fy = px - qx, py - qy
-    if fx * wx + fy * wy >= -APPROACH * reach:
+    f2 = fx * fx + fy * fy
+    if fx * wx + fy * wy >= -APPROACH * reach or f2 > (reach + way) * (reach + way):
         return math.inf
-    if fx * fx + fy * fy <= reach * reach:
+    if f2 <= reach * reach:
         return 0.0
     dx, dy = x1 - x0, y1 - y0
     length2 = dx * dx + dy * dy

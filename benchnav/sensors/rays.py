@@ -1,6 +1,8 @@
 """Rays: what each meets first, and the goal on a layer of its own.
 
-A thick ray is a cast of the agent's own disc: it stops where the body would.
+A thick ray is a cast of the agent's own disc: it stops where the body would. What
+could be met is listed once per agent, in its own frame, and then every ray is
+tested against the list; the capsules of a large map are met by walking its grid.
 """
 
 import math
@@ -10,7 +12,6 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
-from benchnav.episode.episode import Status
 from benchnav.geometry.capsule import capsule_time, disc_time
 from benchnav.geometry.hash_grid import bucket
 from benchnav.geometry.rotation import cos_sin
@@ -18,13 +19,17 @@ from benchnav.kernels import kernel
 from benchnav.sensors.sight import FEW
 from benchnav.world.touch import BRUTE_FORCE
 
+LISTED = 512  # things around one agent; in a crowd denser than that the farthest are not met
 _AGENT, _NOTHING, _DYNAMIC = int(Kind.AGENT), int(Kind.NOTHING), int(Kind.DYNAMIC)
-_ACTIVE = int(Status.ACTIVE)
+
+# columns of the list: ends, unit normal and distance of the line (edges), radius sum, kind,
+# velocity. Frame: the agent at the origin, looking along +x.
+X0, Y0, X1, Y1, NX, NY, OFF, REACH, KIND, VX, VY = range(11)
 
 
 @kernel
 def cast_rays(
-    low: int, high: int, chosen: IntArray, angle: FloatArray, limit: float, thick: bool,
+    low: int, high: int, chosen: IntArray, fan: FloatArray, limit: float, thick: bool,
     side: float, sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
     shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
     sorted_: IntArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
@@ -32,128 +37,194 @@ def cast_rays(
 ) -> None:  # fmt: skip
     """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, R).
 
-    ``side`` [m] is that of the hashed cells; ``sees`` (B, teams, teams).
+    ``fan`` (R, 2) unit vectors in the agent's frame; ``side`` [m] of the hashed cells;
+    ``sees`` (B, teams, teams).
     """
     width = chosen.shape[1]
-    front = np.empty((FEW, 6))  # relative to the agent: x0, y0, x1, y1, reach, kind
+    things = np.empty((LISTED, 11))
     for row in range(low, high):
         b, k = row // width, row % width
-        if chosen[b, k] < 0 or not agents[b, chosen[b, k]].present:
+        i = chosen[b, k]
+        if i < 0 or not agents[b, i].present:
             continue
-        a = agents[b, chosen[b, k]]
+        a, world = agents[b, i], worlds[b]
         own = a.radius if thick else 0.0
         ca, sa = cos_sin(a.heading)
-        seen = _facing(a, own, limit, worlds[b], capsules, front)
-        for r in range(len(angle)):
-            cr, sr = cos_sin(angle[r])
-            dx, dy = ca * cr - sa * sr, sa * cr + ca * sr
-            if seen >= 0:
-                best, what = _first_facing(dx, dy, own, limit, seen, front)
-            else:
-                best, what = _first_fixed(
-                    a.x, a.y, dx, dy, own, limit, worlds[b], capsules, start, item
+        n = _list_bodies(a, ca, sa, own, limit, world.bodies, bodies[b], shapes, things, 0)
+        n = _list_agents(
+            i, ca, sa, own, limit, side, sees[b], agents[b], hashed[b], sorted_[b], things, n
+        )
+        few = world.last - world.first <= FEW
+        if few:
+            for p in range(world.first, world.last):
+                n = _list(a, ca, sa, own, limit, capsules[p], 0.0, 0.0, 0.0, 0.0, things, n)
+        for r in range(len(fan)):
+            dx, dy = fan[r, 0], fan[r, 1]
+            best, what = _first(dx, dy, limit, n, things)
+            met = _NOTHING if what < 0 else int(things[what, KIND])
+            if not few:
+                wx, wy = ca * dx - sa * dy, sa * dx + ca * dy
+                best, on_map = _first_on_map(
+                    a.x, a.y, wx, wy, own, best, world, capsules, start, item
                 )
-            best, m = _first_body(a.x, a.y, dx, dy, own, best, worlds[b].bodies, bodies[b], shapes)
-            if m >= 0:
-                what = bodies[b, m].kind
-            met = _first_agent(
-                chosen[b, k], dx, dy, own, best, limit, side, sees[b], agents[b], hashed[b],
-                sorted_[b],
-            )  # fmt: skip
-            if met < best:
-                best, what, m = met, _AGENT, -1
-            distance[b, k, r] = best
-            kind[b, k, r] = what
-            approach[b, k, r] = 0.0
-            if m >= 0 and what == _DYNAMIC:
-                approach[b, k, r] = -(bodies[b, m].vx * dx + bodies[b, m].vy * dy)
-            reach = worlds[b].tolerance + own
-            goal[b, k, r] = _goal_distance(a, dx, dy, reach, best)
+                met = met if on_map == _NOTHING else on_map
+            distance[b, k, r], kind[b, k, r], approach[b, k, r] = best, met, 0.0
+            if met == _DYNAMIC:
+                approach[b, k, r] = -(things[what, VX] * dx + things[what, VY] * dy)
+            gx, gy = a.x - a.goal_x, a.y - a.goal_y
+            goal[b, k, r] = _goal_distance(
+                ca * gx + sa * gy, ca * gy - sa * gx, dx, dy, world.tolerance + own, best
+            )
 
 
 @kernel
-def _goal_distance(a: Any, dx: float, dy: float, reach: float, best: float) -> float:
-    fx, fy = a.x - a.goal_x, a.y - a.goal_y
+def _goal_distance(fx: float, fy: float, dx: float, dy: float, reach: float, best: float) -> float:
     t = 0.0 if fx * fx + fy * fy <= reach * reach else disc_time(fx, fy, dx, dy, reach)
     return t if t <= best else math.inf
 
 
 @kernel
-def _facing(
-    a: Any, own: float, limit: float, world: Any, capsules: AnyArray, front: FloatArray
-) -> int:
-    """Lists in ``front`` the few fixed capsules that any ray of agent a could meet; -1 if many.
+def _list(
+    a: Any, ca: float, sa: float, own: float, limit: float, c: Any, ox: float, oy: float,
+    vx: float, vy: float, things: FloatArray, n: int,
+) -> int:  # fmt: skip
+    """Append capsule c, shifted by (ox, oy), unless no ray of a can meet it first.
 
     An edge whose solid is on the agent's side cannot be met before another edge of
     that solid: its loop is closed and the agent outside.
     """
-    if world.last - world.first > FEW:
-        return -1
-    n = 0
-    for p in range(world.first, world.last):
-        c = capsules[p]
-        x0, y0, x1, y1 = c.x0 - a.x, c.y0 - a.y, c.x1 - a.x, c.y1 - a.y
-        reach = own + c.r
-        if c.r == 0.0 and x0 * (y1 - y0) - y0 * (x1 - x0) > 0.0:
-            continue
-        if min(x0, x1) > limit + reach or max(x0, x1) < -limit - reach:
-            continue
-        if min(y0, y1) > limit + reach or max(y0, y1) < -limit - reach:
-            continue
-        row = front[n]
-        row[0], row[1], row[2], row[3], row[4], row[5] = x0, y0, x1, y1, reach, c.kind
-        n += 1
+    x0, y0, x1, y1 = c.x0 + ox - a.x, c.y0 + oy - a.y, c.x1 + ox - a.x, c.y1 + oy - a.y
+    reach = own + c.r
+    far = limit + reach
+    if n == len(things) or min(x0, x1) > far or max(x0, x1) < -far:
+        return n
+    if min(y0, y1) > far or max(y0, y1) < -far:
+        return n
+    ex, ey = x1 - x0, y1 - y0
+    off = x0 * ey - y0 * ex
+    if c.r == 0.0 and off > 0.0:
+        return n
+    length = math.sqrt(ex * ex + ey * ey)
+    row = things[n]
+    row[X0], row[Y0] = ca * x0 + sa * y0, ca * y0 - sa * x0
+    row[X1], row[Y1] = ca * x1 + sa * y1, ca * y1 - sa * x1
+    row[NX], row[NY], row[OFF] = 0.0, 0.0, -1.0  # a disc has no line
+    if c.r == 0.0 and length > 0.0:
+        nx, ny = ey / length, -ex / length  # to the right: out of the solid, towards the agent
+        row[NX], row[NY], row[OFF] = ca * nx + sa * ny, ca * ny - sa * nx, -off / length
+    row[REACH], row[KIND] = reach, c.kind
+    row[VX], row[VY] = ca * vx + sa * vy, ca * vy - sa * vx
+    return n + 1
+
+
+@kernel
+def _list_bodies(
+    a: Any, ca: float, sa: float, own: float, limit: float, count: int, bodies: AnyArray,
+    shapes: AnyArray, things: FloatArray, n: int,
+) -> int:  # fmt: skip
+    for m in range(count):
+        body = bodies[m]
+        dx, dy, far = body.x - a.x, body.y - a.y, limit + own + body.bound
+        if dx * dx + dy * dy <= far * far:
+            for q in range(body.first, body.last):
+                n = _list(
+                    a, ca, sa, own, limit, shapes[q], body.x, body.y, body.vx, body.vy, things, n
+                )
     return n
 
 
 @kernel
-def _first_facing(
-    dx: float, dy: float, own: float, limit: float, seen: int, front: FloatArray
-) -> tuple[float, int]:
-    """As `_first_fixed`, over the first ``seen`` capsules of ``front``."""
-    best, what = limit, float(_NOTHING)
-    for p in range(seen):
-        x0, y0, x1, y1, reach = front[p, 0], front[p, 1], front[p, 2], front[p, 3], front[p, 4]
-        across_0, across_1 = dx * y0 - dy * x0, dx * y1 - dy * x1
-        if min(across_0, across_1) > reach or max(across_0, across_1) < -reach:
-            continue
-        along_0, along_1 = dx * x0 + dy * y0, dx * x1 + dy * y1
-        if max(along_0, along_1) < -reach or min(along_0, along_1) - reach > best:
-            continue
-        t = capsule_time(0.0, 0.0, dx, dy, reach, x0, y0, x1, y1)
-        if t < best:
-            best, what = t, front[p, 5]
-    return best, int(what)
+def _list_agents(
+    i: int, ca: float, sa: float, own: float, limit: float, side: float, sees: BoolArray,
+    agents: AnyArray, hashed: IntArray, sorted_: IntArray, things: FloatArray, n: int,
+) -> int:  # fmt: skip
+    a = agents[i]
+    if len(agents) <= BRUTE_FORCE:
+        for j in range(len(agents)):
+            if j != i:
+                n = _list_agent(a, ca, sa, own, limit, sees, agents[j], things, n)
+        return n
+    size = len(hashed) - 1
+    for ring in range(math.ceil((limit + own + a.radius) / side) + 1):
+        for ci in range(a.ci - ring, a.ci + ring + 1):
+            rim = ci == a.ci - ring or ci == a.ci + ring
+            for cj in range(a.cj - ring, a.cj + ring + 1, 1 if rim or ring == 0 else 2 * ring):
+                k = bucket(ci, cj, size)
+                for at in range(hashed[k], hashed[k + 1]):
+                    other = agents[sorted_[at]]
+                    if other.ci == ci and other.cj == cj and sorted_[at] != i:
+                        n = _list_agent(a, ca, sa, own, limit, sees, other, things, n)
+    return n
 
 
 @kernel
-def _capsule_distance(
-    x: float, y: float, dx: float, dy: float, own: float, best: float, c: Any
-) -> float:
-    """Way along the ray to capsule c if shorter than ``best``, else inf; cheap rejections first."""
-    reach = own + c.r
-    ax, ay, bx, by = c.x0 - x, c.y0 - y, c.x1 - x, c.y1 - y
-    across_a, across_b = dx * ay - dy * ax, dx * by - dy * bx
-    if min(across_a, across_b) > reach or max(across_a, across_b) < -reach:
-        return math.inf
-    along_a, along_b = dx * ax + dy * ay, dx * bx + dy * by
-    if max(along_a, along_b) < -reach or min(along_a, along_b) - reach > best:
-        return math.inf
-    return capsule_time(x, y, dx, dy, reach, c.x0, c.y0, c.x1, c.y1)
+def _list_agent(
+    a: Any, ca: float, sa: float, own: float, limit: float, sees: BoolArray, other: Any,
+    things: FloatArray, n: int,
+) -> int:  # fmt: skip
+    x, y, reach = other.x - a.x, other.y - a.y, own + other.radius
+    if not other.present or not sees[a.team, other.team] or n == len(things):
+        return n
+    if x * x + y * y > (limit + reach) * (limit + reach):
+        return n
+    row = things[n]
+    row[X0], row[Y0] = ca * x + sa * y, ca * y - sa * x
+    row[X1], row[Y1] = row[X0], row[Y0]
+    row[OFF], row[REACH], row[KIND] = -1.0, reach, _AGENT
+    return n + 1
 
 
 @kernel
-def _first_fixed(
+def _first(dx: float, dy: float, limit: float, n: int, things: FloatArray) -> tuple[float, int]:
+    """(distance, row) of the first thing within ``limit`` along (dx, dy); (limit, -1) if none."""
+    best, who = limit, -1
+    for k in range(n):
+        x, y, reach, off = things[k, X0], things[k, Y0], things[k, REACH], things[k, OFF]
+        if off >= 0.0:  # an edge: its line first, then the end that the line is passed at
+            slope = things[k, NX] * dx + things[k, NY] * dy
+            t = 0.0
+            if off > reach:
+                if off - reach >= -slope * best:
+                    continue
+                t = (off - reach) / -slope
+            # the tangent is the normal turned by +90°: (-ny, nx)
+            ex, ey = -things[k, NY], things[k, NX]
+            foot = (t * dx - x) * ex + (t * dy - y) * ey
+            span = (things[k, X1] - x) * ex + (things[k, Y1] - y) * ey
+            if 0.0 <= foot <= span:
+                if slope < 0.0:
+                    best, who = t, k
+                continue
+            if foot > span:
+                x, y = things[k, X1], things[k, Y1]
+        along = x * dx + y * dy
+        gap = x * x + y * y - reach * reach
+        if along <= 0.0:
+            continue
+        inner = along * along - gap  # reach² - across²
+        if gap <= 0.0:
+            best, who = 0.0, k
+        elif inner >= 0.0:
+            t = along - math.sqrt(inner)
+            if t < best:
+                best, who = t, k
+    return best, who
+
+
+@kernel
+def _first_on_map(
     x: float, y: float, dx: float, dy: float, own: float, limit: float, world: Any,
     capsules: AnyArray, start: IntArray, item: IntArray,
 ) -> tuple[float, int]:  # fmt: skip
-    """(distance, kind) of the first fixed capsule within ``limit``; (limit, NOTHING) if none."""
-    best, what = limit, _NOTHING
-    side = world.side
+    """(distance, kind) of the first fixed capsule nearer than ``limit``; (limit, NOTHING) if none.
+
+    Walks the grid cell by cell (Amanatides & Woo 1987); frame of the world.
+    """
+    best, what, side = limit, _NOTHING, world.side
     i = math.floor((x - world.origin_x) / side)
     j = math.floor((y - world.origin_y) / side)
     step_i, step_j = (1 if dx > 0.0 else -1), (1 if dy > 0.0 else -1)
-    # distance along the ray to the next column and row of cells (Amanatides & Woo 1987)
+    # distances along the ray to the next column and row of cells, and between them
     next_i = ((i + (dx > 0.0)) * side + world.origin_x - x) / dx if dx != 0.0 else math.inf
     next_j = ((j + (dy > 0.0)) * side + world.origin_y - y) / dy if dy != 0.0 else math.inf
     each_i = side / abs(dx) if dx != 0.0 else math.inf
@@ -164,7 +235,12 @@ def _first_fixed(
             cell = world.grid + i * world.ny + j
             for at in range(start[cell], start[cell + 1]):
                 c = capsules[item[at]]
-                t = _capsule_distance(x, y, dx, dy, own, best, c)
+                reach = own + c.r
+                ax, ay, bx, by = c.x0 - x, c.y0 - y, c.x1 - x, c.y1 - y
+                across_a, across_b = dx * ay - dy * ax, dx * by - dy * bx
+                if min(across_a, across_b) > reach or max(across_a, across_b) < -reach:
+                    continue
+                t = capsule_time(x, y, dx, dy, reach, best, c.x0, c.y0, c.x1, c.y1)
                 if t < best:
                     best, what = t, c.kind
         if next_i < next_j:
@@ -172,63 +248,3 @@ def _first_fixed(
         else:
             entered, next_j, j = next_j, next_j + each_j, j + step_j
     return best, what
-
-
-@kernel
-def _first_body(
-    x: float, y: float, dx: float, dy: float, own: float, best: float, count: int,
-    bodies: AnyArray, shapes: AnyArray,
-) -> tuple[float, int]:  # fmt: skip
-    """(distance, index) of the first body nearer than ``best``; (best, -1) if none."""
-    who = -1
-    for m in range(count):
-        body = bodies[m]
-        fx, fy = x - body.x, y - body.y
-        reach = own + body.bound
-        along, across = -(fx * dx + fy * dy), dx * fy - dy * fx
-        if abs(across) > reach or along < -reach or along - reach > best:
-            continue
-        for q in range(body.first, body.last):
-            t = _capsule_distance(fx, fy, dx, dy, own, best, shapes[q])
-            if t < best:
-                best, who = t, m
-    return best, who
-
-
-@kernel
-def _first_agent(
-    i: int, dx: float, dy: float, own: float, best: float, limit: float, side: float,
-    sees: BoolArray, agents: AnyArray, hashed: IntArray, sorted_: IntArray,
-) -> float:  # fmt: skip
-    """Distance to the first other agent nearer than ``best``; inf if none."""
-    nearest = math.inf
-    if len(agents) <= BRUTE_FORCE:
-        for j in range(len(agents)):
-            nearest = min(nearest, _agent_distance(i, j, dx, dy, own, best, sees, agents))
-        return nearest
-    a = agents[i]
-    size = len(hashed) - 1
-    rings = math.ceil(limit / side) + 1
-    for ci in range(a.ci - rings, a.ci + rings + 1):
-        for cj in range(a.cj - rings, a.cj + rings + 1):
-            k = bucket(ci, cj, size)
-            for at in range(hashed[k], hashed[k + 1]):
-                j = sorted_[at]
-                if agents[j].ci == ci and agents[j].cj == cj:
-                    nearest = min(nearest, _agent_distance(i, j, dx, dy, own, best, sees, agents))
-    return nearest
-
-
-@kernel
-def _agent_distance(
-    i: int, j: int, dx: float, dy: float, own: float, best: float, sees: BoolArray,
-    agents: AnyArray,
-) -> float:  # fmt: skip
-    a, b = agents[i], agents[j]
-    if j == i or not b.present or not sees[a.team, b.team]:
-        return math.inf
-    fx, fy, reach = a.x - b.x, a.y - b.y, own + b.radius
-    if abs(dx * fy - dy * fx) > reach or -(fx * dx + fy * dy) - reach > best:
-        return math.inf
-    t = disc_time(fx, fy, dx, dy, reach)
-    return t if t < best else math.inf

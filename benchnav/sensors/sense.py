@@ -7,6 +7,7 @@ import numpy as np
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.geometry.hash_grid import fill
+from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.observation import Edges, Neighbours, Rays
@@ -80,9 +81,10 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
         angle, np.full(shape, float(sensor.range)), np.zeros(shape, np.int8), np.zeros(shape),
         np.full(shape, np.inf),
     )  # fmt: skip
+    fan = np.array([cos_sin(a) for a in angle])
     s = simulation
     run_rows(
-        cast_rays, chosen.size, chosen, angle, float(sensor.range), sensor.thick, side, s.sees, s.records,
+        cast_rays, chosen.size, chosen, fan, float(sensor.range), sensor.thick, side, s.sees, s.records,
         s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.sorted,
         out.distance, out.kind, out.approach, out.goal, least=LEAST,
     )  # fmt: skip

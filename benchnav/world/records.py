@@ -35,7 +35,7 @@ AGENT = _record(
 
 # (B, M): dynamic obstacles and static obstacles that are re-placed
 BODY = _record(
-    x="f8", y="f8", vx="f8", vy="f8", bound="f8", phase="f8",
+    x="f8", y="f8", vx="f8", vy="f8", next_x="f8", next_y="f8", bound="f8", phase="f8",
     first="i8", last="i8", law_first="i8", law_last="i8",
     law="i1", kind="i1", periodic="?", placed="?",
 )  # fmt: skip

@@ -54,14 +54,14 @@ def step_world(
     for s in range(world.substeps):
         tick = world.steps_done * world.substeps + s
         begin, end = tick * world.h, (tick + 1) * world.h
-        aim_bodies(begin, end, world, bodies, knots)
+        aim_bodies(end, world, bodies, knots)
         aim_agents(world, agents)
         find_all(world, agents, bodies, shapes, capsules, start, item, hashed, sorted_, near)
         advance(
             begin, world, agents, bodies, shapes, capsules, start, item, opened, closed,
             hashed, sorted_, near,
         )  # fmt: skip
-        land_bodies(end, world, bodies, knots)
+        land_bodies(world, bodies)
         turn(world, agents)
         follow_up(end, world, agents, bodies, shapes, capsules, start, item, opened, closed)
     world.steps_done += 1
@@ -92,6 +92,7 @@ def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots:
                 free = False
         if free:
             body.placed = True
+            body.x, body.y = x, y
             world.revision += 1
 
 
@@ -118,14 +119,12 @@ def obey(
 
 
 @kernel
-def aim_bodies(begin: float, end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
-    """Velocities that carry the bodies straight to where their laws put them."""
+def aim_bodies(end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
+    """Velocities that carry the bodies straight to where their laws put them at ``end`` [s]."""
     for m in range(world.bodies):
         body = bodies[m]
-        x0, y0 = body_at(body, knots, begin)
-        x1, y1 = body_at(body, knots, end)
-        body.x, body.y = x0, y0
-        body.vx, body.vy = (x1 - x0) / world.h, (y1 - y0) / world.h
+        body.next_x, body.next_y = body_at(body, knots, end)
+        body.vx, body.vy = (body.next_x - body.x) / world.h, (body.next_y - body.y) / world.h
 
 
 @kernel
@@ -222,11 +221,11 @@ def drift(t: float, world: Any, agents: AnyArray, bodies: AnyArray) -> None:
 
 
 @kernel
-def land_bodies(time: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
+def land_bodies(world: Any, bodies: AnyArray) -> None:
     """Bodies are where their laws say, free of accumulated rounding."""
     for m in range(world.bodies):
         body = bodies[m]
-        body.x, body.y = body_at(body, knots, time)
+        body.x, body.y = body.next_x, body.next_y
 
 
 @kernel

@@ -56,9 +56,9 @@ def pair_time(a: Any, b: Any) -> float:
 
 
 @kernel
-def fixed_time(a: Any, c: Any) -> float:
-    """Time until agent a touches a fixed capsule."""
-    return capsule_time(a.x, a.y, a.vx, a.vy, a.radius + c.r, c.x0, c.y0, c.x1, c.y1)
+def fixed_time(a: Any, c: Any, way: float) -> float:
+    """Time until agent a, which goes no farther than ``way`` [m], touches a fixed capsule."""
+    return capsule_time(a.x, a.y, a.vx, a.vy, a.radius + c.r, way, c.x0, c.y0, c.x1, c.y1)
 
 
 @kernel
@@ -66,13 +66,14 @@ def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
     """Time until agent a touches a body; inf where it cannot within ``left`` [s]."""
     fx, fy = a.x - body.x, a.y - body.y
     wx, wy = a.vx - body.vx, a.vy - body.vy
-    far = math.sqrt(fx * fx + fy * fy) - a.radius - body.bound
-    if far > math.sqrt(wx * wx + wy * wy) * left:
+    way = (abs(wx) + abs(wy)) * left
+    far = a.radius + body.bound + way
+    if fx * fx + fy * fy > far * far:
         return math.inf
     best = math.inf
     for q in range(body.first, body.last):
         c = shapes[q]
-        t = capsule_time(fx, fy, wx, wy, a.radius + c.r, c.x0, c.y0, c.x1, c.y1)
+        t = capsule_time(fx, fy, wx, wy, a.radius + c.r, way, c.x0, c.y0, c.x1, c.y1)
         best = min(best, t)
     return best
 
@@ -94,8 +95,9 @@ def find_next(
     if t <= left:
         best, code = t, GOAL
     if a.vx != 0.0 or a.vy != 0.0:
+        way = (abs(a.vx) + abs(a.vy)) * left
         for at in range(start[a.home], start[a.home + 1]):
-            t = fixed_time(a, capsules[item[at]])
+            t = fixed_time(a, capsules[item[at]], way)
             if t < best and t <= left:
                 best, code = t, 4 * item[at] + FIXED
     for m in range(body_count):
