@@ -22,7 +22,7 @@ MAX_DEPTH = 32
 MAX_NODES = 100_000
 MAX_KEY = 200  # characters
 
-_LOADER: Any = getattr(yaml, "CLoader", yaml.Loader)  # only its parser is used
+_LOADER: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # only its parser is used
 _INT = re.compile(r"[-+]?(0|[1-9][0-9]*)")
 _FLOAT = re.compile(r"[-+]?(\.[0-9]+|(0|[1-9][0-9]*)(\.[0-9]*)?)([eE][-+]?[0-9]+)?")
 _WORDS: dict[str, Any] = {

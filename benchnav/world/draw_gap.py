@@ -46,6 +46,16 @@ def joined(one: Barrier, other: Barrier) -> Barrier:
     )
 
 
+def added(one: Barrier, capsules: FloatArray) -> Barrier:
+    """The barrier and one obstacle (P, 5) more."""
+    last = one.first[-1] + len(capsules)
+    return Barrier(
+        np.concatenate([one.capsules, capsules]),
+        np.append(one.first, last),
+        np.append(one.hollow, False),
+    )
+
+
 def point_shapes(points: FloatArray) -> FloatArray:
     """Points (N, 2) as shapes (N, 1, 5) for `clear`."""
     shapes = np.zeros((len(points), 1, 5))

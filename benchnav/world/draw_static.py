@@ -12,7 +12,7 @@ from benchnav.arrays import BoolArray, FloatArray
 from benchnav.scenario.obstacle import StaticGroup
 from benchnav.scenario.region import Region
 from benchnav.scenario.sampler import sample
-from benchnav.world.draw_gap import Barrier, barrier, clear, joined, shifted
+from benchnav.world.draw_gap import Barrier, added, clear, joined, shifted
 from benchnav.world.draw_place import draw_points, find_place
 from benchnav.world.draw_solid import draw_solid
 
@@ -77,52 +77,55 @@ def draw_pieces(
     pieces: list[list[Piece]] = []
     standing = walls
     for i, (group, rng) in enumerate(zip(groups, streams, strict=True)):
-        pieces.append(search.group(group, f"static[{i}]", standing, rng))
-        standing = _with(standing, [piece.solid for piece in pieces[i]])
-    for i, (group, rng) in enumerate(zip(groups, others, strict=True)):
-        name = f"static[{i}]"
-        if group.relocate_at is not None:
-            pieces[i] = search.relocated(group, name, pieces[i], standing, rng)
-            standing = _with(standing, [piece.after_solid for piece in pieces[i]])
+        drawn, standing = search.now(group, f"static[{i}]", standing, rng)
+        pieces.append(drawn)
     past = walls
     for group, drawn in zip(groups, pieces, strict=True):
-        past = past if group.moved else _with(past, [piece.solid for piece in drawn])
+        for piece in () if group.moved else drawn:
+            past = added(past, piece.solid.capsules)
     for i, (group, rng) in enumerate(zip(groups, others, strict=True)):
-        if group.moved:
-            pieces[i] = search.displaced(group, f"static[{i}]", pieces[i], past, rng)
-            past = _with(past, [piece.before_solid for piece in pieces[i]])
+        if group.relocate_at is not None:
+            pieces[i], standing = search.later(group, f"static[{i}]", pieces[i], standing, rng)
+        elif group.moved:
+            pieces[i], past = search.before(group, f"static[{i}]", pieces[i], past, rng)
     return [piece for drawn in pieces for piece in drawn]
 
 
 @dataclass(frozen=True)
 class _Search:
-    """Finds places that keep a group's gap to what stands and to what is kept free."""
+    """Finds places that keep a group's gap to what stands and to what is kept free.
+
+    Each method returns the pieces, and what stands with them.
+    """
 
     bounds: Bounds
     keep_free: Barrier
 
-    def group(
+    def now(
         self, group: StaticGroup, name: str, standing: Barrier, rng: np.random.Generator
-    ) -> list[Piece]:
-        if group.at is not None:
-            return [Piece(_shape(group, rng), np.array(point)) for point in group.at]
-        count = 1 if group.count is None else int(sample(group.count, rng))
+    ) -> tuple[list[Piece], Barrier]:
+        """Shapes, and places at the start."""
         pieces: list[Piece] = []
-        for k in range(count):
-            what = f"{name} ({group.shape.type} {k + 1} of {count})"
-            shape = _shape(group, rng)
-            pieces.append(Piece(shape, self._place(shape, group, standing, what, rng)))
-            standing = _with(standing, [pieces[k].solid])
-        return pieces
+        count = 1 if group.count is None else int(sample(group.count, rng))
+        for k in range(count if group.at is None else len(group.at)):
+            shape = draw_solid(group.shape, group.heading, Kind.STATIC, rng)
+            if group.at is not None:
+                place = np.array(group.at[k])
+            else:
+                what = f"{name} ({group.shape.type} {k + 1} of {count})"
+                place = self._place(shape, group, standing, what, rng)
+            pieces.append(Piece(shape, place))
+            standing = added(standing, pieces[k].solid.capsules)
+        return pieces, standing
 
-    def relocated(
+    def later(
         self,
         group: StaticGroup,
         name: str,
         pieces: list[Piece],
         standing: Barrier,
         rng: np.random.Generator,
-    ) -> list[Piece]:
+    ) -> tuple[list[Piece], Barrier]:
         """With places for later, clear of everything that stands now or will."""
         result = []
         for k, piece in enumerate(pieces):
@@ -130,25 +133,24 @@ class _Search:
             after = self._place(piece.shape, group, standing, what, rng)
             when = 0.0 if group.relocate_at is None else sample(group.relocate_at, rng)
             result.append(replace(piece, after=after, when=when))
-            standing = _with(standing, [result[k].after_solid])
-        return result
+            standing = added(standing, result[k].after_solid.capsules)
+        return result, standing
 
-    def displaced(
+    def before(
         self,
         group: StaticGroup,
         name: str,
         pieces: list[Piece],
         past: Barrier,
         rng: np.random.Generator,
-    ) -> list[Piece]:
+    ) -> tuple[list[Piece], Barrier]:
         """With places where they stood before, clear of all else that stood then."""
         result = []
         for k, piece in enumerate(pieces):
             what = f"the old place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
-            before = self._place(piece.shape, group, past, what, rng)
-            result.append(replace(piece, before=before))
-            past = _with(past, [result[k].before_solid])
-        return result
+            result.append(replace(piece, before=self._place(piece.shape, group, past, what, rng)))
+            past = added(past, result[k].before_solid.capsules)
+        return result, past
 
     def _place(
         self,
@@ -165,11 +167,3 @@ class _Search:
             return clear(shifted(shape.capsules, points), around, group.gap)
 
         return find_place(lambda n: draw_points(region, self.bounds, n, rng), accept, what)
-
-
-def _shape(group: StaticGroup, rng: np.random.Generator) -> Solid:
-    return draw_solid(group.shape, group.heading, Kind.STATIC, rng)
-
-
-def _with(standing: Barrier, solids: Sequence[Solid]) -> Barrier:
-    return joined(standing, barrier(solids)) if solids else standing

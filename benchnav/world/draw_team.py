@@ -73,16 +73,7 @@ def place_team(
     for k, radius in enumerate(radii):
         what = f"of teams[{team.name}] agent {k + 1} of {len(radii)}"
         place = _Placing(team, k, len(radii), float(radius), crowd, bounds, spaces, bodies, rng)
-        for last in range(_STARTS):
-            start = find_place(place.starts, place.start_ok, f"the start {what}", place.batches)
-            try:
-                goal = place.goal(start, f"the goal {what}")
-            except NoPlaceError:
-                if last == _STARTS - 1 or place.batches == (1,):
-                    raise
-                continue
-            crowd.add(start, goal, float(radius))
-            break
+        crowd.add(*place.find(what), float(radius))
 
 
 @dataclass
@@ -98,6 +89,17 @@ class _Placing:
     spaces: Sequence[Space]
     bodies: Barrier
     rng: np.random.Generator
+
+    def find(self, what: str) -> tuple[FloatArray, FloatArray]:
+        """A start and a goal; a start without a goal is drawn again."""
+        failure = NoPlaceError(what)
+        for _ in range(_STARTS if len(self.batches) > 1 else 1):
+            start = find_place(self.starts, self.start_ok, f"the start {what}", self.batches)
+            try:
+                return start, self.goal(start, f"the goal {what}")
+            except NoPlaceError as error:
+                failure = error
+        raise failure
 
     @property
     def batches(self) -> tuple[int, ...]:

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.errors import ScenarioError
+from benchnav.scenario import yaml_reader
 from benchnav.scenario.yaml_reader import (
     MAX_BYTES,
     MAX_DEPTH,
@@ -15,6 +16,7 @@ from benchnav.scenario.yaml_reader import (
     read_yaml,
     read_yaml_text,
 )
+from tests.scenario.files import SHIPPED
 
 
 def refusal(text):
@@ -150,3 +152,14 @@ def test_reads_what_was_written(data):
             return True
 
     assert read_yaml_text(yaml.dump(data, Dumper=Plain), "f").data == data
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda p: f"{p.parent.name}/{p.stem}")
+def test_the_slow_parser_reads_the_same(path, monkeypatch):
+    fast = read_yaml(path)
+    monkeypatch.setattr(yaml_reader, "_LOADER", yaml.SafeLoader)
+    slow = read_yaml(path)
+    assert slow.data == fast.data
+    assert slow.place == fast.place
+    with pytest.raises(ScenarioError, match=r"^f:1: not valid YAML"):
+        read_yaml_text("a: \x01", "f")
