@@ -36,7 +36,8 @@ def run(
     navigator: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="NAME", help="Only this one of the suite, or any other by name. Repeatable."
+            metavar="NAME",
+            help="Only this one of the suite, or any other, also '{type: name, …}'. Repeatable.",
         ),
     ] = None,
     scenario: Annotated[
@@ -71,7 +72,7 @@ def run(
         run_suite(asked, folder, workers=workers, progress=progress(quiet), summary=summary)
     except KeyboardInterrupt:
         say(
-            f"Interrupted. {summary.stored} of {summary.total} episodes are stored, whole."
+            f"Interrupted: {summary.stored} of {summary.total} episodes are stored."
             f" The same command with --out {folder} goes on from there."
         )
         raise

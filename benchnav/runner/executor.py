@@ -4,7 +4,7 @@ import multiprocessing
 import os
 import signal
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from multiprocessing.connection import Connection, wait
@@ -19,7 +19,9 @@ from benchnav.runner.worker import ONE_THREAD, refused, serve
 Finished = tuple[Task, Outcome]
 
 
-def execute(tasks: Sequence[Task], workers: int, progress: Progress) -> Iterator[Finished]:
+def execute(
+    tasks: Sequence[Task], workers: int, progress: Progress
+) -> Generator[Finished, None, None]:
     """Run every task; yields each as it is stored, in no promised order.
 
     Args:
@@ -29,6 +31,8 @@ def execute(tasks: Sequence[Task], workers: int, progress: Progress) -> Iterator
 
     Raises:
         BenchnavError: what a task raised. Everything that was yielded is stored.
+
+    Close it to dismiss the workers where it is not exhausted.
     """
     if workers == 0:
         for task in tasks:

@@ -2,6 +2,7 @@
 
 import os
 from collections import Counter
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -60,11 +61,12 @@ def run_suite(
         tasks = _tasks(suite, folder, cells, summary)
         told.begin(summary.total, summary.stored)
         try:
-            for task, outcome in execute(tasks, _count(workers), told):
-                summary.stored += outcome.episodes
-                summary.redraws += outcome.redraws
-                label = task.cell.entry.label
-                summary.failures.update((label, reason) for _, reason in outcome.failures)
+            with closing(execute(tasks, _count(workers), told)) as finished:
+                for task, outcome in finished:
+                    summary.stored += outcome.episodes
+                    summary.redraws += outcome.redraws
+                    label = task.cell.entry.label
+                    summary.failures.update((label, reason) for _, reason in outcome.failures)
         finally:
             told.end()
     return summary

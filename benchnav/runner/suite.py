@@ -19,7 +19,7 @@ from benchnav.scenario.catalogue import find
 from benchnav.scenario.load import load_scenario
 from benchnav.scenario.sampler import support
 from benchnav.scenario.scenario import Scenario
-from benchnav.scenario.yaml_reader import read_yaml, validate
+from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
 
 
 @dataclass(frozen=True)
@@ -161,7 +161,15 @@ def _wanted_navigators(said: SuiteFile, selected: Sequence[str]) -> list[tuple[i
     own = {_label(spec): (i, spec) for i, spec in enumerate(said.navigators)}
     if not selected:
         return [(i, spec) for i, spec in enumerate(said.navigators)]
-    return [own.get(name, (None, name)) for name in selected]
+    return [own.get(name, (None, _written(name))) for name in selected]
+
+
+def _written(text: str) -> Spec:
+    """A name, or ``{type: name, …}`` as it would stand in a file."""
+    if not text.lstrip().startswith("{"):
+        return text
+    data: Spec = read_yaml_text(text, "--navigator").data
+    return data
 
 
 def _label(spec: Spec) -> str:

@@ -1,9 +1,10 @@
 """The unit of work: one cell for a range of seeds."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from benchnav.episode.episode import Episode
 from benchnav.metrics.measure import all_metrics
 from benchnav.runner.measured import measured
 from benchnav.runner.rollout import rollout
@@ -76,8 +77,13 @@ def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:
     failures: list[tuple[int, str]] = []
     with PartWriter(Part(task.folder, task.first, task.stop)) as writer:
         for episodes in rollout(cell.assignment, worlds, task.charge):
-            writer.add(episodes, measured(episodes, metrics))
+            writer.add(episodes, measured(_ticking(episodes, tick), metrics))
             failures += [(e.identity.seed, e.failure) for e in episodes if e.failure]
-            tick(len(episodes))
         writer.seal()
     return Outcome(len(worlds), sum(w.redraws for _, w in worlds), tuple(sorted(failures)))
+
+
+def _ticking(episodes: Sequence[Episode], tick: Callable[[int], None]) -> Iterator[Episode]:
+    for episode in episodes:
+        yield episode
+        tick(1)

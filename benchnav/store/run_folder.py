@@ -72,13 +72,16 @@ class RunFolder:
 
     @contextmanager
     def writing(self) -> Iterator[None]:
-        """Hold the folder as its only writer; leftovers of a killed run are removed first.
+        """Hold the folder as its only writer; leftovers are removed before and after.
 
         Raises RunConflictError where another process writes it.
         """
         with _locked(self.path):
             self._sweep()
-            yield
+            try:
+                yield
+            finally:
+                self._sweep()
 
     def _sweep(self) -> None:
         for folder in self.path.glob("parts/*"):

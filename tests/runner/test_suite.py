@@ -58,7 +58,9 @@ def test_a_sensor_that_nobody_has_makes_a_cell_n_a(write, scenario_file, tmp_pat
 
 
 def test_the_same_navigator_with_other_parameters_is_another_entry(write):
-    suite = load_suite(write(navigators="[orca, {type: orca, label: far-sighted, time_horizon: 9.0}]"))
+    suite = load_suite(
+        write(navigators="[orca, {type: orca, label: far-sighted, time_horizon: 9.0}]")
+    )
     near, far = suite.entries
     assert (near.label, far.label) == ("orca", "far-sighted")
     assert near.spec["type"] == far.spec["type"] == "orca"
@@ -105,3 +107,12 @@ def test_a_wrong_selection_is_asked_wrongly(write):
         load_suite(write(), Selection(tracks=("knwon",)))
     with pytest.raises(UsageError, match="seeds must be N"):
         load_suite(write(), Selection(seeds="x"))
+
+
+def test_a_navigator_can_be_written_out_where_it_is_selected(write):
+    written = "{type: orca, label: far-sighted, time_horizon: 9.0}"
+    suite = load_suite(write(), Selection(navigators=("orca", written)))
+    assert [entry.label for entry in suite.entries] == ["orca", "far-sighted"]
+    assert suite.entries[1].spec["time_horizon"] == 9.0
+    with pytest.raises(ScenarioError, match="--navigator:1"):
+        load_suite(write(), Selection(navigators=("{type: orca",)))
