@@ -148,9 +148,9 @@ class OmplOrca(Hierarchical):
 
         orca: OrcaConfig = Field(OrcaConfig(), description="parameters of the controller")
         lookahead: float = Field(
-            2.0, gt=0, description="[m] of path between agent and target, at most"
+            1.0, gt=0, description="[m] of path between agent and target, at most"
         )
-        cut: float = Field(0.2, gt=0, description="[m] by which corners of the path may be missed")
+        cut: float = Field(0.1, gt=0, description="[m] by which corners of the path may be missed")
 
     def _controller(self) -> PartSpec:
         return {"type": "orca", **self.config.orca.model_dump()}

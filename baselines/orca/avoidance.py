@@ -1,11 +1,11 @@
 """What the ORCA navigator and the ORCA controller share: limits per row, and the kernel's call."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 from pydantic import Field
 
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.navigator import PluginConfig
 from benchnav.navigation.observation import Edges, Neighbours, Observation
@@ -13,8 +13,9 @@ from benchnav.navigation.row_table import RowTable
 from benchnav.navigation.streams import canonical_order
 from benchnav.threads import run_rows
 
-from ..approach import approach
-from .kernel import OWN, avoid
+from .kernel import OWN, avoid, prepare
+
+LEAST = 64  # agents below which a second thread costs more than it saves
 
 
 class OrcaConfig(PluginConfig):
@@ -24,9 +25,9 @@ class OrcaConfig(PluginConfig):
         5.0, gt=0, description="[s] for which velocities are safe with respect to neighbours"
     )
     time_horizon_obstacle: float = Field(
-        2.0, gt=0, description="[s] for which velocities are safe with respect to edges"
+        1.0, gt=0, description="[s] for which velocities are safe with respect to edges"
     )
-    margin: float = Field(0.01, ge=0, description="[m] by which every disc is taken to be larger")
+    margin: float = Field(0.05, ge=0, description="[m] by which every disc is taken to be larger")
     neighbours: int = Field(10, ge=0, description="nearest neighbours that are considered")
     perturbation: float = Field(
         0.005,
@@ -61,43 +62,38 @@ class Avoidance:
     def velocity(self, observation: Observation, target: FloatArray) -> FloatArray:
         """(B, A, 2) velocity [m/s] near the one that leads to ``target`` (B, A, 2) [m]."""
         worlds, agents = observation.active.shape
-        told = self._told.take("own", observation.rows, agents)
-        offset = self._told.take("offset", observation.rows, agents)
-        wanted = approach(observation.position, target, told[..., 2], told[..., 3])
-        speed = np.sqrt(np.sum(wanted * wanted, axis=-1, keepdims=True))
-        usual = told[..., 2:3]
-        own = np.empty((worlds, agents, OWN))
-        own[..., 0:2] = observation.position
-        own[..., 2:4] = observation.velocity + usual * offset
-        own[..., 4:6] = wanted + speed * offset
-        own[..., 6:8] = told[..., 0:2]
-        own[..., 8] = 1.0 / np.where(told[..., 3] > 0.0, told[..., 3], 1.0)
-        return self._solve(own, observation.active, observation.neighbours, observation.edges)
-
-    def _solve(
-        self,
-        own: FloatArray,
-        active: BoolArray,
-        neighbours: Neighbours | None,
-        edges: Edges | None,
-    ) -> FloatArray:
-        worlds, agents = active.shape
         rows = worlds * agents
-        seen = neighbours if neighbours is not None else no_neighbours(worlds, agents)
-        sides = edges if edges is not None else no_edges(worlds, agents)
-        parts = (
-            seen.position, seen.velocity, seen.radius, seen.kind, seen.count,
-            sides.start, sides.end, sides.before, sides.after,
-            sides.start_convex, sides.end_convex, sides.count,
-        )  # fmt: skip
-        flat = (np.ascontiguousarray(p).reshape(rows, *p.shape[2:]) for p in parts)
-        answer = np.zeros((rows, 2))
+        told, offset = (
+            self._told.take(name, observation.rows, agents) for name in ("own", "offset")
+        )
+        whole = (observation.position, observation.velocity, target, told, offset)
+        own, answer = np.empty((rows, OWN)), np.zeros((rows, 2))
+        run_rows(prepare, rows, *_flat(rows, whole), own, least=LEAST)
+        config = self.config
         run_rows(
-            avoid, rows, own.reshape(rows, OWN), np.ascontiguousarray(active).reshape(rows), *flat,
-            self.config.neighbours, self.config.margin, 1.0 / self.config.time_horizon,
-            1.0 / self.config.time_horizon_obstacle, answer,
+            avoid, rows, own, *_flat(rows, (observation.active, *_sensed(observation))),
+            config.neighbours, config.margin, 1.0 / config.time_horizon,
+            1.0 / config.time_horizon_obstacle, answer, least=LEAST,
         )  # fmt: skip
         return answer.reshape(worlds, agents, 2)
+
+
+def _flat(rows: int, arrays: Iterable[AnyArray]) -> Iterator[AnyArray]:
+    """Each (B, A, …) as contiguous (rows, …)."""
+    for array in arrays:
+        yield np.ascontiguousarray(array).reshape(rows, *array.shape[2:])
+
+
+def _sensed(observation: Observation) -> tuple[AnyArray, ...]:
+    """Neighbours and edges as the kernel takes them."""
+    shape = observation.active.shape
+    seen = observation.neighbours or no_neighbours(*shape)
+    sides = observation.edges or no_edges(*shape)
+    return (
+        seen.position, seen.velocity, seen.radius, seen.kind, seen.count,
+        sides.start, sides.end, sides.before, sides.after,
+        sides.start_convex, sides.end_convex, sides.count,
+    )  # fmt: skip
 
 
 def no_neighbours(worlds: int, agents: int) -> Neighbours:

@@ -5,6 +5,8 @@ on nothing but itself. Arrays are plain arguments, because Numba counts referenc
 to the members of a tuple on every access.
 """
 
+import math
+
 import numpy as np
 
 from benchnav.arena.solid import Kind
@@ -16,6 +18,39 @@ from .program import least_excess, nearest_permitted
 
 _MOVER = int(Kind.DYNAMIC)
 OWN = 9  # columns of an agent's own state: x, y, vx, vy, wanted vx, vy, radius, limit, 1 / step
+
+
+@kernel
+def prepare(
+    low: int, high: int, position: FloatArray, velocity: FloatArray, target: FloatArray,
+    told: FloatArray, offset: FloatArray, own: FloatArray,
+) -> None:  # fmt: skip
+    """Fill rows low … high - 1 of ``own`` (N, 9), see `OWN`.
+
+    Wanted is the velocity straight to the target, not past it within a step.
+
+    Args:
+        low: first row.
+        high: one past the last row.
+        position: (N, 2) [m].
+        velocity: (N, 2) [m/s].
+        target: (N, 2) [m].
+        told: (N, 4) radius [m], speed limit, preferred speed [m/s], step [s].
+        offset: (N, 2) error of both velocities, as a share of the speeds.
+        own: (N, 9).
+    """
+    for i in range(low, high):
+        step = told[i, 3] if told[i, 3] > 0.0 else 1.0
+        dx, dy = target[i, 0] - position[i, 0], target[i, 1] - position[i, 1]
+        distance = math.sqrt(dx * dx + dy * dy)
+        speed = min(told[i, 2], distance / step)
+        scale = speed / distance if distance > 0.0 else 0.0
+        own[i, 0], own[i, 1] = position[i, 0], position[i, 1]
+        own[i, 2] = velocity[i, 0] + told[i, 2] * offset[i, 0]
+        own[i, 3] = velocity[i, 1] + told[i, 2] * offset[i, 1]
+        own[i, 4] = scale * dx + speed * offset[i, 0]
+        own[i, 5] = scale * dy + speed * offset[i, 1]
+        own[i, 6], own[i, 7], own[i, 8] = told[i, 0], told[i, 1], 1.0 / step
 
 
 @kernel
