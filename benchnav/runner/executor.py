@@ -120,7 +120,10 @@ class _Crew:
         self.workers.remove(worker)
         cause, task = _cause(worker.process.exitcode), worker.task
         if task is None or task.charge:
-            raise BenchnavError(f"Workers must be able to start. One {cause}. Try --workers 0.")
+            raise BenchnavError(
+                f"Worker processes must be able to start. One {cause} (stderr says why)."
+                " A script must call this under `if __name__ == '__main__':`; 0 workers need none."
+            )
         self.progress.advance(-worker.told)
         if len(task.seeds) > 1:
             self.pending.extendleft(reversed(task.alone()))

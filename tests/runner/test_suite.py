@@ -1,9 +1,15 @@
 """A suite is a lazy product, and says beforehand which of its cells cannot be."""
 
+from pathlib import Path
+
 import pytest
 
 from benchnav.errors import ConfigError, ScenarioError, UnknownPluginError, UsageError
 from benchnav.runner.suite import Selection, load_suite
+from benchnav.runner.suite_file import suite_names
+from benchnav.scenario.catalogue import names
+
+SHIPPED = Path(__file__).parents[2] / "scenarios"
 
 
 @pytest.fixture
@@ -116,3 +122,25 @@ def test_a_navigator_can_be_written_out_where_it_is_selected(write):
     assert suite.entries[1].spec["time_horizon"] == 9.0
     with pytest.raises(ScenarioError, match="--navigator:1"):
         load_suite(write(), Selection(navigators=("{type: orca",)))
+
+
+@pytest.mark.parametrize("name", suite_names())
+def test_what_ships_can_be_loaded_and_every_navigator_can_run_somewhere(name):
+    suite = load_suite(name)
+    assert suite.name == name
+    assert suite.split == "test"
+    for entry in suite.entries:
+        assert any(cell.reason == "" for cell in suite.cells() if cell.entry is entry)
+
+
+def test_quick_is_a_first_look_at_five_navigators():
+    suite = load_suite("quick")
+    assert len(suite.scenarios) >= 4
+    assert len(suite.entries) >= 5
+    assert len(suite.seeds) >= 20
+
+
+def test_full_has_every_scenario_that_ships():
+    shipped = {name for name in names() if (SHIPPED / f"{name}.yaml").is_file()}
+    assert shipped
+    assert {scenario.name for scenario in load_suite("full").scenarios} == shipped
