@@ -42,8 +42,9 @@ class Stratum:
     failed: BoolArray  # (S, N) the navigator failed
 
     def rng(self, purpose: str) -> np.random.Generator:
-        """A generator of this stratum's own, whatever else the table holds."""
-        key = "\0".join([purpose, *(str(getattr(self, name)) for name in KEYS)])
+        """A generator of this scenario's own, the same in every track and table."""
+        own = (self.scenario, self.scenario_hash, self.horizon, self.dt)
+        key = "\0".join([purpose, *map(str, own)])
         return np.random.default_rng(list(sha256(key.encode()).digest()))
 
 

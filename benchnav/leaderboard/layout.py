@@ -16,11 +16,11 @@ WIDE = 8  # metrics beyond which a table has a row for each of them
 ABREAST = 5  # navigators side by side in such a table
 
 LEGEND = (
-    "value [low, high] is the mean over worlds with its 95 % interval;"
-    " (n) where only n episodes define it.",
-    "rank, by the first metric that ranks, counts those significantly better and worse"
-    " (paired worlds, sign flips, Holm): 1–3 is a tie.",
-    "Bold: nobody is significantly better. ↑ more is better, ↓ less is better."
+    "value [low, high]: mean over worlds and its 95 % interval; (n): only n episodes define it."
+    " ↑ more is better, ↓ less.",
+    "rank: 1 + entries significantly better – N − entries significantly worse, by the first metric"
+    " that ranks; 1–3 is a tie.",
+    "Paired worlds, sign flips, Holm. Bold: nobody is significantly better."
     " A failed episode counts as the worst: success 0, collided 1.",
 )
 
@@ -131,10 +131,10 @@ class _Table:
         if not leader.episodes:
             blank = [Cell("")] * (len(self.metrics) - 1 + bool(self.middle))
             return (*row, Cell(leader.note), *blank)
-        limit = len(self.metrics) if len(self.metrics) <= NARROW else INTERVALS
+        wide = len(self.metrics) > NARROW
+        limit = INTERVALS - bool(self.middle) if wide else len(self.metrics)
         for place, metric in enumerate(self.metrics):
-            shown = place < limit - bool(self.middle)
-            row.append(self._cell(name, metric, shown))
+            row.append(self._cell(name, metric, place < limit))
             if self.middle and metric == self.leading:
                 inner = self.middle.get((name, metric))
                 row.append(cell(inner, interval=False, decided=False))

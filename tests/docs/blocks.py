@@ -14,7 +14,7 @@ FENCE = re.compile(r"^```(?P<language>\S*)\n(?P<text>.*?)^```$", re.MULTILINE | 
 NAMED = re.compile(r"# file: (?P<name>\S+)\n")
 SHOWN = {"text", "markdown", "latex", "csv", "json"}  # read by people, not executed
 FEWER = ["--seeds", "1", "--workers", "0"]
-QUICKER = ["--scenario", "circle/antipodal", "--scenario", "trap/u"]
+QUICKER = ["--scenario", "circle/antipodal", "--scenario", "trap/u", "--track", "known"]
 
 
 @dataclass(frozen=True)
