@@ -39,7 +39,7 @@ class GuidedConfig(PluginConfig):
         " and at intervals ({every: seconds})",
     )
     lookahead: float = Field(1.0, gt=0, description="[m] of path between agent and target, at most")
-    cut: float = Field(0.05, gt=0, description="[m] by which corners of the path may be missed")
+    cut: float = Field(0.03, gt=0, description="[m] by which corners of the path may be missed")
 
 
 class Hierarchical(Navigator):

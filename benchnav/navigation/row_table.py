@@ -34,11 +34,6 @@ class RowTable:
             taken = np.pad(taken, widths)
         return taken
 
-    def at(self, name: str, row: int) -> AnyArray:
-        """(A, …) a view of what ``row`` holds, to be written to."""
-        view: AnyArray = self._arrays[name][row]
-        return view
-
     def _grown(self, name: str, rows: int, value: AnyArray) -> AnyArray:
         old = self._arrays.get(name)
         if old is not None and old.shape[0] >= rows and old.shape[1] >= len(value):
