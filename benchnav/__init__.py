@@ -1,4 +1,4 @@
-"""Crowd navigation in unknown and dynamic environments: planners, avoiders, learners, measured alike."""
+"""Crowd navigation in unknown and dynamic environments, measured alike for everybody."""
 
 from benchnav.errors import BenchnavError
 from benchnav.plugins import (

@@ -10,6 +10,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
+from itertools import pairwise
 from typing import Any
 
 
@@ -31,8 +32,7 @@ def run_rows(kernel: Callable[..., None], rows: int, *args: Any, least: int = 16
         return
     cuts = [rows * k // parts for k in range(parts + 1)]
     jobs = [
-        _pool(thread_count()).submit(kernel, low, high, *args)
-        for low, high in zip(cuts[1:-1], cuts[2:], strict=True)
+        _pool(thread_count()).submit(kernel, low, high, *args) for low, high in pairwise(cuts[1:])
     ]
     kernel(cuts[0], cuts[1], *args)
     for job in jobs:

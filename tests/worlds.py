@@ -80,8 +80,7 @@ def random_world(seed, count=4, contact=ContactRule.SLIDE, unicycle=True, **opti
         half = rng.uniform(0.5, 1.0)
         p = place(1.5 * half)
         solids.append(box(Kind.STATIC, *p, half, half, rng.uniform(0, 3)))
-    for _ in range(2):
-        solids.append(disc(Kind.STATIC, *place(0.7), 0.7))
+    solids += [disc(Kind.STATIC, *place(0.7), 0.7) for _ in range(2)]
     start = np.array([place(0.5) for _ in range(count)])
     movers = []
     for k in range(3):

@@ -8,9 +8,10 @@ from pydantic import Field
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.navigator import PluginConfig
-from benchnav.navigation.observation import Edges, Neighbours, Observation
+from benchnav.navigation.observation import Observation
 from benchnav.navigation.row_table import RowTable
 from benchnav.navigation.streams import canonical_order
+from benchnav.sensors.readings import Edges, Neighbours
 from benchnav.threads import run_rows
 
 from .kernel import OWN, avoid, prepare

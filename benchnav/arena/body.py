@@ -23,8 +23,11 @@ class LawKind(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """A motion law with its numbers drawn. Position at time t [s] is a pure function of t,
-    except RELOCATE, which waits until its new place is free."""
+    """A motion law with its numbers drawn.
+
+    Position at time t [s] is a pure function of t, except RELOCATE, which waits until
+    its new place is free.
+    """
 
     kind: LawKind
     times: FloatArray  # (W,) [s], rising from 0. CIRCLE: [angular speed rad/s]. RELOCATE: [0, time]

@@ -51,11 +51,11 @@ def capsule_time(
     px: float, py: float, wx: float, wy: float, reach: float, way: float,
     x0: float, y0: float, x1: float, y1: float,
 ) -> float:  # fmt: skip
-    """First t ≥ 0 at which p + w t is within ``reach`` of the segment, approaching; inf if never.
+    """First t ≥ 0 at which p + w t comes within ``reach`` of the segment; inf if never.
 
-    ``reach`` is the sum of the two radii; what is farther off than ``way`` may be left out. A point that is within reach already
-    and approaches has 0; one that separates has inf, because the distance to a
-    convex set along a line is convex.
+    ``reach`` is the sum of the two radii; what is farther off than ``way`` is left out.
+    A point that is within reach already and approaches has 0; one that separates has
+    inf, because the distance to a convex set along a line is convex.
     """
     qx, qy = nearest_on_segment(px, py, x0, y0, x1, y1)
     fx, fy = px - qx, py - qy

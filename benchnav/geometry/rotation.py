@@ -80,7 +80,7 @@ def angle_of(x: float, y: float) -> float:
 
 @kernel
 def _arctan_small(t: float) -> float:
-    """arctan on |t| ≤ tan(pi/8): Euler's series, whose terms shrink by t²/(1+t²) ≤ 0.147."""
+    """Arctangent on |t| ≤ tan(pi/8): Euler's series, whose terms shrink by t²/(1+t²) ≤ 0.147."""
     q = t * t / (1.0 + t * t)
     total = 1.0
     for n in range(20, 0, -1):

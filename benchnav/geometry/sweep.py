@@ -15,13 +15,13 @@ from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
-from numba import njit
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
+from benchnav.kernels import kernel
 
 
-@njit(cache=True)
+@kernel
 def point_segment_distance2(
     px: float, py: float, x0: float, y0: float, x1: float, y1: float
 ) -> float:
@@ -30,7 +30,7 @@ def point_segment_distance2(
     return (px - qx) * (px - qx) + (py - qy) * (py - qy)
 
 
-@njit(cache=True)
+@kernel
 def segment_distance2(
     ax: float, ay: float, bx: float, by: float, x0: float, y0: float, x1: float, y1: float
 ) -> float:
@@ -44,7 +44,7 @@ def segment_distance2(
     return least
 
 
-@njit(cache=True)
+@kernel
 def segment_capsule_distance(
     ax: float, ay: float, bx: float, by: float, capsule: FloatArray
 ) -> float:
@@ -54,7 +54,7 @@ def segment_capsule_distance(
     return apart
 
 
-@njit(cache=True)
+@kernel
 def is_free_of(
     px: float, py: float, qx: float, qy: float, radius: float, capsule: FloatArray
 ) -> bool:
@@ -71,7 +71,7 @@ def is_free_of(
     return free
 
 
-@njit(cache=True)
+@kernel
 def motion_is_free(
     px: float, py: float, qx: float, qy: float, radius: float, capsules: FloatArray
 ) -> bool:
@@ -84,7 +84,7 @@ def motion_is_free(
     return free
 
 
-@njit(cache=True)
+@kernel
 def clearance(px: float, py: float, capsules: FloatArray) -> float:
     """Distance [m] of a point to the nearest capsule (P, 5); negative inside one, inf if none."""
     least = math.inf
@@ -94,7 +94,7 @@ def clearance(px: float, py: float, capsules: FloatArray) -> float:
     return least
 
 
-@njit(cache=True)
+@kernel
 def inside_solid(
     px: float, py: float, capsules: FloatArray, first: IntArray, outside: IntArray
 ) -> bool:

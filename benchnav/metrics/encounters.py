@@ -11,7 +11,6 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from benchnav.arena.body import LawKind
 from benchnav.arena.solid import Kind
@@ -19,6 +18,7 @@ from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
 from benchnav.geometry.sweep import segment_distance2
+from benchnav.kernels import kernel
 from benchnav.metrics.trajectory import Trajectories
 
 TTC_CAP = 5.0  # [s] a collision that is farther off than this threatens nobody yet
@@ -71,7 +71,7 @@ def encounters(trajectories: Trajectories, radius: FloatArray, things: Things) -
     return found
 
 
-@njit(cache=True, inline="always")
+@kernel
 def _skip(gap: float, clearance: float, ttc: float, top: float, dt: float) -> float:
     """Steps after which the partner can first matter, at closing speeds up to ``top``."""
     if top <= 0.0:
@@ -79,7 +79,7 @@ def _skip(gap: float, clearance: float, ttc: float, top: float, dt: float) -> fl
     return min((gap - clearance) / (top * dt), (gap / top - ttc) / dt)
 
 
-@njit(cache=True)
+@kernel
 def meet_things(
     position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
     radius: FloatArray, top: FloatArray, dt: float, capsules: FloatArray, body: IntArray,
@@ -101,7 +101,7 @@ def meet_things(
                 k = last[a] + 1 if ahead > last[a] else k + max(1, int(ahead))
 
 
-@njit(cache=True)
+@kernel
 def _body_top(offset: FloatArray, jumps: BoolArray, dt: float) -> FloatArray:
     """(M,) [m/s] greatest speed; inf for what jumps."""
     top = np.zeros(len(offset))
@@ -115,7 +115,7 @@ def _body_top(offset: FloatArray, jumps: BoolArray, dt: float) -> FloatArray:
     return top
 
 
-@njit(cache=True, inline="always")
+@kernel
 def _thing_step(
     a: int, c: int, k: int, position: FloatArray, velocity: FloatArray, duration: FloatArray,
     radius: float, dt: float, capsules: FloatArray, m: int, offset: FloatArray, jumps: BoolArray,
@@ -151,12 +151,12 @@ def _thing_step(
         least = math.sqrt(segment_distance2(px, py, qx, qy, x0, y0, x1, y1)) - reach
         clearance[a] = min(clearance[a], least)
     if moves and gap < (ttc[a] + dt) * math.sqrt(wx * wx + wy * wy):
-        time = capsule_time(px, py, wx, wy, reach, x0, y0, x1, y1)
+        time = capsule_time(px, py, wx, wy, reach, math.inf, x0, y0, x1, y1)
         ttc[a] = min(ttc[a], max(0.0, time - duration[a, k]))
     return gap
 
 
-@njit(cache=True)
+@kernel
 def meet_agents(
     position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
     leaves: IntArray, radius: FloatArray, top: FloatArray, dt: float,
@@ -185,7 +185,7 @@ def meet_agents(
                 k = end + 1 if ahead > states else k + max(1, int(ahead))
 
 
-@njit(cache=True, inline="always")
+@kernel
 def _pair_sample(
     i: int, j: int, k: int, position: FloatArray, last: IntArray, radius: FloatArray,
     clearance: FloatArray, gap: FloatArray, near: BoolArray,
@@ -204,7 +204,7 @@ def _pair_sample(
     return between
 
 
-@njit(cache=True, inline="always")
+@kernel
 def _pair_step(
     i: int, j: int, k: int, position: FloatArray, velocity: FloatArray, duration: FloatArray,
     last: IntArray, leaves: IntArray, radius: FloatArray, clearance: FloatArray, ttc: FloatArray,

@@ -10,10 +10,10 @@ import math
 from collections.abc import Callable
 
 import numpy as np
-from numba import njit
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
+from benchnav.kernels import kernel
 from benchnav.metrics.analysis import analyse
 from benchnav.metrics.metric import Metric
 from benchnav.metrics.success import OWN
@@ -85,7 +85,7 @@ def _order(
     return np.where(count > 0, order, math.nan)
 
 
-@njit(cache=True)
+@kernel
 def _parts(
     place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
 ) -> FloatArray:

@@ -30,7 +30,7 @@ class Controller(ABC):
     def __init__(self, config: PluginConfig | None = None) -> None:
         self.config: Any = config if config is not None else self.Config()
 
-    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:  # noqa: B027 - optional
         """Start the worlds ``rows`` (N,)."""
 
     @abstractmethod

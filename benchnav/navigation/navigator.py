@@ -58,7 +58,7 @@ class Navigator(ABC):
         """False where a wall-clock budget decides what it answers."""
         return True
 
-    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:  # noqa: B027 - optional
         """Start the worlds ``rows`` (N,), told ``briefings`` (N,)."""
 
     @abstractmethod

@@ -9,20 +9,20 @@ from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.geometry.hash_grid import fill
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel
-from benchnav.navigation.navigator import Need
-from benchnav.navigation.observation import Edges, Neighbours, Rays
 from benchnav.sensors.edges import find_edges
 from benchnav.sensors.neighbours import find_neighbours
 from benchnav.sensors.rays import cast_rays
+from benchnav.sensors.readings import Edges, Neighbours, Rays
 from benchnav.threads import run_rows
 from benchnav.world.simulation import Simulation
 from benchnav.world.touch import BRUTE_FORCE
 
+RAYS, NEIGHBOURS, EDGES = "rays", "neighbours", "edges"  # names of the sensors
 LEAST = 64  # agents below which a second thread costs more than it saves
 
 
 def sense(
-    simulation: Simulation, chosen: IntArray, needs: frozenset[Need]
+    simulation: Simulation, chosen: IntArray, needs: frozenset[str]
 ) -> tuple[Rays | None, Neighbours | None, Edges | None]:
     """What the chosen agents perceive now.
 
@@ -34,18 +34,18 @@ def sense(
     sensing: Sensing = simulation.worlds[0].sensing
     crowd = simulation.A > BRUTE_FORCE
     side = 1.0
-    if crowd and needs & {Need.RAYS, Need.NEIGHBOURS}:
+    if crowd and needs & {RAYS, NEIGHBOURS}:
         side = _cell_side(simulation, sensing)
         run_rows(
             _sort_agents, simulation.B, simulation.agents, simulation.hashed, simulation.sorted,
             side,
         )  # fmt: skip
     rays = neighbours = edges = None
-    if Need.RAYS in needs and sensing.rays is not None:
+    if RAYS in needs and sensing.rays is not None:
         rays = _rays(simulation, chosen, sensing.rays, side)
-    if Need.NEIGHBOURS in needs and sensing.neighbours is not None:
+    if NEIGHBOURS in needs and sensing.neighbours is not None:
         neighbours = _neighbours(simulation, chosen, sensing.neighbours, sensing.occlusion, side)
-    if Need.EDGES in needs and sensing.edges is not None:
+    if EDGES in needs and sensing.edges is not None:
         edges = _edges(simulation, chosen, sensing.edges, sensing.occlusion)
     return rays, neighbours, edges
 
@@ -84,8 +84,8 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
     fan = np.array([cos_sin(a) for a in angle])
     s = simulation
     run_rows(
-        cast_rays, chosen.size, chosen, fan, float(sensor.range), sensor.thick, side, s.sees, s.records,
-        s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.sorted,
+        cast_rays, chosen.size, chosen, fan, float(sensor.range), sensor.thick, side, s.sees,
+        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.sorted,
         out.distance, out.kind, out.approach, out.goal, least=LEAST,
     )  # fmt: skip
     return out
@@ -101,8 +101,8 @@ def _neighbours(
     )  # fmt: skip
     s = simulation
     run_rows(
-        find_neighbours, chosen.size, chosen, float(sensor.range), occlusion, side, s.sees, s.records,
-        s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.sorted,
+        find_neighbours, chosen.size, chosen, float(sensor.range), occlusion, side, s.sees,
+        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.sorted,
         out.position, out.velocity, out.radius, out.kind, out.count, least=LEAST,
     )  # fmt: skip
     return out
@@ -117,8 +117,8 @@ def _edges(simulation: Simulation, chosen: IntArray, sensor: EdgeSensor, occlusi
     )  # fmt: skip
     s = simulation
     run_rows(
-        find_edges, chosen.size, chosen, float(sensor.range), occlusion, s.records, s.agents, s.bodies,
-        s.shapes, s.capsules, s.start, s.item, out.start, out.end, out.before, out.after,
+        find_edges, chosen.size, chosen, float(sensor.range), occlusion, s.records,
+        s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, out.start, out.end, out.before, out.after,
         out.start_convex, out.end_convex, out.count, least=LEAST,
     )  # fmt: skip
     return out

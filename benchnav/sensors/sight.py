@@ -39,11 +39,18 @@ def in_sight(
             if hides(shapes[k], px - body.x, py - body.y, qx - body.x, qy - body.y):
                 return False
     if world.last - world.first <= FEW:
-        for p in range(world.first, world.last):
-            if hides(capsules[p], px, py, qx, qy):
-                return False
-        return True
+        return _clear_of_all(px, py, qx, qy, world, capsules)
     return _clear_along(px, py, qx, qy, world, capsules, start, item)
+
+
+@kernel
+def _clear_of_all(
+    px: float, py: float, qx: float, qy: float, world: Any, capsules: AnyArray
+) -> bool:
+    clear = True
+    for p in range(world.first, world.last):
+        clear = clear and not hides(capsules[p], px, py, qx, qy)
+    return clear
 
 
 @kernel

@@ -8,7 +8,16 @@ from benchnav.arrays import AnyArray, IntArray
 from benchnav.episode.episode import Status
 from benchnav.kernels import kernel
 from benchnav.world.fixed import cell_at
-from benchnav.world.touch import AGENT, BODY, FIXED, GOAL, encloses, from_agent, from_body, from_fixed
+from benchnav.world.touch import (
+    AGENT,
+    BODY,
+    FIXED,
+    GOAL,
+    encloses,
+    from_agent,
+    from_body,
+    from_fixed,
+)
 
 RELEASE = 0.01  # [m] a contact lasts until the gap is wider: sliding bodies part by a sagitta
 MAX_HITS = 8  # touches of one agent within a substep, after which it is wedged and stands
@@ -22,7 +31,7 @@ def touch(
     i: int, time: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, opened: AnyArray, closed: AnyArray,
 ) -> int:  # fmt: skip
-    """Agent i meets the partner in its code now: record and respond. Returns another agent or -1."""
+    """Agent i meets the partner in its code: record and respond. Returns an agent or -1."""
     a = agents[i]
     which, k = a.code % 4, a.code // 4
     if which == GOAL:

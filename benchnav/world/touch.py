@@ -18,7 +18,7 @@ BRUTE_FORCE = 24  # agents up to which all pairs are cheaper than a grid
 
 @kernel
 def candidates(i: int, agents: AnyArray, hashed: IntArray, item: IntArray, near: IntArray) -> int:
-    """Lists in ``near`` (A,) the agents that i could touch in this substep; returns their number."""
+    """Lists in ``near`` (A,) the agents that i could touch in this substep; their number."""
     n = 0
     if len(agents) <= BRUTE_FORCE:
         for j in range(len(agents)):
@@ -137,7 +137,7 @@ def from_body(a: Any, body: Any, shapes: AnyArray) -> tuple[float, float, float]
 
 @kernel
 def encloses(body: Any, shapes: AnyArray, x: float, y: float) -> bool:
-    """Is (x, y) inside the loops of a body (even-odd rule)? A disc has none: its core is a point."""
+    """Is (x, y) inside the loops of a body (even-odd rule)? A disc has none."""
     inside = False
     fx, fy = x - body.x, y - body.y
     for q in range(body.first, body.last):

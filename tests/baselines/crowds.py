@@ -6,7 +6,8 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.observation import Edges, Neighbours, Observation
+from benchnav.navigation.observation import Observation
+from benchnav.sensors.readings import Edges, Neighbours
 
 DT = 0.2
 

@@ -162,8 +162,10 @@ class SlowWorld:
         inside = np.hypot(*(agent.p - crew.goal[i])) <= tolerance
         found = [(0.0 if inside else first_touch(agent.p, agent.v, goal, tolerance), ("goal", 0))]
         for k, solid in enumerate(world.solids):
-            for c in solid.capsules:
-                found.append((first_touch(agent.p, agent.v, c, r + c[4]), ("solid", k, c)))
+            found += [
+                (first_touch(agent.p, agent.v, c, r + c[4]), ("solid", k, c))
+                for c in solid.capsules
+            ]
         for m, body in enumerate(world.bodies):
             for c in body.solid.capsules:
                 relative = agent.v - moves[m]

@@ -1,0 +1,50 @@
+# One command for everything; each target installs what it needs first.
+PYTHON ?= python3
+VENV ?= .venv
+BIN := $(VENV)/bin
+OUT ?= runs/quick
+READY := $(VENV)/.ready
+PEERS := .venv-peers
+
+.PHONY: setup run test check lint types layers pytest bench clean
+
+setup: $(READY)  ## .venv with everything, at the versions of constraints.txt
+
+$(READY): pyproject.toml constraints.txt
+	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "benchnav needs Python 3.11 or newer, this is " + sys.version)'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --upgrade -c constraints.txt 'pip>=25.1' setuptools
+	$(BIN)/python -m pip install --quiet -c constraints.txt -e '.[all]' --group dev
+	touch $@
+
+run: $(READY)  ## the suite `quick`, and its leaderboard
+	$(BIN)/benchnav run quick --out $(OUT)
+	$(BIN)/benchnav leaderboard $(OUT)
+
+check: lint types layers  ## everything but the tests
+
+lint: $(READY)
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(READY)
+	$(BIN)/mypy benchnav baselines scenarios
+
+layers: $(READY)
+	$(BIN)/lint-imports
+
+pytest: $(READY)
+	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal
+
+test: check pytest  ## all checks and tests
+
+bench: $(READY) $(PEERS)/.ready  ## speed against peers and limits; writes docs/benchmarks.md
+	$(BIN)/python -m benchmarks --peers $(PEERS)/bin/python --out docs/benchmarks.md
+
+$(PEERS)/.ready: benchmarks/constraints.txt
+	$(PYTHON) -m venv $(PEERS)
+	$(PEERS)/bin/python -m pip install --quiet -r benchmarks/constraints.txt
+	touch $@
+
+clean:
+	rm -rf $(VENV) $(PEERS) build dist *.egg-info

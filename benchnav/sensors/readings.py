@@ -1,0 +1,68 @@
+"""What sensors read: rays, neighbours and edges, of some agents of a batch of worlds.
+
+Arrays start with (B, A): the worlds of a call and the agents that were asked for.
+World frame.
+"""
+
+from dataclasses import dataclass, fields, replace
+from typing import Any, Self
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
+
+
+class Rows:
+    """Arrays whose first axis is B, of which a subset of worlds can be taken."""
+
+    def select(self, index: IntArray) -> Self:
+        """The worlds ``index``, in that order."""
+        changes: dict[str, Any] = {}
+        for f in fields(self):  # type: ignore[arg-type]
+            value = getattr(self, f.name)
+            if isinstance(value, np.ndarray) and f.name != "angle":
+                changes[f.name] = value[index]
+            elif isinstance(value, Rows):
+                changes[f.name] = value.select(index)
+            elif isinstance(value, tuple):
+                changes[f.name] = tuple(value[i] for i in index)
+        return replace(self, **changes)  # type: ignore[type-var]
+
+
+@dataclass(frozen=True, eq=False)
+class Rays(Rows):
+    """What each ray meets first; the goal is on a layer of its own."""
+
+    angle: FloatArray  # (R,) [rad] from the agent's heading
+    distance: FloatArray  # (B, A, R) [m] travelled by the ray or its disc; range if nothing
+    kind: ByteArray  # (B, A, R) of Kind: NOTHING, AGENT, WALL, STATIC, DYNAMIC
+    approach: FloatArray  # (B, A, R) [m/s] of the mover that is met, towards the agent, else 0
+    goal: FloatArray  # (B, A, R) [m] to the own goal's disc along the ray; inf if missed or hidden
+
+
+@dataclass(frozen=True, eq=False)
+class Neighbours(Rows):
+    """The nearest other agents and dynamic obstacles in range and in sight, nearest first."""
+
+    position: FloatArray  # (B, A, K, 2) [m]
+    velocity: FloatArray  # (B, A, K, 2) [m/s]
+    radius: FloatArray  # (B, A, K) [m] (dynamic obstacles: circumscribed)
+    kind: ByteArray  # (B, A, K) Kind.AGENT or Kind.DYNAMIC
+    count: IntArray  # (B, A) valid entries
+
+
+@dataclass(frozen=True, eq=False)
+class Edges(Rows):
+    """The nearest edges of walls and static obstacles that face the agent and are in sight.
+
+    Each runs from start to end with the solid on its left; nearest first. A disc
+    is seen as the edges of the regular octagon circumscribed about it.
+    """
+
+    start: FloatArray  # (B, A, E, 2) [m]
+    end: FloatArray  # (B, A, E, 2) [m]
+    before: FloatArray  # (B, A, E, 2) unit direction of the previous edge of its loop
+    after: FloatArray  # (B, A, E, 2) unit direction of the next edge of its loop
+    start_convex: BoolArray  # (B, A, E)
+    end_convex: BoolArray  # (B, A, E)
+    count: IntArray  # (B, A) valid entries
