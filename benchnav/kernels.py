@@ -30,7 +30,7 @@ _CONSTANTS = ("arena", "episode")  # packages whose enumerations kernels freeze
 def kernel(function: F) -> F:
     """Compile once per signature, cached on disk."""
     if not os.environ.get("NUMBA_CACHE_DIR"):
-        config.CACHE_DIR = str(cache_folder(function.__module__.partition(".")[0]))
+        vars(config)["CACHE_DIR"] = str(cache_folder(function.__module__.partition(".")[0]))
     compiled: F = njit(function, cache=True, nogil=True, error_model="numpy")
     return compiled
 

@@ -64,7 +64,9 @@ def back_and_forth(solid, a, b, speed, phase=0.0):
     return Body(solid, Law(LawKind.TRACK, times, np.array([a, b, a]), True, phase))
 
 
-def random_world(seed, count=4, contact=ContactRule.SLIDE, unicycle=True, **options):
+def random_world(
+    seed, count=4, contact=ContactRule.SLIDE, unicycle=True, radius=0.5, **options
+):  # fmt: skip
     """A walled square with boxes, discs and movers; agents start free of everything."""
     rng = np.random.default_rng(seed)
     solids, taken = [walls(20.0)], []
@@ -81,7 +83,7 @@ def random_world(seed, count=4, contact=ContactRule.SLIDE, unicycle=True, **opti
         p = place(1.5 * half)
         solids.append(box(Kind.STATIC, *p, half, half, rng.uniform(0, 3)))
     solids += [disc(Kind.STATIC, *place(0.7), 0.7) for _ in range(2)]
-    start = np.array([place(0.5) for _ in range(count)])
+    start = np.array([place(radius) for _ in range(count)])
     movers = []
     for k in range(3):
         a = place(0.8)
@@ -89,7 +91,7 @@ def random_world(seed, count=4, contact=ContactRule.SLIDE, unicycle=True, **opti
         shape = box(Kind.DYNAMIC, 0, 0, 0.5, 0.5) if k else disc(Kind.DYNAMIC, 0, 0, 0.5)
         movers.append(back_and_forth(shape, a, b, rng.uniform(0.5, 1.5), rng.uniform(0, 5)))
     crew = agents(
-        start, rng.uniform(1, 19, (count, 2)), unicycle=unicycle,
+        start, rng.uniform(1, 19, (count, 2)), radius, unicycle=unicycle,
         heading=rng.uniform(-3, 3, count),
     )  # fmt: skip
     return world(crew, solids, movers, contact=contact, **options)

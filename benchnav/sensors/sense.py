@@ -118,7 +118,7 @@ def _edges(simulation: Simulation, chosen: IntArray, sensor: EdgeSensor, occlusi
     s = simulation
     run_rows(
         find_edges, chosen.size, chosen, float(sensor.range), occlusion, s.records,
-        s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, out.start, out.end, out.before, out.after,
-        out.start_convex, out.end_convex, out.count, least=LEAST,
+        s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, out.start, out.end,
+        out.before, out.after, out.start_convex, out.end_convex, out.count, least=LEAST,
     )  # fmt: skip
     return out
