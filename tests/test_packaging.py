@@ -12,20 +12,10 @@ import benchnav
 ROOT = Path(benchnav.__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 FOLDERS = PROJECT["tool"]["setuptools"]["package-dir"]
-LAYERS = (
-    {"cli"},
-    {"leaderboard", "testing", "viewer"},
-    {"envs"},
-    {"runner"},
-    {"store", "metrics"},
-    {"sensors"},
-    {"navigation", "world"},
-    {"scenario", "episode"},
-    {"arena"},
-    {"geometry", "plugins"},
-    {"kernels", "threads"},
-    {"errors", "arrays"},
-)
+LAYERS = [
+    {name.strip().removeprefix("benchnav.") for name in layer.split("|")}
+    for layer in PROJECT["tool"]["importlinter"]["contracts"][0]["layers"]
+]
 HEIGHT = {name: -place for place, layer in enumerate(LAYERS) for name in layer}
 SOURCES = sorted((ROOT / "benchnav").rglob("*.py"))
 
@@ -106,6 +96,12 @@ def test_modules_import_downwards_only(source):
             continue
         other = rest.partition(".")[0]
         assert other == own or HEIGHT[other] < HEIGHT[own], f"{source.name} imports {name}"
+
+
+def test_contributors_are_told_the_layers():
+    text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    told = text.split("```text\n")[1].split("```")[0].splitlines()
+    assert [{name.strip() for name in line.split("|")} for line in told] == LAYERS
 
 
 def test_baselines_and_scenarios_import_their_own_relatively():
