@@ -58,17 +58,15 @@ def _packages() -> Iterator[Line]:
 
 
 def _cache() -> Iterator[Line]:
-    """Where compiled kernels are kept: beside the code, or where NUMBA_CACHE_DIR says."""
-    import benchnav
+    """Where compiled kernels are kept; a first run compiles them, later ones load them."""
+    from benchnav.kernels import cache_folder
 
-    place = Path(os.environ.get("NUMBA_CACHE_DIR") or Path(benchnav.__file__).parent)
-    if os.access(place, os.W_OK):
-        yield "ok", "kernel cache", f"{place} is writable"
+    place = Path(os.environ.get("NUMBA_CACHE_DIR") or cache_folder("benchnav"))
+    home = next(folder for folder in (place, *place.parents) if folder.exists())
+    if os.access(home, os.W_OK):
+        yield "ok", "kernel cache", str(place)
     else:
-        yield (
-            "-", "kernel cache",
-            f"{place} is not writable: set NUMBA_CACHE_DIR, or kernels may compile at every start",
-        )  # fmt: skip
+        yield "WRONG", "kernel cache", f"{place} must be writable; or set NUMBA_CACHE_DIR"
 
 
 def _plugins() -> Iterator[Line]:

@@ -48,6 +48,7 @@ import sys
 
 import numpy as np
 
+from benchnav.errors import MissingExtraError
 from benchnav.navigation.navigator import AgentNavigator, Navigator
 
 
@@ -145,6 +146,24 @@ class Agentwise(AgentNavigator):
         return way / max(np.hypot(*way), 1e-9)
 
 
+class Unfit(Walk):
+    def reset(self, briefings, rows):
+        raise MissingExtraError("Unfit", "plan")
+
+
+class Sees(Navigator):
+    """Keeps what it is told and shown, for tests in this process."""
+
+    briefed, shown = [], []
+
+    def reset(self, briefings, rows):
+        self.briefed.extend(briefings)
+
+    def act(self, observation):
+        self.shown.append(observation)
+        return np.zeros((*observation.active.shape, 2))
+
+
 class Rotor(Navigator):
     """Answers twists."""
 
@@ -181,16 +200,16 @@ def troubled(tmp_path_factory):
 def play(scenario, troubled):
     """Seeds and a navigator → its episodes, by seed."""
 
-    def play(navigator, seeds=range(6), track="known", charge="", **changes):
+    def play(navigator, seeds=range(6), track="known", charge="", worlds=None, **changes):
         spec = f"troubled_navigators:{navigator}" if navigator[0].isupper() else navigator
         assignment = Assignment(
             scenario.identity, scenario.hash, "test", track, navigator, spec,
             tuple({"type": d.type, **d.params} for d in scenario.drivers),
         )  # fmt: skip
-        worlds = [(seed, build(scenario, "test", seed)) for seed in seeds]
+        worlds = worlds or [(seed, build(scenario, "test", seed)) for seed in seeds]
         episodes = rollout(replace(assignment, **changes), worlds, charge)
         found = {e.identity.seed: e for batch in episodes for e in batch}
-        assert sorted(found) == sorted(seeds)
+        assert sorted(found) == sorted(seed for seed, _ in worlds)
         return found
 
     return play

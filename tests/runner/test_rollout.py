@@ -3,9 +3,12 @@
 import numpy as np
 import pytest
 
+from benchnav.arena.solid import Kind
 from benchnav.episode.episode import Status
 from benchnav.runner import rollout as module
+from benchnav.scenario.load import load_scenario
 from benchnav.store.digest import digest
+from benchnav.world.build import build
 
 
 def digests(episodes):
@@ -130,3 +133,59 @@ def test_a_charged_world_is_recorded_without_being_run(play):
         assert episode.failure == "killed by SIGSEGV"
         assert len(episode.requested) == 0
         assert (episode.status[-1, episode.world.agents.evaluated] == Status.FAILED).all()
+
+
+@pytest.fixture
+def seen(troubled):
+    """What the navigator `Sees` is told and shown."""
+    from troubled_navigators import Sees
+
+    Sees.briefed.clear()
+    Sees.shown.clear()
+    return Sees
+
+
+def furniture(scenario, tmp_path):
+    """The tiny scenario with a disc that is moved at t = 1 s."""
+    text = (scenario.folder / "tiny.yaml").read_text()
+    moved = "static:\n  - shape: {type: disc, radius: 0.2}\n    count: 1\n    relocate_at: 1\n"
+    moved += "    region: {type: anywhere, margin: 1}\n"
+    path = tmp_path / "furniture.yaml"
+    path.write_text(text.replace("static:\n", moved, 1))
+    return load_scenario(path)
+
+
+@pytest.mark.parametrize("track", ["known", "stale", "partial", "unknown"])
+def test_the_map_is_what_the_track_grants_and_moves_in_known_alone(
+    play, seen, scenario, tmp_path, track
+):
+    worlds = [(seed, build(furniture(scenario, tmp_path), "test", seed)) for seed in range(4)]
+    play("Sees", track=track, worlds=worlds)
+    if track == "unknown":
+        assert {briefing.map for briefing in seen.briefed} == {None}
+        assert {map_ for shown in seen.shown for map_ in shown.maps} == {None}
+        return
+    assert all(briefing.map.revision == 0 for briefing in seen.briefed)
+    revisions = [(t, m.revision) for o in seen.shown for t, m in zip(o.time, o.maps, strict=True)]
+    assert all(revision == 0 for t, revision in revisions if t <= 1.0)
+    assert any(revision == 1 for _, revision in revisions) == (track == "known")
+    statics = {sum(s.kind == Kind.STATIC for s in b.map.solids) for b in seen.briefed}
+    assert statics == {0} if track == "partial" else min(statics) >= 1
+
+
+def test_nothing_in_a_briefing_names_the_scenario_or_the_seed(play, seen):
+    play("Sees", seeds=[123456789])
+    (briefing,) = seen.briefed
+    said = repr({name: getattr(briefing, name) for name in briefing.__dataclass_fields__})
+    assert "123456789" not in said
+    assert "tiny" not in said
+    assert str(briefing.rng.bit_generator.seed_seq.entropy).find("123456789") == -1
+
+
+def test_worlds_that_are_over_are_shown_no_more(play, seen):
+    episodes = play("Sees", range(5))
+    for shown in seen.shown:
+        running = [s for s, e in episodes.items() if len(e.requested) * 0.2 > shown.time[0] + 1e-9]
+        assert shown.rows.tolist() == running
+        assert shown.active.any(axis=1).all()
+        assert shown.rays is shown.neighbours is shown.edges is None

@@ -8,7 +8,12 @@ import time
 
 import pytest
 
-from benchnav.errors import BenchnavError, RunConflictError, UnsolvableError
+from benchnav.errors import (
+    BenchnavError,
+    MissingExtraError,
+    RunConflictError,
+    UnsolvableError,
+)
 from benchnav.plugins import register_navigator
 from benchnav.runner import task as task_module
 from benchnav.runner.progress import Progress
@@ -108,6 +113,14 @@ def test_failures_are_counted_by_reason(suite_file, tmp_path, workers, in_the_ea
     reason = "act raised ValueError: lost my way at t = 0.6 s"
     assert summary.failures == {("troubled_navigators:Raises", reason): len(failed)}
     assert 0 < len(failed) < 6
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_what_is_not_installed_is_no_failure_of_the_navigator(suite_file, tmp_path, workers):
+    chosen = Selection(navigators=("troubled_navigators:Unfit",))
+    with pytest.raises(MissingExtraError, match=r"pip install 'benchnav\[plan\]'"):
+        run_suite(load_suite(str(suite_file), chosen), tmp_path / "r", workers=workers)
+    assert list(read_episodes(tmp_path / "r")) == []
 
 
 def test_a_navigator_that_kills_its_process_pays_for_its_own_episodes(
