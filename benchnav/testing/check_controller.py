@@ -1,0 +1,64 @@
+"""What every controller must pass: what a navigator must, on a straight path to its goal."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.controller import Controller, Guide
+from benchnav.navigation.navigator import Navigator, Need
+from benchnav.navigation.observation import Observation
+from benchnav.plugins import CONTROLLERS
+from benchnav.testing.check_navigator import check_navigator
+from benchnav.testing.requirement import Subject, maker, require, require_config
+
+LOOKAHEAD = 1.0  # [m]
+
+
+def check_controller(controller: Subject) -> None:
+    """Hold a controller to what every controller must be.
+
+    Args:
+        controller: a registered name, ``{type: name, …parameters}``, a class, or any
+            function that makes a fresh instance.
+
+    Raises:
+        AssertionError: it breaks the contract; the text says how.
+    """
+    make = maker(CONTROLLERS, controller)
+    made = make()
+    name = type(made).__name__
+    require(isinstance(made, Controller), f"{name} must derive from Controller.")
+    require_config(made)
+    named = type(name, (_Guided,), {})  # so that complaints name the controller
+    check_navigator(lambda: named(make()))
+
+
+class _Guided(Navigator):
+    """A controller on straight paths; every other agent has none."""
+
+    def __init__(self, controller: Controller) -> None:
+        super().__init__()
+        self.controller = controller
+        vars(self)["command"] = controller.command
+
+    @property
+    def required(self) -> frozenset[Need]:
+        return self.controller.needs
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        self.controller.reset(briefings, rows)
+
+    def act(self, observation: Observation) -> FloatArray:
+        return self.controller.steer(observation, straight(observation))
+
+
+def straight(observation: Observation) -> Guide:
+    """The guide of straight paths; agents whose goal is on their left have no path."""
+    way = observation.goal - observation.position
+    remaining = np.sqrt(np.sum(way * way, axis=2))
+    share = np.minimum(LOOKAHEAD / np.maximum(remaining, 1e-9), 1.0)[..., None]
+    has_path = way[..., 0] >= 0.0
+    target = np.where(has_path[..., None], observation.position + share * way, observation.goal)
+    return Guide(target, remaining, has_path)

@@ -1,0 +1,171 @@
+"""What every navigator must pass, the ones that ship and anybody's.
+
+`check_navigator("name")` or `check_navigator(Class)` raises AssertionError with a
+sentence that says what is wrong. How well a navigator does is not asked.
+"""
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from benchnav.arena.world import World
+from benchnav.navigation.navigator import Navigator, Need
+from benchnav.plugins import NAVIGATORS
+from benchnav.testing.observations import (
+    answers_of,
+    briefings_of,
+    contents,
+    masked,
+    observations_of,
+)
+from benchnav.testing.requirement import (
+    Subject,
+    global_generators_untouched,
+    maker,
+    require,
+    require_config,
+    require_same,
+)
+from benchnav.testing.scenes import renumbered, scene
+
+Make = Callable[[], Navigator]
+
+
+def check_navigator(navigator: Subject) -> None:
+    """Hold a navigator to what every navigator must be.
+
+    Args:
+        navigator: a registered name, ``{type: name, …parameters}``, a class, or any
+            function that makes a fresh instance.
+
+    Raises:
+        AssertionError: it breaks the contract; the text says how.
+    """
+    make: Make = maker(NAVIGATORS, navigator)
+    for check in CHECKS:
+        check(make)
+
+
+def check_declaration(make: Make) -> None:
+    """Config, needs and command are declared."""
+    navigator = make()
+    name = type(navigator).__name__
+    require(isinstance(navigator, Navigator), f"{name} must derive from Navigator.")
+    require_config(navigator)
+    needs = navigator.required
+    wrong = not isinstance(needs, frozenset) or needs - set(Need)
+    require(not wrong, f"{name} must need a frozenset of {[*map(str, Need)]}. Got {needs!r}.")
+    require(
+        navigator.command in ("velocity", "twist"),
+        f"{name}.command must be 'velocity' or 'twist'. Got {navigator.command!r} instead.",
+    )
+
+
+def check_answer(make: Make) -> None:
+    """Finite commands of the right shape, with nothing but what it needs; nothing is changed."""
+    navigator = make()
+    name, needs = type(navigator).__name__, navigator.required
+    told = briefings_of(_scenes(), needs)
+    before = [contents(briefing) for briefing in told]
+    with global_generators_untouched(name):
+        _call(name, "reset", needs, navigator.reset, told, np.arange(len(told)))
+    _unchanged(name, "briefing", before, [contents(briefing) for briefing in told])
+    for observation in observations_of(_scenes(), needs):
+        copy, shape = contents(observation), (*observation.active.shape, 2)
+        with global_generators_untouched(name):
+            answer = _call(name, "act", needs, navigator.act, observation)
+        _unchanged(name, "observation", [copy], [contents(observation)])
+        real = isinstance(answer, np.ndarray) and answer.dtype.kind in "iuf"
+        require(real, f"{name}.act must return an array of real numbers. Got {answer!r} instead.")
+        require(answer.shape == shape, f"{name}.act must return shape {shape}. Got {answer.shape}.")
+        finite = np.isfinite(answer[observation.active]).all()
+        require(finite, f"{name}.act must return finite commands for all active agents.")
+
+
+def check_repeatable(make: Make) -> None:
+    """The same briefing and observations give the same commands: of another instance too."""
+    navigator = make()
+    if navigator.reproducible:
+        first, name = answers_of(navigator, _scenes()), type(navigator).__name__
+        again = answers_of(navigator, _scenes())
+        require_same(first, again, name, "after a second reset with the same briefings")
+        require_same(first, answers_of(make(), _scenes()), name, "in another instance")
+
+
+def check_batch(make: Make) -> None:
+    """A world's commands do not depend on which others share the call, or on where it stands."""
+    if not make().reproducible:
+        return
+    worlds, together, name = _scenes(), answers_of(make(), _scenes()), type(make()).__name__
+    alone = [answers_of(make(), [world], np.array([7]))[0] for world in worlds]
+    require_same(together, alone, name, "for a world alone as in a batch")
+    turned = answers_of(make(), worlds[::-1], np.array([4, 9, 2]))[::-1]
+    require_same(together, turned, name, "whatever the order of worlds and their rows")
+    padded = answers_of(make(), worlds, padding=3)
+    require_same(together, padded, name, "with more padding")
+
+
+def check_order_of_agents(make: Make) -> None:
+    """Numbering the agents otherwise renumbers the commands, and does nothing else."""
+    if not make().reproducible:
+        return
+    worlds = _scenes()
+    orders = [np.roll(np.arange(len(world.agents))[::-1], 1) for world in worlds]
+    other = [renumbered(world, order) for world, order in zip(worlds, orders, strict=True)]
+    expected = [a[:, order] for a, order in zip(answers_of(make(), worlds), orders, strict=True)]
+    name = type(make()).__name__
+    require_same(expected, answers_of(make(), other), name, "whatever the order of agents")
+
+
+def check_rows(make: Make) -> None:
+    """State belongs to a row: what other rows do, and when they start over, leaves no trace."""
+    navigator = make()
+    if not navigator.reproducible:
+        return
+    kept, disturbing, _ = _scenes()
+    needs, row, other = navigator.required, np.array([0]), np.array([1])
+    expected = answers_of(make(), [kept], row)
+    navigator.reset(briefings_of([kept, disturbing], needs), np.array([0, 1]))
+    got = []
+    noise = observations_of([disturbing], needs, other)
+    for k, observation in enumerate(observations_of([kept], needs, row)):
+        if k == 3:
+            navigator.reset(briefings_of([disturbing], needs), other)
+        navigator.act(noise[k % 3])
+        got.append(masked(navigator.act(observation), observation)[0])
+    name = type(navigator).__name__
+    require_same(expected, [np.stack(got)], name, "whatever happens in other rows")
+
+
+CHECKS: tuple[Callable[[Make], None], ...] = (
+    check_declaration, check_answer, check_repeatable, check_batch, check_order_of_agents,
+    check_rows,
+)  # fmt: skip
+
+
+@lru_cache
+def _scenes() -> tuple[World, ...]:
+    return scene(1, 3), scene(2, 5), scene(3, 1)
+
+
+def _call(
+    name: str, what: str, needs: frozenset[Need], call: Callable[..., Any], *told: Any
+) -> Any:
+    try:
+        return call(*told)
+    except Exception as error:
+        raise AssertionError(
+            f"{name}.{what} must work with what it needs ({', '.join(sorted(needs)) or 'nothing'})"
+            f" and nothing more. It raised {type(error).__name__}: {error}."
+        ) from error
+
+
+def _unchanged(name: str, what: str, before: list[list[Any]], after: list[list[Any]]) -> None:
+    same = all(
+        np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
+        for one, other in zip(before, after, strict=True)
+        for a, b in zip(one, other, strict=True)
+    )
+    require(same, f"{name} must not write into its {what}.")

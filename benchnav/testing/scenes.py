@@ -1,0 +1,63 @@
+"""Small random worlds that a navigator is tried in: walls, furniture, a mover, agents."""
+
+import math
+from dataclasses import fields, replace
+
+import numpy as np
+
+from benchnav.arena.agents import Agents, Dynamics, Role
+from benchnav.arena.body import Body, Law, LawKind
+from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
+from benchnav.arena.solid import Kind, Solid
+from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
+from benchnav.arrays import FloatArray, IntArray
+
+SENSING = Sensing(
+    RaySensor(9, math.pi, 6.0, thick=False), NeighbourSensor(4, 6.0), EdgeSensor(8, 6.0)
+)
+CLOCK = Clock(dt=0.25, substeps=2, steps=200, decision_budget=1.0)
+RULES = Rules(0.3, ContactRule.SLIDE, Afterwards.VANISH, Afterwards.VANISH, Charge.HITTER)
+_CELL, _CELLS = 2.4, 5  # [m]; nothing in a cell reaches the next one
+
+
+def scene(seed: int, agents: int) -> World:
+    """A walled square of 12 m with two boxes, a disc, a mover and up to 8 ``agents``.
+
+    Agents differ in radius, speed, role and dynamics; nothing overlaps at the start.
+    """
+    rng = np.random.default_rng([seed, agents])
+    cells = rng.permutation(_CELLS * _CELLS)[: 4 + 2 * agents]
+    corner = np.stack([cells // _CELLS, cells % _CELLS], axis=1) * _CELL
+    places = corner + 0.5 * _CELL + rng.uniform(-0.3, 0.3, corner.shape)
+    square = 0.5 * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+    side = _CELL * _CELLS
+    solids = (
+        Solid(Kind.WALL, (side * (square[::-1] + 0.5),)),
+        *(Solid(Kind.STATIC, (square + place,)) for place in places[:2]),
+        Solid(Kind.STATIC, center=(float(places[2, 0]), float(places[2, 1])), radius=0.5),
+    )
+    track = np.stack([places[3], places[3] + rng.uniform(-1.0, 1.0, 2), places[3]])
+    law = Law(LawKind.TRACK, np.array([0.0, 2.0, 4.0]), track, periodic=True)
+    return World(
+        (0.0, 0.0, side, side), solids, (Body(Solid(Kind.DYNAMIC, radius=0.3), law),),
+        _agents(rng, places[4 : 4 + agents], places[4 + agents :]), ("all",),
+        np.ones((1, 1), np.bool_), CLOCK, RULES, SENSING,
+    )  # fmt: skip
+
+
+def _agents(rng: np.random.Generator, start: FloatArray, goal: FloatArray) -> Agents:
+    count = len(start)
+    speed = rng.uniform(0.8, 1.6, count)
+    return Agents(
+        start, rng.uniform(-math.pi, math.pi, count), goal, rng.uniform(0.2, 0.4, count),
+        1.5 * speed, speed, rng.uniform(1.0, 3.0, count),
+        rng.choice([int(kind) for kind in Dynamics], count).astype(np.int8),
+        rng.choice([int(role) for role in Role], count).astype(np.int8),
+        np.zeros(count, np.int64), np.zeros(count, np.int64),
+    )  # fmt: skip
+
+
+def renumbered(world: World, order: IntArray) -> World:
+    """The same world with agent ``order[k]`` at index k."""
+    agents = {f.name: getattr(world.agents, f.name)[order] for f in fields(world.agents)}
+    return replace(world, agents=Agents(**agents))
