@@ -69,7 +69,7 @@ class RRTStar(TreePlanner):
         """Parameters."""
 
         iterations: int = Field(
-            4_000, ge=1, description="calls of the termination condition until it gives up"
+            16_000, ge=1, description="calls of the termination condition until it gives up"
         )
         improve: int = Field(200, ge=0, description="iterations after the first solution")
 
