@@ -1,8 +1,8 @@
 """Points in hashed cells: neighbours of a point without a dense grid over the plane.
 
-A table of H = 2^k buckets is filled by counting sort; a cell's bucket may hold
-other cells' points too, so every point keeps its own cell (ci, cj). Points are
-records with x, y, present, ci, cj.
+A table of H = 2^k buckets is filled by counting sort; a cell's bucket may hold other
+cells' points too, so every spot keeps its own cell (ci, cj). Points are records with
+x, y, team, present, ci, cj; spots are copies of what a search needs, in bucket order.
 """
 
 import math
@@ -13,10 +13,10 @@ from benchnav.arrays import AnyArray, IntArray
 from benchnav.kernels import kernel
 
 
-def hash_tables(batch: int, points: int) -> tuple[IntArray, IntArray]:
-    """(hashed (batch, H+1), sorted (batch, A)) buffers for grids of up to A ``points``."""
+def hash_table(batch: int, points: int) -> IntArray:
+    """(batch, H+1) bucket bounds for grids of up to ``points`` points each."""
     size = 1 << max(4, math.ceil(math.log2(2 * max(points, 1))))
-    return np.zeros((batch, size + 1), np.int64), np.zeros((batch, max(points, 1)), np.int64)
+    return np.zeros((batch, size + 1), np.int64)
 
 
 @kernel
@@ -26,10 +26,10 @@ def bucket(i: int, j: int, size: int) -> int:
 
 
 @kernel
-def fill(points: AnyArray, hashed: IntArray, sorted_: IntArray, side: float) -> None:
+def fill(points: AnyArray, hashed: IntArray, spots: AnyArray, side: float) -> None:
     """Sort the present points (A,) into cells of ``side`` [m].
 
-    Bucket k then lists sorted_[hashed[k] : hashed[k + 1]], rising.
+    Bucket k then holds spots[hashed[k] : hashed[k + 1]], by rising index.
     """
     size = len(hashed) - 1
     hashed[:] = 0
@@ -41,13 +41,15 @@ def fill(points: AnyArray, hashed: IntArray, sorted_: IntArray, side: float) -> 
     for k in range(size):
         hashed[k + 1] += hashed[k]
     total = hashed[size]
-    # backwards, so that points rise within a bucket
+    # backwards, so that indices rise within a bucket
     for i in range(len(points) - 1, -1, -1):
         p = points[i]
         if p.present:
             k = bucket(p.ci, p.cj, size)
             hashed[k + 1] -= 1
-            sorted_[hashed[k + 1]] = i
+            spot = spots[hashed[k + 1]]
+            spot.x, spot.y, spot.ci, spot.cj = p.x, p.y, p.ci, p.cj
+            spot.index, spot.team = i, p.team
     for k in range(size):
         hashed[k] = hashed[k + 1]
     hashed[size] = total

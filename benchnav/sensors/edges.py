@@ -16,7 +16,8 @@ CANDIDATES = 64  # nearest facing edges of which the visible ones are kept
 _STATIC = int(Kind.STATIC)
 _EIGHTH = math.pi / 4.0
 _OCTAGON = 1.0 / math.cos(math.pi / 8.0)  # circumradius of the octagon about a unit disc
-_SAMPLES = (0.5, 0.001, 0.999)  # where an edge is looked at if its nearest point is hidden
+END = 0.001  # where an end of an edge is looked at, as a share of its length
+BEFORE = 1.0 - 1e-6  # of the way to a point that is looked at
 
 
 @kernel
@@ -30,53 +31,49 @@ def find_edges(
     width, most = first.shape[1], first.shape[2]
     best = np.empty(CANDIDATES)
     found = np.empty((CANDIDATES, 12))  # x0 y0 x1 y1, before, after, convex flags, nearest point
-    for row in range(low, high):
-        b, k = row // width, row % width
-        i = chosen[b, k]
-        count[b, k] = 0
-        if i < 0 or not agents[b, i].present:
-            continue
-        a, world = agents[b, i], worlds[b]
-        n = _gather(a, limit, world, bodies[b], shapes, capsules, start, item, best, found)
-        kept = 0
-        for s in range(n):
-            if kept == most:
-                break
-            edge = found[s]
-            if occlusion and not _visible(a, edge, world, capsules, start, item, bodies[b], shapes):
+    for b in range(low // width, (high + width - 1) // width):
+        world, here, others = worlds[b], agents[b], bodies[b]
+        for k in range(max(low - b * width, 0), min(high - b * width, width)):
+            i, kept = chosen[b, k], 0
+            if i < 0 or not here[i].present:
                 continue
-            for t in range(2):
-                first[b, k, kept, t], second[b, k, kept, t] = edge[t], edge[2 + t]
-                before[b, k, kept, t], after[b, k, kept, t] = edge[4 + t], edge[6 + t]
-            first_convex[b, k, kept], second_convex[b, k, kept] = edge[8] > 0.0, edge[9] > 0.0
-            kept += 1
-        count[b, k] = kept
+            a = here[i]
+            n = _gather(a, limit, world, others, shapes, capsules, start, item, best, found)
+            for s in range(n):
+                if kept == most:
+                    break
+                if occlusion and not _visible(
+                    a, found, s, world, capsules, start, item, others, shapes
+                ):
+                    continue
+                for t in range(2):
+                    first[b, k, kept, t], second[b, k, kept, t] = found[s, t], found[s, 2 + t]
+                    before[b, k, kept, t], after[b, k, kept, t] = found[s, 4 + t], found[s, 6 + t]
+                first_convex[b, k, kept] = found[s, 8] > 0.0
+                second_convex[b, k, kept] = found[s, 9] > 0.0
+                kept += 1
+            count[b, k] = kept
 
 
 @kernel
 def _visible(
-    a: Any, edge: FloatArray, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
-    bodies: AnyArray, shapes: AnyArray,
+    a: Any, found: FloatArray, s: int, world: Any, capsules: AnyArray, start: IntArray,
+    item: IntArray, bodies: AnyArray, shapes: AnyArray,
 ) -> bool:  # fmt: skip
-    """Is the edge's nearest point, its middle, or one of its ends in sight?"""
-    if _sees(a, edge[10], edge[11], world, capsules, start, item, bodies, shapes):
-        return True
-    for u in _SAMPLES:
-        x = edge[0] + u * (edge[2] - edge[0])
-        y = edge[1] + u * (edge[3] - edge[1])
-        if _sees(a, x, y, world, capsules, start, item, bodies, shapes):
+    """Is the nearest point of edge s, its middle, or one of its ends in sight?
+
+    A point is looked at from just before it, so that the edge does not hide itself.
+    """
+    for look in range(4):
+        x, y = found[s, 10], found[s, 11]
+        if look > 0:
+            u = 0.5 if look == 1 else (END if look == 2 else 1.0 - END)
+            x = found[s, 0] + u * (found[s, 2] - found[s, 0])
+            y = found[s, 1] + u * (found[s, 3] - found[s, 1])
+        x, y = a.x + (x - a.x) * BEFORE, a.y + (y - a.y) * BEFORE
+        if in_sight(a.x, a.y, x, y, -1, world, capsules, start, item, bodies, shapes):
             return True
     return False
-
-
-@kernel
-def _sees(
-    a: Any, x: float, y: float, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
-    bodies: AnyArray, shapes: AnyArray,
-) -> bool:  # fmt: skip
-    """A point of an edge is looked at from just before it, so that it does not hide itself."""
-    qx, qy = a.x + (x - a.x) * (1.0 - 1e-6), a.y + (y - a.y) * (1.0 - 1e-6)
-    return in_sight(a.x, a.y, qx, qy, -1, world, capsules, start, item, bodies, shapes)
 
 
 @kernel

@@ -12,6 +12,7 @@ from benchnav.kernels import kernel
 from benchnav.sensors.sight import in_sight
 from benchnav.world.touch import BRUTE_FORCE
 
+CANDIDATES = 64  # nearest in range, of which those in sight are kept
 _AGENT, _DYNAMIC = int(Kind.AGENT), int(Kind.DYNAMIC)
 
 
@@ -19,124 +20,126 @@ _AGENT, _DYNAMIC = int(Kind.AGENT), int(Kind.DYNAMIC)
 def find_neighbours(
     low: int, high: int, chosen: IntArray, limit: float, occlusion: bool, side: float,
     sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
-    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, sorted_: IntArray,
+    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
     count: IntArray,
 ) -> None:  # fmt: skip
-    """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, K, …)."""
-    width, most = position.shape[1], position.shape[2]
-    best = np.empty(most)  # squared distances, rising
-    code = np.empty(most, np.int64)  # j for an agent, A + m for a body
-    for row in range(low, high):
-        b, k = row // width, row % width
-        i = chosen[b, k]
-        count[b, k] = 0
-        if i < 0 or not agents[b, i].present:
-            continue
-        n = _gather(
-            i, limit, occlusion, side, sees[b], worlds[b], agents[b], bodies[b], shapes, capsules,
-            start, item, hashed[b], sorted_[b], best, code,
-        )  # fmt: skip
-        count[b, k] = n
-        total = agents.shape[1]
-        for s in range(n):
-            if code[s] < total:
-                a = agents[b, code[s]]
-                position[b, k, s, 0], position[b, k, s, 1] = a.x, a.y
-                velocity[b, k, s, 0], velocity[b, k, s, 1] = a.vx, a.vy
-                radius[b, k, s], kind[b, k, s] = a.radius, _AGENT
-            else:
-                body = bodies[b, code[s] - total]
-                position[b, k, s, 0], position[b, k, s, 1] = body.x, body.y
-                velocity[b, k, s, 0], velocity[b, k, s, 1] = body.vx, body.vy
-                radius[b, k, s], kind[b, k, s] = body.bound, _DYNAMIC
+    """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, K, …).
+
+    Where something could hide somebody, more candidates than K are gathered, and
+    the nearest K of those in sight are kept.
+    """
+    width, most, total = position.shape[1], position.shape[2], agents.shape[1]
+    listed = max(4 * most, CANDIDATES) + BRUTE_FORCE
+    best = np.empty(listed)  # squared distances
+    code = np.empty(listed, np.int64)  # j for an agent, A + m for a body
+    for b in range(low // width, (high + width - 1) // width):
+        world, here, things = worlds[b], agents[b], bodies[b]
+        seen, table, crowd = sees[b], hashed[b], spots[b]
+        hidden = occlusion and (world.bodies > 0 or world.last > world.first)
+        room = CANDIDATES if hidden else most
+        for k in range(max(low - b * width, 0), min(high - b * width, width)):
+            i, kept = chosen[b, k], 0
+            if i < 0 or not here[i].present:
+                continue
+            a = here[i]
+            n = _gather_bodies(a, limit, total, world.bodies, things, best, code)
+            n = _gather_agents(i, limit, room, side, seen, here, table, crowd, n, best, code)
+            for s in range(n):
+                if kept == most:
+                    break
+                if code[s] < total:
+                    other = here[code[s]]
+                    if hidden and not in_sight(
+                        a.x, a.y, other.x, other.y, -1, world, capsules, start, item, things, shapes
+                    ):
+                        continue
+                    position[b, k, kept, 0], position[b, k, kept, 1] = other.x, other.y
+                    velocity[b, k, kept, 0], velocity[b, k, kept, 1] = other.vx, other.vy
+                    radius[b, k, kept], kind[b, k, kept] = other.radius, _AGENT
+                else:
+                    m = code[s] - total
+                    body = things[m]
+                    if hidden and not in_sight(
+                        a.x, a.y, body.x, body.y, m, world, capsules, start, item, things, shapes
+                    ):
+                        continue
+                    position[b, k, kept, 0], position[b, k, kept, 1] = body.x, body.y
+                    velocity[b, k, kept, 0], velocity[b, k, kept, 1] = body.vx, body.vy
+                    radius[b, k, kept], kind[b, k, kept] = body.bound, _DYNAMIC
+                kept += 1
+            count[b, k] = kept
 
 
 @kernel
-def _gather(
-    i: int, limit: float, occlusion: bool, side: float, sees: BoolArray, world: Any,
-    agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray,
-    item: IntArray, hashed: IntArray, sorted_: IntArray, best: FloatArray, code: IntArray,
+def _gather_bodies(
+    a: Any, limit: float, total: int, count: int, bodies: AnyArray, best: FloatArray,
+    code: IntArray,
 ) -> int:  # fmt: skip
-    """Fills ``best`` and ``code`` with the nearest, and returns how many there are."""
-    a, n, total = agents[i], 0, len(agents)
-    hidden = occlusion and (world.bodies > 0 or world.last > world.first)
-    for m in range(world.bodies):
+    """Lists the dynamic obstacles within ``limit``, as many as there is room for."""
+    n = 0
+    for m in range(count):
         body = bodies[m]
-        if body.kind == _DYNAMIC:
-            d2 = _squared(a, body)
-            if _belongs(d2, limit, n, best) and (
-                not hidden
-                or in_sight(
-                    a.x, a.y, body.x, body.y, m, world, capsules, start, item, bodies, shapes
-                )
-            ):
-                n = _insert(d2, total + m, n, best, code)
-    if total <= BRUTE_FORCE:
-        for j in range(total):
-            n = _consider(
-                i, j, limit, hidden, sees, world, agents, bodies, shapes, capsules, start, item, n,
-                best, code,
-            )  # fmt: skip
-        return n
-    size = len(hashed) - 1
+        d2 = (body.x - a.x) * (body.x - a.x) + (body.y - a.y) * (body.y - a.y)
+        if body.kind == _DYNAMIC and d2 <= limit * limit and n < len(best):
+            best[n], code[n] = d2, total + m
+            n += 1
+    return n
+
+
+@kernel
+def _gather_agents(
+    i: int, limit: float, room: int, side: float, sees: BoolArray, agents: AnyArray,
+    hashed: IntArray, spots: AnyArray, n: int, best: FloatArray, code: IntArray,
+) -> int:  # fmt: skip
+    """Adds the other agents that are not ignored; returns how many of the nearest are listed."""
+    a = agents[i]
+    x, y, team, far = a.x, a.y, a.team, limit * limit
+    n = _nearest(0, n, room, best, code)
+    done = n  # sorted so far
+    if len(agents) <= BRUTE_FORCE:
+        for j in range(len(agents)):
+            b = agents[j]
+            d2 = (b.x - x) * (b.x - x) + (b.y - y) * (b.y - y)
+            if j != i and b.present and d2 <= far and sees[team, b.team]:
+                best[n], code[n] = d2, j
+                n += 1
+        return _nearest(done, n, room, best, code)
+    ai, aj, size, worst = a.ci, a.cj, len(hashed) - 1, far
     for ring in range(math.ceil(limit / side) + 1):
         # nothing in this ring or beyond is nearer than ring - 1 whole cells
-        if n == len(best) and best[n - 1] < ((ring - 1) * side) * ((ring - 1) * side):
+        if ring > 1 and worst < ((ring - 1) * side) * ((ring - 1) * side):
             break
-        for ci in range(a.ci - ring, a.ci + ring + 1):
-            rim = ci == a.ci - ring or ci == a.ci + ring
-            for cj in range(a.cj - ring, a.cj + ring + 1, 1 if rim or ring == 0 else 2 * ring):
+        for ci in range(ai - ring, ai + ring + 1):
+            rim = ci == ai - ring or ci == ai + ring
+            for cj in range(aj - ring, aj + ring + 1, 1 if rim or ring == 0 else 2 * ring):
                 k = bucket(ci, cj, size)
                 for at in range(hashed[k], hashed[k + 1]):
-                    j = sorted_[at]
-                    if agents[j].ci == ci and agents[j].cj == cj:
-                        n = _consider(
-                            i, j, limit, hidden, sees, world, agents, bodies, shapes, capsules,
-                            start, item, n, best, code,
-                        )  # fmt: skip
+                    spot = spots[at]
+                    d2 = (spot.x - x) * (spot.x - x) + (spot.y - y) * (spot.y - y)
+                    if d2 > worst or spot.ci != ci or spot.cj != cj or spot.index == i:
+                        continue
+                    if sees[team, spot.team]:
+                        if n == len(best):
+                            n = done = _nearest(done, n, room, best, code)
+                        best[n], code[n] = d2, spot.index
+                        n += 1
+        n = done = _nearest(done, n, room, best, code)
+        if n == room:
+            worst = min(far, best[n - 1])
     return n
 
 
 @kernel
-def _squared(a: Any, b: Any) -> float:
-    dx, dy = b.x - a.x, b.y - a.y
-    return float(dx * dx + dy * dy)
+def _nearest(done: int, n: int, room: int, best: FloatArray, code: IntArray) -> int:
+    """Sort the list, whose first ``done`` entries are sorted, by (distance, code); keep ``room``.
 
-
-@kernel
-def _belongs(d2: float, limit: float, n: int, best: FloatArray) -> bool:
-    return bool(d2 <= limit * limit and (n < len(best) or d2 < best[n - 1]))
-
-
-@kernel
-def _consider(
-    i: int, j: int, limit: float, hidden: bool, sees: BoolArray, world: Any, agents: AnyArray,
-    bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray,
-    n: int, best: FloatArray, code: IntArray,
-) -> int:  # fmt: skip
-    """Insert agent j if it is present, not ignored, in range, near enough and in sight."""
-    a, b = agents[i], agents[j]
-    if j == i or not b.present or not sees[a.team, b.team]:
-        return n
-    d2 = _squared(a, b)
-    if not _belongs(d2, limit, n, best):
-        return n
-    if hidden and not in_sight(
-        a.x, a.y, b.x, b.y, -1, world, capsules, start, item, bodies, shapes
-    ):
-        return n
-    return _insert(d2, j, n, best, code)
-
-
-@kernel
-def _insert(d2: float, what: int, n: int, best: FloatArray, code: IntArray) -> int:
-    """Insertion sort by (distance, code): the order of discovery does not matter."""
-    if n < len(best):
-        n += 1
-    at = n - 1
-    while at > 0 and (best[at - 1] > d2 or (best[at - 1] == d2 and code[at - 1] > what)):
-        best[at], code[at] = best[at - 1], code[at - 1]
-        at -= 1
-    best[at], code[at] = d2, what
-    return n
+    The order is total, so that the order of discovery does not matter.
+    """
+    for k in range(done, n):
+        d2, what, at = best[k], code[k], k
+        while at > 0 and (best[at - 1] > d2 or (best[at - 1] == d2 and code[at - 1] > what)):
+            best[at], code[at] = best[at - 1], code[at - 1]
+            at -= 1
+        best[at], code[at] = d2, what
+    return min(n, room)

@@ -32,7 +32,7 @@ def cast_rays(
     low: int, high: int, chosen: IntArray, fan: FloatArray, limit: float, thick: bool,
     side: float, sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
     shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
-    sorted_: IntArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
+    spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
     goal: FloatArray,
 ) -> None:  # fmt: skip
     """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, R).
@@ -42,39 +42,37 @@ def cast_rays(
     """
     width = chosen.shape[1]
     things = np.empty((LISTED, 11))
-    for row in range(low, high):
-        b, k = row // width, row % width
-        i = chosen[b, k]
-        if i < 0 or not agents[b, i].present:
-            continue
-        a, world = agents[b, i], worlds[b]
-        own = a.radius if thick else 0.0
-        ca, sa = cos_sin(a.heading)
-        n = _list_bodies(a, ca, sa, own, limit, world.bodies, bodies[b], shapes, things, 0)
-        n = _list_agents(
-            i, ca, sa, own, limit, side, sees[b], agents[b], hashed[b], sorted_[b], things, n
-        )
+    for b in range(low // width, (high + width - 1) // width):
+        world, here, others = worlds[b], agents[b], bodies[b]
+        seen, table, crowd = sees[b], hashed[b], spots[b]
         few = world.last - world.first <= FEW
-        if few:
-            for p in range(world.first, world.last):
-                n = _list(a, ca, sa, own, limit, capsules[p], 0.0, 0.0, 0.0, 0.0, things, n)
-        for r in range(len(fan)):
-            dx, dy = fan[r, 0], fan[r, 1]
-            best, what = _first(dx, dy, limit, n, things)
-            met = _NOTHING if what < 0 else int(things[what, KIND])
-            if not few:
-                wx, wy = ca * dx - sa * dy, sa * dx + ca * dy
-                best, on_map = _first_on_map(
-                    a.x, a.y, wx, wy, own, best, world, capsules, start, item
-                )
-                met = met if on_map == _NOTHING else on_map
-            distance[b, k, r], kind[b, k, r], approach[b, k, r] = best, met, 0.0
-            if met == _DYNAMIC:
-                approach[b, k, r] = -(things[what, VX] * dx + things[what, VY] * dy)
+        for k in range(max(low - b * width, 0), min(high - b * width, width)):
+            i = chosen[b, k]
+            if i < 0 or not here[i].present:
+                continue
+            a = here[i]
+            own = a.radius if thick else 0.0
+            ca, sa = cos_sin(a.heading)
+            n = _list_bodies(a, ca, sa, own, limit, world.bodies, others, shapes, things, 0)
+            n = _list_agents(i, ca, sa, own, limit, side, seen, here, table, crowd, things, n)
+            if few:
+                n = _list_fixed(a, ca, sa, own, limit, world, capsules, things, n)
             gx, gy = a.x - a.goal_x, a.y - a.goal_y
-            goal[b, k, r] = _goal_distance(
-                ca * gx + sa * gy, ca * gy - sa * gx, dx, dy, world.tolerance + own, best
-            )
+            gx, gy = ca * gx + sa * gy, ca * gy - sa * gx
+            for r in range(len(fan)):
+                dx, dy = fan[r, 0], fan[r, 1]
+                best, what = _first(dx, dy, limit, n, things)
+                met = _NOTHING if what < 0 else int(things[what, KIND])
+                if not few:
+                    wx, wy = ca * dx - sa * dy, sa * dx + ca * dy
+                    best, on_map = _first_on_map(
+                        a.x, a.y, wx, wy, own, best, world, capsules, start, item
+                    )
+                    met = met if on_map == _NOTHING else on_map
+                distance[b, k, r], kind[b, k, r], approach[b, k, r] = best, met, 0.0
+                if met == _DYNAMIC:
+                    approach[b, k, r] = -(things[what, VX] * dx + things[what, VY] * dy)
+                goal[b, k, r] = _goal_distance(gx, gy, dx, dy, world.tolerance + own, best)
 
 
 @kernel
@@ -118,6 +116,16 @@ def _list(
 
 
 @kernel
+def _list_fixed(
+    a: Any, ca: float, sa: float, own: float, limit: float, world: Any, capsules: AnyArray,
+    things: FloatArray, n: int,
+) -> int:  # fmt: skip
+    for p in range(world.first, world.last):
+        n = _list(a, ca, sa, own, limit, capsules[p], 0.0, 0.0, 0.0, 0.0, things, n)
+    return n
+
+
+@kernel
 def _list_bodies(
     a: Any, ca: float, sa: float, own: float, limit: float, count: int, bodies: AnyArray,
     shapes: AnyArray, things: FloatArray, n: int,
@@ -136,7 +144,7 @@ def _list_bodies(
 @kernel
 def _list_agents(
     i: int, ca: float, sa: float, own: float, limit: float, side: float, sees: BoolArray,
-    agents: AnyArray, hashed: IntArray, sorted_: IntArray, things: FloatArray, n: int,
+    agents: AnyArray, hashed: IntArray, spots: AnyArray, things: FloatArray, n: int,
 ) -> int:  # fmt: skip
     a = agents[i]
     if len(agents) <= BRUTE_FORCE:
@@ -151,8 +159,9 @@ def _list_agents(
             for cj in range(a.cj - ring, a.cj + ring + 1, 1 if rim or ring == 0 else 2 * ring):
                 k = bucket(ci, cj, size)
                 for at in range(hashed[k], hashed[k + 1]):
-                    other = agents[sorted_[at]]
-                    if other.ci == ci and other.cj == cj and sorted_[at] != i:
+                    j = spots[at].index
+                    other = agents[j]
+                    if spots[at].ci == ci and spots[at].cj == cj and j != i:
                         n = _list_agent(a, ca, sa, own, limit, sees, other, things, n)
     return n
 

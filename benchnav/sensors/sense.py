@@ -37,7 +37,7 @@ def sense(
     if crowd and needs & {RAYS, NEIGHBOURS}:
         side = _cell_side(simulation, sensing)
         run_rows(
-            _sort_agents, simulation.B, simulation.agents, simulation.hashed, simulation.sorted,
+            _sort_agents, simulation.B, simulation.agents, simulation.hashed, simulation.spots,
             side,
         )  # fmt: skip
     rays = neighbours = edges = None
@@ -51,19 +51,19 @@ def sense(
 
 
 def _cell_side(simulation: Simulation, sensing: Sensing) -> float:
-    """Cells of the size of a few bodies: crowds are dense where they matter."""
+    """Cells of a few bodies: a crowd is dense where it matters."""
     limit = sensing.neighbours.range if sensing.neighbours is not None else 0.0
     if sensing.rays is not None:
         limit = max(limit, sensing.rays.range)
-    return max(0.5 * limit, 4.0 * float(simulation.agents["radius"].max()))
+    return max(0.125 * limit, 4.0 * float(simulation.agents["radius"].max()))
 
 
 @kernel
 def _sort_agents(
-    low: int, high: int, agents: AnyArray, hashed: IntArray, sorted_: IntArray, side: float
+    low: int, high: int, agents: AnyArray, hashed: IntArray, spots: AnyArray, side: float
 ) -> None:
     for b in range(low, high):
-        fill(agents[b], hashed[b], sorted_[b], side)
+        fill(agents[b], hashed[b], spots[b], side)
 
 
 def ray_angles(sensor: RaySensor) -> FloatArray:
@@ -85,7 +85,7 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
     s = simulation
     run_rows(
         cast_rays, chosen.size, chosen, fan, float(sensor.range), sensor.thick, side, s.sees,
-        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.sorted,
+        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
         out.distance, out.kind, out.approach, out.goal, least=LEAST,
     )  # fmt: skip
     return out
@@ -102,7 +102,7 @@ def _neighbours(
     s = simulation
     run_rows(
         find_neighbours, chosen.size, chosen, float(sensor.range), occlusion, side, s.sees,
-        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.sorted,
+        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
         out.position, out.velocity, out.radius, out.kind, out.count, least=LEAST,
     )  # fmt: skip
     return out

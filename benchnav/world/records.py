@@ -25,13 +25,16 @@ WORLD = _record(
     vanish_on_arrival="?", vanish_on_end="?", charge_both="?", running="?",
 )  # fmt: skip
 
-# (B, A), padding has present = False
+# (B, A), padding has present = False; what others look at comes first, in one cache line
 AGENT = _record(
-    x="f8", y="f8", vx="f8", vy="f8", heading="f8", goal_x="f8", goal_y="f8", arrival="f8",
-    radius="f8", max_speed="f8", max_turn_rate="f8", preferred_speed="f8",
-    drive_0="f8", drive_1="f8", tau="f8", code="i8", home="i8", hits="i8", ci="i8", cj="i8",
-    team="i8", status="i1", present="?", unicycle="?", evaluated="?", halted="?", open="?",
+    x="f8", y="f8", vx="f8", vy="f8", radius="f8", ci="i4", cj="i4", team="i4",
+    status="i1", present="?", unicycle="?", evaluated="?", halted="?", open="?",
+    heading="f8", goal_x="f8", goal_y="f8", arrival="f8", max_speed="f8", max_turn_rate="f8",
+    preferred_speed="f8", drive_0="f8", drive_1="f8", tau="f8", code="i8", home="i8", hits="i8",
 )  # fmt: skip
+
+# an agent in a hashed cell (ci, cj): where it is, so that a search reads one array in order
+SPOT = _record(x="f8", y="f8", ci="i4", cj="i4", index="i4", team="i4")
 
 # (B, M): dynamic obstacles and static obstacles that are re-placed
 BODY = _record(

@@ -9,12 +9,12 @@ from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards, Charge, World
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.episode.episode import Contacts, Status
-from benchnav.geometry.hash_grid import hash_tables
+from benchnav.geometry.hash_grid import hash_table
 from benchnav.threads import run_rows
 from benchnav.world.bodies import body_at, stack_bodies, top_speed
 from benchnav.world.fixed import stack_fixed
 from benchnav.world.records import AGENT as AGENT_RECORD
-from benchnav.world.records import CONTACT, OPEN_CONTACTS, WORLD, field
+from benchnav.world.records import CONTACT, OPEN_CONTACTS, SPOT, WORLD, field
 from benchnav.world.step import step_worlds
 from benchnav.world.touch import AGENT, BODY
 
@@ -41,8 +41,8 @@ class Simulation:
         room = 32 + 2 * OPEN_CONTACTS * self.A * (first.clock.substeps + 1)
         self._closed = np.zeros((self.B, room), CONTACT)
         self._kept: list[list[AnyArray]] = [[] for _ in self.worlds]
-        self.hashed, self.sorted = hash_tables(self.B, self.A)
-        self._near = np.zeros((self.B, self.A), np.int64)
+        self.hashed = hash_table(self.B, self.A)
+        self.spots = np.zeros((self.B, self.A), SPOT)
         self.sees = _sees(self.worlds)
         self._views()
         self._place_bodies()
@@ -106,7 +106,7 @@ class Simulation:
             step_worlds, self.B, np.ascontiguousarray(command, np.float64),
             np.ascontiguousarray(twist), executed, self.records, self.agents, self.bodies,
             self.shapes, self.knots, self.capsules, self.start, self.item, self._opened,
-            self._closed, self.hashed, self.sorted, self._near,
+            self._closed, self.hashed, self.spots,
         )  # fmt: skip
         return executed
 

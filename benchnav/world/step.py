@@ -30,14 +30,14 @@ def step_worlds(
     low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
     worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, sorted_: IntArray, near: IntArray,
+    hashed: IntArray, spots: AnyArray,
 ) -> None:  # fmt: skip
     """Advance the running worlds of rows low:high; ``executed`` gets the commands within limits."""
     for b in range(low, high):
         if worlds[b].running:
             step_world(
                 command[b], twist[b], executed[b], worlds[b], agents[b], bodies[b], shapes, knots,
-                capsules, start, item, opened[b], closed[b], hashed[b], sorted_[b], near[b],
+                capsules, start, item, opened[b], closed[b], hashed[b], spots[b],
             )  # fmt: skip
 
 
@@ -45,8 +45,7 @@ def step_worlds(
 def step_world(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
     bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
-    item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray, sorted_: IntArray,
-    near: IntArray,
+    item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray, spots: AnyArray,
 ) -> None:  # fmt: skip
     """One world: arrays over its agents (A,), bodies (M,) and contacts (A, 8)."""
     relocate(world.steps_done * world.dt, world, agents, bodies, knots)
@@ -56,10 +55,10 @@ def step_world(
         begin, end = tick * world.h, (tick + 1) * world.h
         aim_bodies(end, world, bodies, knots)
         aim_agents(world, agents)
-        find_all(world, agents, bodies, shapes, capsules, start, item, hashed, sorted_, near)
+        find_all(world, agents, bodies, shapes, capsules, start, item, hashed, spots)
         advance(
             begin, world, agents, bodies, shapes, capsules, start, item, opened, closed,
-            hashed, sorted_, near,
+            hashed, spots,
         )  # fmt: skip
         land_bodies(world, bodies)
         turn(world, agents)
@@ -141,11 +140,11 @@ def aim_agents(world: Any, agents: AnyArray) -> None:
 @kernel
 def find_all(
     world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
-    start: IntArray, item: IntArray, hashed: IntArray, sorted_: IntArray, near: IntArray,
+    start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
 ) -> None:  # fmt: skip
     """The next touch of every agent."""
     if len(agents) > BRUTE_FORCE:
-        fill(agents, hashed, sorted_, world.reach)
+        fill(agents, hashed, spots, world.reach)
     for i in range(world.agents):
         a = agents[i]
         a.tau = math.inf
@@ -153,7 +152,7 @@ def find_all(
             a.home = cell_at(world, a.x, a.y)
             find_next(
                 i, world.h, world.tolerance, agents, bodies, shapes, capsules, start, item, hashed,
-                sorted_, near, world.bodies,
+                spots, world.bodies,
             )  # fmt: skip
 
 
@@ -161,7 +160,7 @@ def find_all(
 def advance(
     begin: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, sorted_: IntArray, near: IntArray,
+    hashed: IntArray, spots: AnyArray,
 ) -> None:  # fmt: skip
     """From touch to touch, to the end of the substep."""
     left = world.h
@@ -183,7 +182,7 @@ def advance(
             if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
                 find_next(
                     k, left, world.tolerance, agents, bodies, shapes, capsules, start, item,
-                    hashed, sorted_, near, world.bodies,
+                    hashed, spots, world.bodies,
                 )  # fmt: skip
     drift(left, world, agents, bodies)
 

@@ -17,30 +17,6 @@ BRUTE_FORCE = 24  # agents up to which all pairs are cheaper than a grid
 
 
 @kernel
-def candidates(i: int, agents: AnyArray, hashed: IntArray, item: IntArray, near: IntArray) -> int:
-    """Lists in ``near`` (A,) the agents that i could touch in this substep; their number."""
-    n = 0
-    if len(agents) <= BRUTE_FORCE:
-        for j in range(len(agents)):
-            if j != i and agents[j].present:
-                near[n] = j
-                n += 1
-        return n
-    a = agents[i]
-    size = len(hashed) - 1
-    for ci in range(a.ci - 1, a.ci + 2):
-        for cj in range(a.cj - 1, a.cj + 2):
-            k = bucket(ci, cj, size)
-            for at in range(hashed[k], hashed[k + 1]):
-                j = item[at]
-                other = agents[j]
-                if other.ci == ci and other.cj == cj and j != i and other.present:
-                    near[n] = j
-                    n += 1
-    return n
-
-
-@kernel
 def goal_time(a: Any, tolerance: float) -> float:
     """Time until agent a touches its goal disc; 0 inside it."""
     fx, fy = a.x - a.goal_x, a.y - a.goal_y
@@ -79,10 +55,41 @@ def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
 
 
 @kernel
+def next_agent(
+    i: int, left: float, agents: AnyArray, hashed: IntArray, spots: AnyArray
+) -> tuple[float, int]:
+    """(time, index) of the agent that i touches first within ``left`` [s]; (inf, -1) if none.
+
+    Crowds are searched in the 3 × 3 cells around i, whose side no two bodies that
+    are farther apart can bridge within a substep.
+    """
+    a, best, who = agents[i], math.inf, -1
+    if len(agents) <= BRUTE_FORCE:
+        for j in range(len(agents)):
+            if j != i and agents[j].present:
+                t = pair_time(a, agents[j])
+                if t <= left and t < best:
+                    best, who = t, j
+        return best, who
+    size = len(hashed) - 1
+    for ci in range(a.ci - 1, a.ci + 2):
+        for cj in range(a.cj - 1, a.cj + 2):
+            k = bucket(ci, cj, size)
+            for at in range(hashed[k], hashed[k + 1]):
+                j = spots[at].index
+                other = agents[j]
+                if other.ci == ci and other.cj == cj and j != i and other.present:
+                    t = pair_time(a, other)
+                    if t <= left and (t < best or (t == best and j < who)):
+                        best, who = t, j
+    return best, who
+
+
+@kernel
 def find_next(
     i: int, left: float, tolerance: float, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
-    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, sorted_: IntArray,
-    near: IntArray, body_count: int,
+    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
+    body_count: int,
 ) -> None:  # fmt: skip
     """Writes tau and code of active agent i: its next touch within ``left`` [s].
 
@@ -104,11 +111,9 @@ def find_next(
         t = body_time(a, bodies[m], shapes, left)
         if t < best and t <= left:
             best, code = t, 4 * m + BODY
-    for k in range(candidates(i, agents, hashed, sorted_, near)):
-        j = near[k]
-        t = pair_time(a, agents[j])
-        if t <= left and (t < best or (t == best and code % 4 == AGENT and 4 * j + AGENT < code)):
-            best, code = t, 4 * j + AGENT
+    t, j = next_agent(i, left, agents, hashed, spots)
+    if t < best:
+        best, code = t, 4 * j + AGENT
     a.tau, a.code = best, code
 
 
