@@ -1,4 +1,4 @@
-"""Prints a digest of states, contacts and sensor readings; run as a program under other settings."""
+"""Prints a digest of states, contacts and readings; run as a program under other settings."""
 
 import hashlib
 import sys
@@ -14,7 +14,7 @@ SENSORS = frozenset({"rays", "neighbours", "edges"})
 
 
 def digest(steps: int) -> str:
-    """Of two batches: unicycles that slide and holonomic agents that stop, in crowds of 4 and 30."""
+    """Of two batches: few unicycles that slide, and many holonomic agents that stop."""
     found = hashlib.sha256()
     for unicycle, contact, count in ((True, ContactRule.SLIDE, 4), (False, ContactRule.STOP, 30)):
         worlds = [
