@@ -115,6 +115,8 @@ def edge_half_plane(
 def _corner(x: float, y: float) -> HalfPlane:
     """No nearer to a corner that is touched."""
     length = math.sqrt(x * x + y * y)
+    if length == 0.0:  # upon the corner itself no way out is better than another
+        return 0.0, 0.0, 1.0, 0.0
     return 0.0, 0.0, -y / length, x / length
 
 

@@ -29,8 +29,9 @@ def find_edges(
 ) -> None:  # fmt: skip
     """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, E, …)."""
     width, most = first.shape[1], first.shape[2]
-    best = np.empty(CANDIDATES)
-    found = np.empty((CANDIDATES, 12))  # x0 y0 x1 y1, before, after, convex flags, nearest point
+    best = np.empty(CANDIDATES)  # squared distances, rising
+    code = np.empty(CANDIDATES, np.int64)  # 8 (capsule) + side of the octagon, see `_edge`
+    edge = np.empty(10)
     for b in range(low // width, (high + width - 1) // width):
         world, here, others = worlds[b], agents[b], bodies[b]
         for k in range(max(low - b * width, 0), min(high - b * width, width)):
@@ -38,38 +39,38 @@ def find_edges(
             if i < 0 or not here[i].present:
                 continue
             a = here[i]
-            n = _gather(a, limit, world, others, shapes, capsules, start, item, best, found)
+            n = _gather(a, limit, world, others, shapes, capsules, start, item, best, code)
             for s in range(n):
                 if kept == most:
                     break
+                _edge(code[s], capsules, shapes, others, edge)
                 if occlusion and not _visible(
-                    a, found, s, world, capsules, start, item, others, shapes
+                    a, edge, world, capsules, start, item, others, shapes
                 ):
                     continue
                 for t in range(2):
-                    first[b, k, kept, t], second[b, k, kept, t] = found[s, t], found[s, 2 + t]
-                    before[b, k, kept, t], after[b, k, kept, t] = found[s, 4 + t], found[s, 6 + t]
-                first_convex[b, k, kept] = found[s, 8] > 0.0
-                second_convex[b, k, kept] = found[s, 9] > 0.0
+                    first[b, k, kept, t], second[b, k, kept, t] = edge[t], edge[2 + t]
+                    before[b, k, kept, t], after[b, k, kept, t] = edge[4 + t], edge[6 + t]
+                first_convex[b, k, kept] = edge[8] > 0.0
+                second_convex[b, k, kept] = edge[9] > 0.0
                 kept += 1
             count[b, k] = kept
 
 
 @kernel
 def _visible(
-    a: Any, found: FloatArray, s: int, world: Any, capsules: AnyArray, start: IntArray,
-    item: IntArray, bodies: AnyArray, shapes: AnyArray,
+    a: Any, edge: FloatArray, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
+    bodies: AnyArray, shapes: AnyArray,
 ) -> bool:  # fmt: skip
-    """Is the nearest point of edge s, its middle, or one of its ends in sight?
+    """Is the nearest point of the edge, its middle, or one of its ends in sight?
 
     A point is looked at from just before it, so that the edge does not hide itself.
     """
     for look in range(4):
-        x, y = found[s, 10], found[s, 11]
+        x, y = nearest_on_segment(a.x, a.y, edge[0], edge[1], edge[2], edge[3])
         if look > 0:
             u = 0.5 if look == 1 else (END if look == 2 else 1.0 - END)
-            x = found[s, 0] + u * (found[s, 2] - found[s, 0])
-            y = found[s, 1] + u * (found[s, 3] - found[s, 1])
+            x, y = edge[0] + u * (edge[2] - edge[0]), edge[1] + u * (edge[3] - edge[1])
         x, y = a.x + (x - a.x) * BEFORE, a.y + (y - a.y) * BEFORE
         if in_sight(a.x, a.y, x, y, -1, world, capsules, start, item, bodies, shapes):
             return True
@@ -79,27 +80,30 @@ def _visible(
 @kernel
 def _gather(
     a: Any, limit: float, world: Any, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
-    start: IntArray, item: IntArray, best: FloatArray, found: FloatArray,
+    start: IntArray, item: IntArray, best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
     """The nearest facing edges within ``limit``, sorted; returns how many."""
     n = 0
     if world.last - world.first <= FEW:
         for p in range(world.first, world.last):
-            n = _consider(a, 0.0, 0.0, p, capsules, limit, n, best, found)
+            c = capsules[p]
+            if c.nx * (a.x - c.x0) + c.ny * (a.y - c.y0) > 0.0 or c.before < 0:
+                n = _consider(a, 0.0, 0.0, c, p, limit, n, best, code)
     else:
-        n = _gather_cells(a, limit, world, capsules, start, item, best, found)
+        n = _gather_cells(a, limit, world, capsules, start, item, best, code)
     for m in range(world.bodies):
         body = bodies[m]
         if body.kind == _STATIC:
             for q in range(body.first, body.last):
-                n = _consider(a, body.x, body.y, q, shapes, limit, n, best, found)
+                at = len(capsules) + q
+                n = _consider(a, body.x, body.y, shapes[q], at, limit, n, best, code)
     return n
 
 
 @kernel
 def _gather_cells(
     a: Any, limit: float, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
-    best: FloatArray, found: FloatArray,
+    best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
     """Over the cells within ``limit``; a capsule counts in the cell of its point nearest to a."""
     n, side = 0, world.side
@@ -116,52 +120,38 @@ def _gather_cells(
                 ci = math.floor((x - world.origin_x) / side)
                 cj = math.floor((y - world.origin_y) / side)
                 if ci == i and cj == j:
-                    n = _consider(a, 0.0, 0.0, item[at], capsules, limit, n, best, found)
+                    n = _consider(a, 0.0, 0.0, c, item[at], limit, n, best, code)
     return n
 
 
 @kernel
 def _consider(
-    a: Any, ox: float, oy: float, p: int, capsules: AnyArray, limit: float, n: int,
-    best: FloatArray, found: FloatArray,
+    a: Any, ox: float, oy: float, c: Any, at: int, limit: float, n: int, best: FloatArray,
+    code: IntArray,
 ) -> int:  # fmt: skip
-    """Insert edge p of ``capsules`` (shifted by (ox, oy)), or the octagon about a disc."""
-    c = capsules[p]
+    """Offer capsule c, shifted by (ox, oy): an edge, or the sides of the octagon about a disc."""
     if c.before >= 0:
-        prior, later = capsules[c.before], capsules[c.after]
-        bx, by = _direction(prior)
-        dx, dy = _direction(c)
-        ax, ay = _direction(later)
-        turn_0, turn_1 = bx * dy - by * dx, dx * ay - dy * ax
-        return _offer(
-            a, ox + c.x0, oy + c.y0, ox + c.x1, oy + c.y1, bx, by, ax, ay,
-            turn_0 >= 0.0, turn_1 >= 0.0, limit, n, best, found,
-        )  # fmt: skip
-    radius = c.r * _OCTAGON
-    for k in range(8):
-        c0, s0 = cos_sin((k - 0.5) * _EIGHTH)
-        c1, s1 = cos_sin((k + 0.5) * _EIGHTH)
-        cb, sb = cos_sin((k + 1.0) * _EIGHTH)
-        ca, sa = cos_sin((k + 3.0) * _EIGHTH)
-        x, y = ox + c.x0, oy + c.y0
-        n = _offer(
-            a, x + radius * c0, y + radius * s0, x + radius * c1, y + radius * s1,
-            cb, sb, ca, sa, True, True, limit, n, best, found,
-        )  # fmt: skip
+        x0, y0, x1, y1 = ox + c.x0, oy + c.y0, ox + c.x1, oy + c.y1
+        return _offer(a, x0, y0, x1, y1, 8 * at, limit, n, best, code)
+    for side in range(8):
+        x0, y0, x1, y1 = _octagon_side(c, side)
+        n = _offer(a, ox + x0, oy + y0, ox + x1, oy + y1, 8 * at + side, limit, n, best, code)
     return n
 
 
 @kernel
-def _direction(c: Any) -> tuple[float, float]:
-    dx, dy = c.x1 - c.x0, c.y1 - c.y0
-    length = math.sqrt(dx * dx + dy * dy)
-    return (dx / length, dy / length) if length > 0.0 else (0.0, 0.0)
+def _octagon_side(c: Any, side: int) -> tuple[float, float, float, float]:
+    """A side of the octagon about a disc, by 45° steps; side 0 faces +x."""
+    c0, s0 = cos_sin((side - 0.5) * _EIGHTH)
+    c1, s1 = cos_sin((side + 0.5) * _EIGHTH)
+    radius = c.r * _OCTAGON
+    return c.x0 + radius * c0, c.y0 + radius * s0, c.x0 + radius * c1, c.y0 + radius * s1
 
 
 @kernel
 def _offer(
-    a: Any, x0: float, y0: float, x1: float, y1: float, bx: float, by: float, ax: float, ay: float,
-    convex_0: bool, convex_1: bool, limit: float, n: int, best: FloatArray, found: FloatArray,
+    a: Any, x0: float, y0: float, x1: float, y1: float, what: int, limit: float, n: int,
+    best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
     """Insert an edge if agent a is on its free (right-hand) side and near enough."""
     if (x1 - x0) * (a.y - y0) - (y1 - y0) * (a.x - x0) >= 0.0:
@@ -170,17 +160,39 @@ def _offer(
     d2 = (a.x - qx) * (a.x - qx) + (a.y - qy) * (a.y - qy)
     if d2 > limit * limit or (n == len(best) and d2 >= best[n - 1]):
         return n
-    if n < len(best):
-        n += 1
+    n = min(n + 1, len(best))
     at = n - 1
-    while at > 0 and best[at - 1] > d2:
-        best[at] = best[at - 1]
-        found[at, :] = found[at - 1, :]
+    while at > 0 and (best[at - 1] > d2 or (best[at - 1] == d2 and code[at - 1] > what)):
+        best[at], code[at] = best[at - 1], code[at - 1]
         at -= 1
-    best[at] = d2
-    row = found[at]
-    row[0], row[1], row[2], row[3] = x0, y0, x1, y1
-    row[4], row[5], row[6], row[7] = bx, by, ax, ay
-    row[8], row[9] = (1.0 if convex_0 else -1.0), (1.0 if convex_1 else -1.0)
-    row[10], row[11] = qx, qy
+    best[at], code[at] = d2, what
     return n
+
+
+@kernel
+def _edge(
+    code: int, capsules: AnyArray, shapes: AnyArray, bodies: AnyArray, edge: FloatArray
+) -> None:
+    """Write an edge by its code: ends, directions of the edges before and after, convexities."""
+    at, side = code // 8, code % 8
+    fixed = at < len(capsules)
+    q = at - len(capsules)
+    c = capsules[at] if fixed else shapes[q]
+    ox, oy = (0.0, 0.0) if fixed else (bodies[c.solid].x, bodies[c.solid].y)
+    if c.before < 0:
+        edge[0], edge[1], edge[2], edge[3] = _octagon_side(c, side)
+        edge[4], edge[5] = cos_sin((side + 1.0) * _EIGHTH)
+        edge[6], edge[7] = cos_sin((side + 3.0) * _EIGHTH)
+        edge[8], edge[9] = 1.0, 1.0
+    else:
+        prior = capsules[c.before] if fixed else shapes[c.before]
+        later = capsules[c.after] if fixed else shapes[c.after]
+        edge[0], edge[1], edge[2], edge[3] = c.x0, c.y0, c.x1, c.y1
+        # a direction is the outward normal turned by +90°
+        edge[4], edge[5], edge[6], edge[7] = -prior.ny, prior.nx, -later.ny, later.nx
+        edge[8] = 1.0 if prior.nx * c.ny - prior.ny * c.nx >= 0.0 else -1.0
+        edge[9] = 1.0 if c.nx * later.ny - c.ny * later.nx >= 0.0 else -1.0
+    edge[0] += ox
+    edge[1] += oy
+    edge[2] += ox
+    edge[3] += oy

@@ -83,36 +83,36 @@ def _goal_distance(fx: float, fy: float, dx: float, dy: float, reach: float, bes
 
 @kernel
 def _list(
-    a: Any, ca: float, sa: float, own: float, limit: float, c: Any, ox: float, oy: float,
-    vx: float, vy: float, things: FloatArray, n: int,
+    a: Any, ca: float, sa: float, own: float, c: Any, x0: float, y0: float, vx: float, vy: float,
+    things: FloatArray, n: int,
 ) -> int:  # fmt: skip
-    """Append capsule c, shifted by (ox, oy), unless no ray of a can meet it first.
+    """Append capsule c, which begins at (x0, y0) from the agent."""
+    if n == len(things):
+        return n
+    x1, y1 = x0 + (c.x1 - c.x0), y0 + (c.y1 - c.y0)
+    row = things[n]
+    row[X0], row[Y0] = ca * x0 + sa * y0, ca * y0 - sa * x0
+    row[X1], row[Y1] = ca * x1 + sa * y1, ca * y1 - sa * x1
+    row[NX], row[NY] = ca * c.nx + sa * c.ny, ca * c.ny - sa * c.nx
+    row[OFF] = -1.0 if c.nx == 0.0 and c.ny == 0.0 else -(c.nx * x0 + c.ny * y0)
+    row[REACH], row[KIND] = own + c.r, c.kind
+    row[VX], row[VY] = ca * vx + sa * vy, ca * vy - sa * vx
+    return n + 1
+
+
+@kernel
+def _matters(c: Any, x0: float, y0: float, far: float) -> bool:
+    """Could a ray of length ``far`` [m] meet capsule c, which begins at (x0, y0), first?
 
     An edge whose solid is on the agent's side cannot be met before another edge of
     that solid: its loop is closed and the agent outside.
     """
-    x0, y0, x1, y1 = c.x0 + ox - a.x, c.y0 + oy - a.y, c.x1 + ox - a.x, c.y1 + oy - a.y
-    reach = own + c.r
-    far = limit + reach
-    if n == len(things) or min(x0, x1) > far or max(x0, x1) < -far:
-        return n
-    if min(y0, y1) > far or max(y0, y1) < -far:
-        return n
-    ex, ey = x1 - x0, y1 - y0
-    off = x0 * ey - y0 * ex
-    if c.r == 0.0 and off > 0.0:
-        return n
-    length = math.sqrt(ex * ex + ey * ey)
-    row = things[n]
-    row[X0], row[Y0] = ca * x0 + sa * y0, ca * y0 - sa * x0
-    row[X1], row[Y1] = ca * x1 + sa * y1, ca * y1 - sa * x1
-    row[NX], row[NY], row[OFF] = 0.0, 0.0, -1.0  # a disc has no line
-    if c.r == 0.0 and length > 0.0:
-        nx, ny = ey / length, -ex / length  # to the right: out of the solid, towards the agent
-        row[NX], row[NY], row[OFF] = ca * nx + sa * ny, ca * ny - sa * nx, -off / length
-    row[REACH], row[KIND] = reach, c.kind
-    row[VX], row[VY] = ca * vx + sa * vy, ca * vy - sa * vx
-    return n + 1
+    if c.nx * x0 + c.ny * y0 > 0.0:
+        return False
+    x1, y1 = x0 + (c.x1 - c.x0), y0 + (c.y1 - c.y0)
+    if min(x0, x1) > far + c.r or max(x0, x1) < -far - c.r:
+        return False
+    return not (min(y0, y1) > far + c.r or max(y0, y1) < -far - c.r)
 
 
 @kernel
@@ -121,7 +121,9 @@ def _list_fixed(
     things: FloatArray, n: int,
 ) -> int:  # fmt: skip
     for p in range(world.first, world.last):
-        n = _list(a, ca, sa, own, limit, capsules[p], 0.0, 0.0, 0.0, 0.0, things, n)
+        c = capsules[p]
+        if _matters(c, c.x0 - a.x, c.y0 - a.y, limit + own):
+            n = _list(a, ca, sa, own, c, c.x0 - a.x, c.y0 - a.y, 0.0, 0.0, things, n)
     return n
 
 
@@ -135,9 +137,10 @@ def _list_bodies(
         dx, dy, far = body.x - a.x, body.y - a.y, limit + own + body.bound
         if dx * dx + dy * dy <= far * far:
             for q in range(body.first, body.last):
-                n = _list(
-                    a, ca, sa, own, limit, shapes[q], body.x, body.y, body.vx, body.vy, things, n
-                )
+                c = shapes[q]
+                x0, y0 = c.x0 + dx, c.y0 + dy
+                if _matters(c, x0, y0, limit + own):
+                    n = _list(a, ca, sa, own, c, x0, y0, body.vx, body.vy, things, n)
     return n
 
 

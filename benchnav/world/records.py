@@ -43,10 +43,12 @@ BODY = _record(
     law="i1", kind="i1", periodic="?", placed="?",
 )  # fmt: skip
 
-# fixed ones in the world's frame, those of bodies in the body's frame
+# fixed ones in the world's frame, those of bodies in the body's frame; (nx, ny) is the unit
+# normal of an edge, out of the solid, and zero for a disc
 CAPSULE = _record(
-    x0="f8", y0="f8", x1="f8", y1="f8", r="f8", solid="i8", before="i8", after="i8", kind="i1"
-)
+    x0="f8", y0="f8", x1="f8", y1="f8", r="f8", nx="f8", ny="f8",
+    solid="i8", before="i8", after="i8", kind="i1",
+)  # fmt: skip
 
 # a corner point of a motion law: position at a time
 KNOT = _record(t="f8", x="f8", y="f8")
@@ -77,6 +79,10 @@ def capsule_records(
     out = np.zeros(len(capsules), CAPSULE)
     for k, name in enumerate(("x0", "y0", "x1", "y1", "r")):
         out[name] = capsules[:, k]
+    ex, ey = out["x1"] - out["x0"], out["y1"] - out["y0"]
+    length = np.sqrt(ex * ex + ey * ey)
+    edge = length > 0.0
+    out["nx"][edge], out["ny"][edge] = ey[edge] / length[edge], -ex[edge] / length[edge]
     out["before"] = np.where(before >= 0, before + shift, -1)
     out["after"] = np.where(after >= 0, after + shift, -1)
     out["solid"], out["kind"] = solid, kind

@@ -73,10 +73,10 @@ def test_random_bytes(raw):
 @pytest.mark.parametrize(
     "text",
     [
-        SMALL + "".join(f"k{i}: 1\n" for i in range(45_000)),
-        SMALL + "walls2:\n" + "- {type: box}\n" * 30_000,
-        SMALL.replace("points: [[5, 1]]", "points: [" + "[5, 1], " * 30_000 + "]"),
-        SMALL.replace("ignores: [walkers]", "ignores: [" + "x, " * 90_000 + "]"),
+        SMALL + "".join(f"k{i}: 1\n" for i in range(24_000)),
+        SMALL + "walls2:\n" + "- {type: box}\n" * 16_000,
+        SMALL.replace("points: [[5, 1]]", "points: [" + "[5, 1], " * 16_000 + "]"),
+        SMALL.replace("ignores: [walkers]", "ignores: [" + "x, " * 49_000 + "]"),
         SMALL.replace(
             "{type: box, width: 1, depth: 2}",
             "{type: polygon, points: [" + ", ".join(f"[{i}, {i % 2}]" for i in range(1000)) + "]}",
