@@ -1,0 +1,1 @@
+"""Speed against peers and limits: ratios in one run, never timed tests. `make bench` runs all."""

@@ -1,0 +1,87 @@
+"""All measurements as one table: ``python -m benchmarks [--peers PYTHON] [--out FILE]``."""
+
+import argparse
+import platform
+from datetime import UTC, datetime
+from importlib.metadata import version
+from pathlib import Path
+
+from benchmarks import end_to_end, leader_arena, orca_peers
+from benchnav.threads import thread_count
+
+PACKAGES = ("benchnav", "numpy", "numba", "shapely", "pyarrow")
+
+
+def main() -> None:
+    """Measure, print, and keep the table where asked."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--peers", help="interpreter that has pyrvo and navground")
+    parser.add_argument("--out", type=Path, help="Markdown file that keeps the table")
+    arguments = parser.parse_args()
+    rows = crowd_rows(orca_peers.measure(arguments.peers))
+    rows += leader_arena.measure() + end_to_end.measure()
+    text = page(rows)
+    print(text)
+    if arguments.out:
+        arguments.out.write_text(text)
+
+
+def crowd_rows(measured: list[dict[str, object]]) -> list[dict[str, object]]:
+    """The crowd against each peer; `value` is our own rate, the ratio is against the peer's."""
+    own = next(m for m in measured if m["name"] == "benchnav")
+    rows = []
+    for peer in measured:
+        if peer is own:
+            continue
+        name = f"ORCA crowd of 1,000 against {peer['name']} {peer.get('version', '')}".strip()
+        if "ratio" not in peer:
+            rows.append({"name": name, "note": str(peer.get("skipped", "not measured"))})
+            continue
+        rows.append(
+            {
+                "name": name, "value": own["agent_steps_per_second"], "unit": "agent-steps/s",
+                "peer": peer["agent_steps_per_second"], "wanted": peer["wanted"],
+                "ratio": peer["ratio"],
+            }
+        )  # fmt: skip
+    return rows
+
+
+def page(rows: list[dict[str, object]]) -> str:
+    """The table, with machine and versions."""
+    versions = ", ".join(f"{name} {version(name)}" for name in PACKAGES)
+    lines = [
+        "# Benchmarks",
+        "",
+        f"Measured {datetime.now(UTC):%Y-%m-%d} with `make bench` on {platform.machine()},"
+        f" {thread_count()} cores, {platform.system()}, Python {platform.python_version()};"
+        f" {versions}.",
+        "Peers and limits are measured side by side in the same run; what each row times stands at"
+        " the head of its file in `benchmarks/`.",
+        "",
+        "| what | measured | against | wanted | reached |",
+        "| --- | ---: | ---: | ---: | --- |",
+    ]
+    return "\n".join([*lines, *map(line, rows), ""])
+
+
+def line(row: dict[str, object]) -> str:
+    """One row of the table."""
+    if "note" in row:
+        return f"| {row['name']} | – | – | – | {row['note']} |"
+    value, ratio, wanted = (float(str(row[key])) for key in ("value", "ratio", "wanted"))
+    against, goal, enough = "–", f"{number(wanted)} {row['unit']}", 1.0
+    if "peer" in row:
+        against = f"{number(float(str(row['peer'])))}: {ratio:.1f} ×"
+        goal, enough = f"{wanted:g} ×", wanted
+    reached = "yes" if ratio >= enough else "no"
+    return f"| {row['name']} | {number(value)} {row['unit']} | {against} | {goal} | {reached} |"
+
+
+def number(value: float) -> str:
+    """Three significant digits, with M for millions."""
+    return f"{value / 1e6:.2f} M" if value >= 1e5 else f"{value:.3g}"
+
+
+if __name__ == "__main__":
+    main()
