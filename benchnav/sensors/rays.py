@@ -29,7 +29,8 @@ X0, Y0, X1, Y1, NX, NY, OFF, REACH, KIND, VX, VY = range(11)
 
 @kernel
 def cast_rays(
-    low: int, high: int, chosen: IntArray, fan: FloatArray, limit: float, thick: bool,
+    low: int, high: int, chosen: IntArray, fan_x: FloatArray, fan_y: FloatArray,
+    limit: float, thick: bool,
     side: float, sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
     shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
     spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
@@ -37,11 +38,14 @@ def cast_rays(
 ) -> None:  # fmt: skip
     """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, R).
 
-    ``fan`` (R, 2) unit vectors in the agent's frame; ``side`` [m] of the hashed cells;
-    ``sees`` (B, teams, teams).
+    ``fan_x``, ``fan_y``: unit vectors in the agent's frame, padded by repetition to a
+    multiple of 8; ``side`` [m] of the hashed cells; ``sees`` (B, teams, teams).
     """
     width = chosen.shape[1]
+    rays = distance.shape[2]
     things = np.empty((LISTED, 11))
+    best = np.empty(len(fan_x))
+    who = np.empty(len(fan_x), np.int64)
     for b in range(low // width, (high + width - 1) // width):
         world, here, others = worlds[b], agents[b], bodies[b]
         seen, table, crowd = sees[b], hashed[b], spots[b]
@@ -59,20 +63,22 @@ def cast_rays(
                 n = _list_fixed(a, ca, sa, own, limit, world, capsules, things, n)
             gx, gy = a.x - a.goal_x, a.y - a.goal_y
             gx, gy = ca * gx + sa * gy, ca * gy - sa * gx
-            for r in range(len(fan)):
-                dx, dy = fan[r, 0], fan[r, 1]
-                best, what = _first(dx, dy, limit, n, things)
-                met = _NOTHING if what < 0 else int(things[what, KIND])
+            best[:] = limit
+            who[:] = -1
+            _cast(n, things, fan_x, fan_y, best, who)
+            for r in range(rays):
+                dx, dy, reach = fan_x[r], fan_y[r], best[r]
+                met = _NOTHING if who[r] < 0 else int(things[who[r], KIND])
                 if not few:
                     wx, wy = ca * dx - sa * dy, sa * dx + ca * dy
-                    best, on_map = _first_on_map(
-                        a.x, a.y, wx, wy, own, best, world, capsules, start, item
+                    reach, on_map = _first_on_map(
+                        a.x, a.y, wx, wy, own, reach, world, capsules, start, item
                     )
                     met = met if on_map == _NOTHING else on_map
-                distance[b, k, r], kind[b, k, r], approach[b, k, r] = best, met, 0.0
+                distance[b, k, r], kind[b, k, r], approach[b, k, r] = reach, met, 0.0
                 if met == _DYNAMIC:
-                    approach[b, k, r] = -(things[what, VX] * dx + things[what, VY] * dy)
-                goal[b, k, r] = _goal_distance(gx, gy, dx, dy, world.tolerance + own, best)
+                    approach[b, k, r] = -(things[who[r], VX] * dx + things[who[r], VY] * dy)
+                goal[b, k, r] = _goal_distance(gx, gy, dx, dy, world.tolerance + own, reach)
 
 
 @kernel
@@ -187,40 +193,38 @@ def _list_agent(
 
 
 @kernel
-def _first(dx: float, dy: float, limit: float, n: int, things: FloatArray) -> tuple[float, int]:
-    """(distance, row) of the first thing within ``limit`` along (dx, dy); (limit, -1) if none."""
-    best, who = limit, -1
+def _cast(
+    n: int, things: FloatArray, fan_x: FloatArray, fan_y: FloatArray, best: FloatArray,
+    who: IntArray,
+) -> None:  # fmt: skip
+    """Lowers ``best`` (R,) to the distance of the first of n things, and notes ``who`` it is.
+
+    An edge is met on its line, or else at the end that its line is passed at. Without
+    branches, all rays at once: the compiler turns the inner loop into vector operations.
+    """
     for k in range(n):
-        x, y, reach, off = things[k, X0], things[k, Y0], things[k, REACH], things[k, OFF]
-        if off >= 0.0:  # an edge: its line first, then the end that the line is passed at
-            slope = things[k, NX] * dx + things[k, NY] * dy
-            t = 0.0
-            if off > reach:
-                if off - reach >= -slope * best:
-                    continue
-                t = (off - reach) / -slope
-            # the tangent is the normal turned by +90°: (-ny, nx)
-            ex, ey = -things[k, NY], things[k, NX]
-            foot = (t * dx - x) * ex + (t * dy - y) * ey
-            span = (things[k, X1] - x) * ex + (things[k, Y1] - y) * ey
-            if 0.0 <= foot <= span:
-                if slope < 0.0:
-                    best, who = t, k
-                continue
-            if foot > span:
-                x, y = things[k, X1], things[k, Y1]
-        along = x * dx + y * dy
-        gap = x * x + y * y - reach * reach
-        if along <= 0.0:
-            continue
-        inner = along * along - gap  # reach² - across²
-        if gap <= 0.0:
-            best, who = 0.0, k
-        elif inner >= 0.0:
-            t = along - math.sqrt(inner)
-            if t < best:
-                best, who = t, k
-    return best, who
+        x0, y0, x1, y1 = things[k, X0], things[k, Y0], things[k, X1], things[k, Y1]
+        nx, ny, off, reach = things[k, NX], things[k, NY], things[k, OFF], things[k, REACH]
+        span = (y1 - y0) * nx - (x1 - x0) * ny  # along the tangent (-ny, nx)
+        span = span if off >= 0.0 else -1.0  # a disc has no line
+        gap = max(off - reach, 0.0)
+        for r in range(len(best)):
+            dx, dy = fan_x[r], fan_y[r]
+            slope = nx * dx + ny * dy
+            t = gap / -slope if gap > 0.0 else 0.0
+            foot = (t * dy - y0) * nx - (t * dx - x0) * ny
+            x, y = (x1, y1) if foot > span else (x0, y0)
+            along = x * dx + y * dy
+            outside = x * x + y * y - reach * reach
+            inner = along * along - outside  # reach² - across²
+            at_end = along - math.sqrt(max(inner, 0.0)) if outside > 0.0 else 0.0
+            at_end = at_end if along > 0.0 and inner >= 0.0 else math.inf
+            on_line = t if slope < 0.0 else math.inf
+            t = on_line if foot >= 0.0 and foot <= span else at_end
+            t = math.inf if gap > 0.0 and slope >= 0.0 else t
+            nearer = t < best[r]
+            best[r] = t if nearer else best[r]
+            who[r] = k if nearer else who[r]
 
 
 @kernel

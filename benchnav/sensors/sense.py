@@ -81,11 +81,12 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
         angle, np.full(shape, float(sensor.range)), np.zeros(shape, np.int8), np.zeros(shape),
         np.full(shape, np.inf),
     )  # fmt: skip
-    fan = np.array([cos_sin(a) for a in angle])
+    padded = np.concatenate([angle, np.full(-len(angle) % 8, angle[-1])])
+    fan_x, fan_y = np.array([cos_sin(a) for a in padded]).T.copy()
     s = simulation
     run_rows(
-        cast_rays, chosen.size, chosen, fan, float(sensor.range), sensor.thick, side, s.sees,
-        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
+        cast_rays, chosen.size, chosen, fan_x, fan_y, float(sensor.range), sensor.thick, side,
+        s.sees, s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
         out.distance, out.kind, out.approach, out.goal, least=LEAST,
     )  # fmt: skip
     return out
