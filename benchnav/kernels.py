@@ -35,6 +35,16 @@ def kernel(function: F) -> F:
     return compiled
 
 
+def inlined(function: F) -> F:
+    """A part of a kernel, put into its callers before they are compiled.
+
+    For what is called once per agent with many arrays: passing an array costs more than
+    reading it.
+    """
+    compiled: F = njit(function, inline="always", error_model="numpy")
+    return compiled
+
+
 @lru_cache
 def cache_folder(package: str) -> Path:
     """Where compiled kernels of a top-level package are kept: one folder per state of the code."""
@@ -44,7 +54,7 @@ def cache_folder(package: str) -> Path:
     for root in sorted(roots):
         for path in sorted(root.rglob("*.py")):
             text = path.read_bytes()
-            if b"@kernel" in text or path.parent.name in _CONSTANTS:
+            if b"@kernel" in text or b"@inlined" in text or path.parent.name in _CONSTANTS:
                 digest.update(text)
     home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
     writable = os.access(home if home.exists() else home.parent, os.W_OK)

@@ -8,7 +8,7 @@ import numpy as np
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.geometry.hash_grid import bucket
-from benchnav.kernels import kernel
+from benchnav.kernels import inlined, kernel
 from benchnav.sensors.sight import in_sight
 from benchnav.world.touch import BRUTE_FORCE
 
@@ -71,7 +71,7 @@ def find_neighbours(
             count[b, k] = kept
 
 
-@kernel
+@inlined
 def _gather_bodies(
     a: Any, limit: float, total: int, count: int, bodies: AnyArray, best: FloatArray,
     code: IntArray,
@@ -87,7 +87,7 @@ def _gather_bodies(
     return n
 
 
-@kernel
+@inlined
 def _gather_agents(
     i: int, limit: float, room: int, side: float, sees: BoolArray, agents: AnyArray,
     hashed: IntArray, spots: AnyArray, n: int, best: FloatArray, code: IntArray,

@@ -15,7 +15,7 @@ from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time
 from benchnav.geometry.hash_grid import bucket
 from benchnav.geometry.rotation import cos_sin
-from benchnav.kernels import kernel
+from benchnav.kernels import inlined, kernel
 from benchnav.sensors.sight import FEW
 from benchnav.world.touch import BRUTE_FORCE
 
@@ -87,7 +87,7 @@ def _goal_distance(fx: float, fy: float, dx: float, dy: float, reach: float, bes
     return t if t <= best else math.inf
 
 
-@kernel
+@inlined
 def _list(
     a: Any, ca: float, sa: float, own: float, c: Any, x0: float, y0: float, vx: float, vy: float,
     things: FloatArray, n: int,
@@ -121,7 +121,7 @@ def _matters(c: Any, x0: float, y0: float, far: float) -> bool:
     return not (min(y0, y1) > far + c.r or max(y0, y1) < -far - c.r)
 
 
-@kernel
+@inlined
 def _list_fixed(
     a: Any, ca: float, sa: float, own: float, limit: float, world: Any, capsules: AnyArray,
     things: FloatArray, n: int,
@@ -133,7 +133,7 @@ def _list_fixed(
     return n
 
 
-@kernel
+@inlined
 def _list_bodies(
     a: Any, ca: float, sa: float, own: float, limit: float, count: int, bodies: AnyArray,
     shapes: AnyArray, things: FloatArray, n: int,
@@ -192,7 +192,7 @@ def _list_agent(
     return n + 1
 
 
-@kernel
+@inlined
 def _cast(
     n: int, things: FloatArray, fan_x: FloatArray, fan_y: FloatArray, best: FloatArray,
     who: IntArray,

@@ -55,7 +55,7 @@ def _cell_side(simulation: Simulation, sensing: Sensing) -> float:
     limit = sensing.neighbours.range if sensing.neighbours is not None else 0.0
     if sensing.rays is not None:
         limit = max(limit, sensing.rays.range)
-    return max(0.125 * limit, 4.0 * float(simulation.agents["radius"].max()))
+    return max(0.25 * limit, 4.0 * float(simulation.agents["radius"].max()))
 
 
 @kernel
@@ -86,8 +86,8 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
     s = simulation
     run_rows(
         cast_rays, chosen.size, chosen, fan_x, fan_y, float(sensor.range), sensor.thick, side,
-        s.sees, s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
-        out.distance, out.kind, out.approach, out.goal, least=LEAST,
+        s.sees, s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed,
+        s.spots, out.distance, out.kind, out.approach, out.goal, least=LEAST,
     )  # fmt: skip
     return out
 

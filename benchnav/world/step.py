@@ -14,7 +14,7 @@ from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
 from benchnav.geometry.hash_grid import fill
 from benchnav.geometry.rotation import angle_of, wrap
-from benchnav.kernels import kernel
+from benchnav.kernels import inlined, kernel
 from benchnav.world.bodies import body_at
 from benchnav.world.contacts import MAX_HITS, follow_up, touch
 from benchnav.world.dynamics import limited, planar_velocity
@@ -100,7 +100,7 @@ def _within(dx: float, dy: float, reach: float) -> bool:
     return bool(dx * dx + dy * dy < reach * reach)
 
 
-@kernel
+@inlined
 def obey(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray
 ) -> None:
@@ -117,7 +117,7 @@ def obey(
         executed[i, 0], executed[i, 1] = a.drive_0, a.drive_1
 
 
-@kernel
+@inlined
 def aim_bodies(end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
     """Velocities that carry the bodies straight to where their laws put them at ``end`` [s]."""
     for m in range(world.bodies):
@@ -126,7 +126,7 @@ def aim_bodies(end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> Non
         body.vx, body.vy = (body.next_x - body.x) / world.h, (body.next_y - body.y) / world.h
 
 
-@kernel
+@inlined
 def aim_agents(world: Any, agents: AnyArray) -> None:
     """Velocities of this substep."""
     for i in range(world.agents):
@@ -137,7 +137,7 @@ def aim_agents(world: Any, agents: AnyArray) -> None:
             a.vx, a.vy = planar_velocity(a.drive_0, a.drive_1, a.unicycle, a.heading, world.h)
 
 
-@kernel
+@inlined
 def find_all(
     world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
     start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
@@ -156,7 +156,7 @@ def find_all(
             )  # fmt: skip
 
 
-@kernel
+@inlined
 def advance(
     begin: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
@@ -195,7 +195,7 @@ def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
     return j >= 0 and _within(a.x - agents[j].x, a.y - agents[j].y, reach)
 
 
-@kernel
+@inlined
 def earliest(world: Any, agents: AnyArray) -> int:
     """The agent whose next touch comes first; -1 if there is none."""
     best, who = math.inf, -1
@@ -205,7 +205,7 @@ def earliest(world: Any, agents: AnyArray) -> int:
     return who
 
 
-@kernel
+@inlined
 def drift(t: float, world: Any, agents: AnyArray, bodies: AnyArray) -> None:
     """Everything moves straight for t seconds."""
     for i in range(world.agents):
@@ -219,7 +219,7 @@ def drift(t: float, world: Any, agents: AnyArray, bodies: AnyArray) -> None:
         body.y += body.vy * t
 
 
-@kernel
+@inlined
 def land_bodies(world: Any, bodies: AnyArray) -> None:
     """Bodies are where their laws say, free of accumulated rounding."""
     for m in range(world.bodies):
@@ -227,7 +227,7 @@ def land_bodies(world: Any, bodies: AnyArray) -> None:
         body.x, body.y = body.next_x, body.next_y
 
 
-@kernel
+@inlined
 def turn(world: Any, agents: AnyArray) -> None:
     """Unicycles turn at their rate; holonomic agents look where they are told to go."""
     for i in range(world.agents):
@@ -240,7 +240,7 @@ def turn(world: Any, agents: AnyArray) -> None:
             a.heading = wrap(angle_of(a.drive_0, a.drive_1))
 
 
-@kernel
+@inlined
 def goes_on(world: Any, agents: AnyArray) -> bool:
     """True while an evaluated agent is active and the horizon is ahead."""
     if world.steps_done >= world.steps:

@@ -10,7 +10,7 @@ from typing import Any
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
 from benchnav.geometry.hash_grid import bucket
-from benchnav.kernels import kernel
+from benchnav.kernels import inlined, kernel
 
 GOAL, AGENT, FIXED, BODY = 0, 1, 2, 3
 BRUTE_FORCE = 24  # agents up to which all pairs are cheaper than a grid
@@ -54,7 +54,7 @@ def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
     return best
 
 
-@kernel
+@inlined
 def next_agent(
     i: int, left: float, agents: AnyArray, hashed: IntArray, spots: AnyArray
 ) -> tuple[float, int]:
@@ -85,7 +85,7 @@ def next_agent(
     return best, who
 
 
-@kernel
+@inlined
 def find_next(
     i: int, left: float, tolerance: float, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
