@@ -57,6 +57,8 @@ class Timings:
     decision: FloatArray  # (T,) of the batched call, divided by the worlds that it served
     planning: float  # within reset, this world's share
     batch: int  # worlds that shared the calls
+    latency: FloatArray | None = None  # (K,) of calls for this world alone, apart; None: not taken
+    memory: int | None = None  # [bytes] most that its process ever held in RAM; None: not known
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,7 +75,7 @@ class Episode:
     heading: FloatArray  # (T+1, A) [rad], in (-pi, pi]
     status: ByteArray  # (T+1, A) of Status
     requested: FloatArray  # (T, A, 2) what the navigator answered, in its own kind of command
-    executed: FloatArray  # (T, A, 2) within limits: planar velocity (holonomic) or twist (unicycle)
+    executed: FloatArray  # (T, A, 2) within limits; a twist for unicycles and where one was asked
     body_position: FloatArray  # (T+1, M, 2) [m]
     arrival: FloatArray  # (A,) first arrival [s], NaN where it never came
     contacts: Contacts

@@ -52,8 +52,11 @@ EPISODES = pa.schema(
         ("decision_seconds", pa.large_list(pa.float64())),
         ("planning_seconds", pa.float64()),
         ("batch", pa.int64()),
+        ("latency_seconds", pa.large_list(pa.float64())),  # null where not taken
+        ("memory_bytes", pa.int64()),  # null where not known
     ]
 )
+LATER = ("latency_seconds", "memory_bytes")  # columns that older parts lack; null there
 DICTIONARY = [*_IDENTITY, "failure"]  # columns whose values repeat
 
 
@@ -75,6 +78,8 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
     columns["decision_seconds"] = _lists([e.timings.decision for e in episodes], pa.float64())
     columns["planning_seconds"] = [e.timings.planning for e in episodes]
     columns["batch"] = [e.timings.batch for e in episodes]
+    columns["latency_seconds"] = [e.timings.latency for e in episodes]
+    columns["memory_bytes"] = [e.timings.memory for e in episodes]
     arrays = [
         values if isinstance(values, pa.Array) else pa.array(values, type=field.type)
         for field in EPISODES
@@ -84,7 +89,11 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
 
 
 def from_table(table: pa.Table) -> Iterator[Episode]:
-    """The episodes of a table of `EPISODES`, in its order."""
+    """The episodes of a table of `EPISODES`, in its order; columns of `LATER` may lack."""
+    for name in LATER:
+        if name not in table.column_names:
+            field = EPISODES.field(name)
+            table = table.append_column(field, pa.nulls(len(table), field.type))
     for batch in table.to_batches():
         for row in range(batch.num_rows):
             yield _episode(batch, row)
@@ -109,9 +118,11 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
         for name, shape in SHAPES.items()
     }
     contacts = {name: values(f"contact_{name}", _NUMPY[kind]) for name, kind in _CONTACTS.items()}
+    latency = scalar("latency_seconds")
     timings = Timings(
-        values("decision_seconds", np.float64), scalar("planning_seconds"), scalar("batch")
-    )
+        values("decision_seconds", np.float64), scalar("planning_seconds"), scalar("batch"),
+        None if latency is None else np.array(latency, np.float64), scalar("memory_bytes"),
+    )  # fmt: skip
     return Episode(
         identity=Identity(**{name: scalar(name) for name in (*_IDENTITY, "seed")}),
         world=world_from_json(scalar("world")),

@@ -75,7 +75,9 @@ def make_episode(rng, seed=0, steps=5, agents=3, bodies=2, events=2, failure="")
         body_position=rng.normal(size=(steps + 1, bodies, 2)),
         arrival=arrival,
         contacts=contacts,
-        timings=Timings(rng.random(steps), 0.25, 7),
+        timings=Timings(
+            rng.random(steps), 0.25, 7, rng.random(3) if seed % 2 else None, seed * 999 or None
+        ),
         failure=failure,
         reproducible=bool(seed % 2),
     )

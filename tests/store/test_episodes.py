@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from benchnav.store.digest import digest
-from benchnav.store.episodes import from_table, to_table
+from benchnav.store.episodes import LATER, from_table, to_table
 from benchnav.store.world_codec import decode, encode, world_from_json, world_to_json
 
 
@@ -47,6 +47,16 @@ def test_episodes_of_any_shape_come_back_bit_for_bit(tools, shapes, seed):
     assert len(back) == len(episodes)
     for left, right in zip(episodes, back, strict=True):
         tools.same(left, right)
+
+
+def test_parts_that_were_written_before_a_column_was_there_are_read(tools):
+    episodes = [tools.episode(np.random.default_rng(n), n) for n in range(3)]
+    for left, right in zip(
+        episodes, from_table(to_table(episodes).drop_columns(list(LATER))), strict=True
+    ):
+        assert (right.timings.latency, right.timings.memory) == (None, None)
+        timings = dataclasses.replace(left.timings, latency=None, memory=None)
+        tools.same(dataclasses.replace(left, timings=timings), right)
 
 
 def test_a_digest_tells_states_commands_and_events_apart_and_ignores_timings(tools):
