@@ -165,7 +165,7 @@ def _in_area(
 
 
 JAM = Metric(
-    "jam", "Share of time slow beside another agent and not at the goal", "", "lower", 0.0, 1.0,
+    "jam", "Share of time slow beside another agent and not at the goal", "", None, 0.0, 1.0,
     OWN, jam,
 )  # fmt: skip
 _STEFFEN = "Steffen & Seyfried 2010, computed with PedPy"

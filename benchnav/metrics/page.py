@@ -21,6 +21,8 @@ agents of a role for which they are defined, leaders and followers apart, then o
 What is undefined is NaN, never a perfect score. Every agent's trajectory is cut at its
 arrival, its end or its navigator's failure. A metric that is defined for arrivals alone
 shows over how many it was taken, and never ranks; neither does one without a direction.
+Nor does what an early end cuts short: who crashes has less time to hit or to be near
+anything, so no metric that ranks may be better for it, which `check_metric` tests.
 Timings cannot be verified by others and are marked.
 
 Every metric keeps its value, to rounding, when the world is moved or turned and when its

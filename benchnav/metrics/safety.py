@@ -1,8 +1,13 @@
-"""Safety: collisions, and how little was missing."""
+"""Safety: collisions, and how little was missing.
+
+An attempt that a crash ends early has less time to hit, or to be near, anything else. So
+what adds up over an attempt only describes it; `collided` and what was missing rank.
+"""
 
 import numpy as np
 
 from benchnav.arena.solid import Kind
+from benchnav.arena.world import ContactRule
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.metrics.analysis import analyse
@@ -40,9 +45,14 @@ def collisions_agent(episode: Episode) -> FloatArray:
 
 
 def contact_time(episode: Episode) -> FloatArray:
-    """(A,) [s] in charged contact with at least one partner: overlapping events count once."""
+    """(A,) [s] in charged contact with at least one partner: overlapping events count once.
+
+    NaN for all where the first contact ends the attempt: it lasts no time there.
+    """
     c = episode.contacts
     total = np.zeros(len(episode.world.agents))
+    if episode.world.rules.contact == ContactRule.END:
+        return np.full_like(total, np.nan)
     reached = np.zeros(len(total))
     for n in np.flatnonzero(c.charged)[np.argsort(c.start[c.charged], kind="stable")]:
         a = c.agent[n]
@@ -75,13 +85,19 @@ def min_time_to_collision(episode: Episode) -> FloatArray:
 
 
 def personal_space_intimate(episode: Episode) -> FloatArray:
-    """(A,) [s] with less than 0.45 m between the agent and another one, rim to rim."""
-    return _time_within(episode, INTIMATE)
+    """(A,) share of its attempt with less than 0.45 m to another agent, rim to rim.
+
+    NaN for an agent whose attempt was over at once.
+    """
+    return _share_within(episode, INTIMATE)
 
 
 def personal_space_personal(episode: Episode) -> FloatArray:
-    """(A,) [s] with less than 1.2 m between the agent and another one, rim to rim."""
-    return _time_within(episode, PERSONAL)
+    """(A,) share of its attempt with less than 1.2 m to another agent, rim to rim.
+
+    NaN for an agent whose attempt was over at once.
+    """
+    return _share_within(episode, PERSONAL)
 
 
 def _events(episode: Episode, chosen: BoolArray) -> FloatArray:
@@ -93,8 +109,8 @@ def _of_kind(episode: Episode, kind: Kind) -> FloatArray:
     return _events(episode, episode.contacts.charged & (episode.contacts.kind == kind))
 
 
-def _time_within(episode: Episode, distance: float) -> FloatArray:
-    """(A,) [s]: the gap to the nearest agent is taken as linear between states."""
+def _share_within(episode: Episode, distance: float) -> FloatArray:
+    """(A,) of its time: the gap to the nearest agent is taken as linear between states."""
     found = analyse(episode)
     gap = found.encounters.gap - distance
     before, after = gap[:, :-1], gap[:, 1:]
@@ -102,8 +118,10 @@ def _time_within(episode: Episode, distance: float) -> FloatArray:
     crosses = (before < 0.0) != (after < 0.0)
     deeper = np.minimum(before, after)
     share = np.where(crosses, deeper / np.where(crosses, -np.abs(after - before), 1.0), inside)
-    total: FloatArray = (share * found.trajectories.duration).sum(axis=1)
-    return total
+    duration = found.trajectories.duration
+    total = duration.sum(axis=1)
+    inside_for = (share * duration).sum(axis=1)
+    return np.where(total > 0.0, inside_for / np.where(total > 0.0, total, 1.0), np.nan)
 
 
 COLLIDED = rate("collided", "Charged with at least one collision", "lower", collided)
@@ -114,8 +132,7 @@ _EVENTS = [
     ("collisions_agent", "Collision events with other agents", collisions_agent),
 ]
 COLLISIONS_WALL, COLLISIONS_STATIC, COLLISIONS_DYNAMIC, COLLISIONS_AGENT = (
-    Metric(name, title, "", "lower", 0.0, np.inf, OWN, function)
-    for name, title, function in _EVENTS
+    Metric(name, title, "", None, 0.0, np.inf, OWN, function) for name, title, function in _EVENTS
 )
 CONTACT_TIME = Metric(
     "contact_time", "Time in collision", "s", "lower", 0.0, np.inf, OWN, contact_time
@@ -131,10 +148,10 @@ MIN_TIME_TO_COLLISION = Metric(
 )  # fmt: skip
 _HALL = "Hall 1966, The Hidden Dimension"
 PERSONAL_SPACE_INTIMATE = Metric(
-    "personal_space_intimate", "Time with another agent nearer than 0.45 m, rim to rim", "s",
-    "lower", 0.0, np.inf, _HALL, personal_space_intimate,
+    "personal_space_intimate", "Share of time with another agent nearer than 0.45 m, rim to rim",
+    "", None, 0.0, 1.0, _HALL, personal_space_intimate,
 )  # fmt: skip
 PERSONAL_SPACE_PERSONAL = Metric(
-    "personal_space_personal", "Time with another agent nearer than 1.2 m, rim to rim", "s",
-    "lower", 0.0, np.inf, _HALL, personal_space_personal,
+    "personal_space_personal", "Share of time with another agent nearer than 1.2 m, rim to rim",
+    "", None, 0.0, 1.0, _HALL, personal_space_personal,
 )  # fmt: skip

@@ -1,4 +1,8 @@
-"""Success: what became of every agent. All are rates over the agents, failures included."""
+"""Success: what became of every agent. All are rates over the agents, failures included.
+
+Who crashes neither times out nor gets stuck nor fails: those three tell the outcomes
+apart, and `success` and `arrival` rank.
+"""
 
 import math
 from collections.abc import Callable
@@ -85,13 +89,15 @@ def success_by_horizon(times: FloatArray, horizons: FloatArray) -> FloatArray:
 Function = Callable[[Episode], FloatArray]
 
 
-def rate(name: str, title: str, better: Literal["higher", "lower"], function: Function) -> Metric:
+def rate(
+    name: str, title: str, better: Literal["higher", "lower"] | None, function: Function
+) -> Metric:
     """A share of agents, defined by this project."""
     return Metric(name, title, "", better, 0.0, 1.0, OWN, function, rate=True)
 
 
 SUCCESS = rate("success", "Arrived, with no collision before arriving", "higher", success)
 ARRIVAL = rate("arrival", "Came within goal tolerance before the horizon", "higher", arrival)
-TIMEOUT = rate("timeout", "Still on its way at the horizon", "lower", timeout)
-STUCK = rate("stuck", "Timed out within one radius of its last place for 10 s", "lower", stuck)
-FAILED = rate("failed", "Its navigator failed", "lower", failed)
+TIMEOUT = rate("timeout", "Still on its way at the horizon", None, timeout)
+STUCK = rate("stuck", "Timed out within one radius of its last place for 10 s", None, stuck)
+FAILED = rate("failed", "Its navigator failed", None, failed)

@@ -22,6 +22,7 @@ ROUNDING = (
 SAMPLING = 0.05  # of the greatest value in the episode: dt, dt/2 and dt/5 of the same smooth motion
 FLOOR = 1e-9  # absolute: rounding of what is zero
 QUARTER = 0.5 * math.pi
+_UNRANKED = "what an early end cuts short ranks nobody. Declare it with better=None."
 
 
 def check_metric(metric: Metric) -> None:
@@ -30,7 +31,7 @@ def check_metric(metric: Metric) -> None:
     A sound record; one value per agent (or one, of a group) within the declared range;
     the same answer twice, in another place, turned, with agents reordered, under another
     name, and recorded with other decision steps; nothing after an agent's attempt
-    counts; nothing but success earns a perfect score.
+    counts; nothing but success earns a perfect score, and crashing never a better one.
     """
     for check in CHECKS:
         check(metric)
@@ -149,12 +150,11 @@ def check_after(metric: Metric) -> None:
 
 def check_unearned(metric: Metric) -> None:
     """Who stands, fails or crashes at once has no perfect score."""
-    names = ("idle", "failing", "crashing")
-    found = {name: float(values(metric, zoo()[name])[0]) for name in names}
     best = {"higher": metric.high, "lower": metric.low}.get(metric.better or "")
     if best is None or not metric.verifiable:
         return
-    perfect = [name for name, value in found.items() if value == best]
+    names = ("idle", "failing", "crashing")
+    perfect = [name for name in names if float(values(metric, zoo()[name])[0]) == best]
     if metric.better == "higher":
         _require(
             not perfect,
@@ -162,9 +162,22 @@ def check_unearned(metric: Metric) -> None:
             f" Got {best}, its best, in the episodes {perfect}.",
         )
     _require(
-        len(perfect) < len(names),
-        f"{metric.name} must not be perfect ({best}) for an agent that never moves and is hit,"
-        " for one whose navigator fails, and for one that crashes at once.",
+        "crashing" not in perfect,
+        f"{metric.name} must not be perfect ({best}) for an agent that crashes at once:"
+        f" {_UNRANKED}",
+    )
+
+
+def check_crash(metric: Metric) -> None:
+    """Who crashes half-way does not score better than who walks the same way and arrives."""
+    if metric.better is None or metric.conditional or not metric.verifiable:
+        return
+    whole, part = (float(values(metric, zoo()[name])[0]) for name in ("errand", "broken off"))
+    gain = part - whole if metric.better == "higher" else whole - part
+    _require(
+        not gain > ROUNDING * max(abs(whole), abs(part)),
+        f"{metric.name} must not be better for an agent that crashes half-way ({part}) than for"
+        f" one that walks the same way and arrives ({whole}): {_UNRANKED}",
     )
 
 
@@ -190,7 +203,7 @@ def check_conditional(metric: Metric) -> None:
 
 CHECKS: tuple[Callable[[Metric], None], ...] = (
     check_record, check_range, check_pure, check_blind, check_place, check_order,
-    check_sampling, check_after, check_unearned, check_conditional,
+    check_sampling, check_after, check_unearned, check_crash, check_conditional,
 )  # fmt: skip
 
 

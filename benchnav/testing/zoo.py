@@ -8,8 +8,10 @@ import numpy as np
 from benchnav.arena.agents import Role
 from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind, Solid
+from benchnav.arena.world import ContactRule
 from benchnav.episode.episode import Episode
 from benchnav.testing.episodes import (
+    RULES,
     Hit,
     Setting,
     Walk,
@@ -24,6 +26,7 @@ from benchnav.testing.episodes import (
     wave,
 )
 
+ENDS = replace(RULES, contact=ContactRule.END)
 ROOM = (-12.0, -8.0, 12.0, 8.0)
 AREA = (-3.0, -2.5, 3.0, 2.5)
 EVERY_HIT = tuple(
@@ -105,9 +108,22 @@ def failing() -> Episode:
 
 def crashing() -> Episode:
     """It walks straight into a wall, and that ends its attempt after two seconds."""
-    setting = Setting(bounds=ROOM, solids=(room(ROOM),))
-    walk = Walk(straight((-9.7, 0.0), (-1.0, 0.0)), (9.0, 0.0), hits=(Hit(2.0, 0.1),), ends=2.0)
+    setting = Setting(bounds=ROOM, solids=(room(ROOM),), rules=ENDS)
+    walk = Walk(straight((-9.7, 0.0), (-1.0, 0.0)), (9.0, 0.0), hits=(Hit(2.0, 0.0),), ends=2.0)
     return record((walk,), setting)
+
+
+def errand(crashes: bool) -> Episode:
+    """It passes others that stand, one of them closely, and arrives; or a box ends it before."""
+    solids = (room(ROOM), box((-5.2, 0.0), 1.0, 1.0)) if crashes else (room(ROOM),)
+    hits, ends = ((Hit(2.0, 0.0, Kind.STATIC, 1),), 2.0) if crashes else ((), None)
+    setting = Setting(bounds=ROOM, solids=solids, rules=ENDS)
+    walks = (
+        Walk(wave((-8.0, 0.0), 1.0, 0.3, 4.0), (0.0, 0.0), hits=hits, ends=ends),
+        Walk(straight((-3.0, 1.1), (0.0, 0.0)), (9.0, 1.1), driver=1),
+        Walk(straight((-2.0, -1.8), (0.0, 0.0)), (9.0, -1.8), driver=1),
+    )
+    return record(walks, setting)
 
 
 def with_company(speed: float) -> Episode:
@@ -127,6 +143,7 @@ def zoo() -> dict[str, Episode]:
     episodes = {
         "smooth": smooth().episode(), "crowd": crowd().episode(), "idle": idle(),
         "failing": failing(), "crashing": crashing(), "company": with_company(0.5),
+        "errand": errand(crashes=False), "broken off": errand(crashes=True),
     }  # fmt: skip
     for episode in episodes.values():
         for name in ("position", "heading", "status", "requested", "executed", "body_position",

@@ -191,7 +191,9 @@ def test_two_agents_that_pass_each_other():
     episode = record(walks, Setting(rules=rules))
     assert safety.min_clearance(episode) == pytest.approx([0.5, 0.5], abs=1e-9)
     close = math.sqrt(1.8**2 - 1.1**2)  # |x1 - x2| = 2 |t - 6|
-    assert safety.personal_space_personal(episode) == pytest.approx([close, close], rel=0.01)
+    assert safety.personal_space_personal(episode) == pytest.approx(
+        close / episode.arrival, rel=0.01
+    )
     assert safety.personal_space_intimate(episode) == pytest.approx([0.0, 0.0])
     assert safety.min_time_to_collision(episode) == pytest.approx([5.0, 5.0])
 

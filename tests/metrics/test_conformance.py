@@ -5,10 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from benchnav.metrics.analysis import analyse
 from benchnav.metrics.measure import load_metric
 from benchnav.metrics.metric import Metric
 from benchnav.plugins import METRICS
-from benchnav.testing.check_metric import CHECKS, check_metric
+from benchnav.testing.check_metric import CHECKS, check_metric, values
+from benchnav.testing.zoo import zoo
 
 SHIPPED = [
     "success",
@@ -109,6 +111,12 @@ def _time_of_whoever_finished(episode):
     return (episode.status == 0).sum(axis=0) * episode.world.clock.dt
 
 
+def _seconds_near_others(episode):
+    """Time within 1.2 m of another agent: a crash into a wall puts an end to it."""
+    gap = analyse(episode).encounters.gap[:, :-1] < 1.2
+    return (gap * analyse(episode).trajectories.duration).sum(axis=1)
+
+
 def _mean_speed_of_the_record(episode):
     """Over the whole record, so that it falls while others are still walking."""
     length = np.hypot(*_steps(episode).transpose(2, 0, 1)).sum(axis=0)
@@ -139,6 +147,12 @@ BAD = {
     "turning of standing": (
         _metric(lambda e: 0.0 * e.arrival.size + np.zeros(len(e.arrival)), "lower", 0.0),
         "must not be perfect",
+    ),
+    "seconds near others": (
+        _metric(_seconds_near_others, "lower", 0.0), "must not be perfect .* crashes at once",
+    ),
+    "seconds on the way": (
+        _metric(_time_of_whoever_finished, "lower", 0.0), "crashes half-way",
     ),
     "whoever finished": (
         _metric(_time_of_whoever_finished, "lower", 0.0, conditional=True), "did not arrive",
@@ -180,6 +194,24 @@ def test_bad_metric_is_caught(mistake):
         check_metric(metric)
 
 
+def test_nothing_that_ranks_is_best_in_a_crash():
+    """The reviewer's case: what ends early adds up to less, and is no achievement."""
+    unranked = [name for name in SHIPPED if name.startswith(("collisions_", "personal_space_"))]
+    unranked += ["jam", "timeout", "stuck", "failed"]
+    assert {name for name in unranked if load_metric(name).better is not None} == set()
+    crash = zoo()["crashing"]
+    for name in SHIPPED:
+        m = load_metric(name)
+        if m.better == "lower" and m.verifiable:
+            value = values(m, crash)[0]
+            assert math.isnan(value) or value > m.low, name
+
+
+def test_contact_takes_no_time_where_it_ends_the_attempt():
+    assert np.isnan(values(load_metric("contact_time"), zoo()["crashing"])).all()
+    assert values(load_metric("contact_time"), zoo()["idle"])[0] == pytest.approx(2.0)
+
+
 def test_good_outside_metric_passes():
     """Mean speed until it is over, for whoever moves at all: what an outsider would write."""
 
@@ -192,5 +224,5 @@ def test_good_outside_metric_passes():
         return np.where(time > 0.0, length / np.where(time > 0.0, time, 1.0), np.nan)
 
     metric = Metric("mean_speed", "Mean speed", "m/s", None, 0.0, math.inf, "here", mean_speed)
-    assert len(CHECKS) == 10
+    assert len(CHECKS) == 11
     check_metric(metric)
