@@ -9,10 +9,13 @@ calls does, in another file; it would go on running the old code. So the cache l
 in a folder named after everything that kernels of a package are made of.
 """
 
+import getpass
 import hashlib
 import os
+import shutil
 import sys
 import tempfile
+import time
 from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
@@ -29,9 +32,12 @@ _CONSTANTS = ("arena", "episode")  # packages whose enumerations kernels freeze
 
 def kernel(function: F) -> F:
     """Compile once per signature, cached on disk."""
-    if not os.environ.get("NUMBA_CACHE_DIR"):
-        vars(config)["CACHE_DIR"] = str(cache_folder(function.__module__.partition(".")[0]))
+    settings = vars(config)
+    theirs = settings["CACHE_DIR"]
+    if not theirs:
+        settings["CACHE_DIR"] = str(cache_folder(function.__module__.partition(".")[0]))
     compiled: F = njit(function, cache=True, nogil=True, error_model="numpy")
+    settings["CACHE_DIR"] = theirs  # other packages keep their kernels where they did
     return compiled
 
 
@@ -56,7 +62,25 @@ def cache_folder(package: str) -> Path:
             text = path.read_bytes()
             if b"@kernel" in text or b"@inlined" in text or path.parent.name in _CONSTANTS:
                 digest.update(text)
+    folder = _base() / f"kernels-{digest.hexdigest()}"
+    if not folder.exists():
+        _forget_old(folder.parent)
+    return folder
+
+
+def _base() -> Path:
+    """The user's cache; or a folder of the user's own among the temporary files."""
     home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    writable = os.access(home if home.exists() else home.parent, os.W_OK)
-    base = home if writable else Path(tempfile.gettempdir())
-    return base / "benchnav" / f"kernels-{digest.hexdigest()}"
+    existing = next(path for path in (home, *home.parents) if path.exists())
+    if os.access(existing, os.W_OK):
+        return home / "benchnav"
+    base = Path(tempfile.gettempdir()) / f"benchnav-{getpass.getuser()}"
+    base.mkdir(mode=0o700, exist_ok=True)
+    return base
+
+
+def _forget_old(base: Path) -> None:
+    """Remove the kernels of states of the code that were not used for a month."""
+    for folder in base.glob("kernels-*"):
+        if time.time() - folder.stat().st_mtime > 30 * 86400:
+            shutil.rmtree(folder, ignore_errors=True)

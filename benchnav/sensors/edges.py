@@ -1,4 +1,7 @@
-"""The nearest edges of walls and static obstacles that face the agent and are in sight."""
+"""The nearest edges of walls and static obstacles that face the agent and are in sight.
+
+An edge of which anything is in sight is told whole, as far as the sensor reaches.
+"""
 
 import math
 from typing import Any
@@ -22,12 +25,16 @@ BEFORE = 1.0 - 1e-6  # of the way to a point that is looked at
 
 @kernel
 def find_edges(
-    low: int, high: int, chosen: IntArray, limit: float, occlusion: bool, worlds: AnyArray,
+    low: int, high: int, chosen: IntArray, limit: float, bulge: float, occlusion: bool,
+    worlds: AnyArray,
     agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray,
     item: IntArray, first: FloatArray, second: FloatArray, before: FloatArray, after: FloatArray,
     first_convex: BoolArray, second_convex: BoolArray, count: IntArray,
 ) -> None:  # fmt: skip
-    """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, E, …)."""
+    """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, E, …).
+
+    ``bulge`` [m] is the radius of the largest fixed disc.
+    """
     width, most = first.shape[1], first.shape[2]
     best = np.empty(CANDIDATES)  # squared distances, rising
     code = np.empty(CANDIDATES, np.int64)  # 8 (capsule) + side of the octagon, see `_edge`
@@ -39,11 +46,12 @@ def find_edges(
             if i < 0 or not here[i].present:
                 continue
             a = here[i]
-            n = _gather(a, limit, world, others, shapes, capsules, start, item, best, code)
+            n = _gather(a, limit, bulge, world, others, shapes, capsules, start, item, best, code)
             for s in range(n):
                 if kept == most:
                     break
                 _edge(code[s], capsules, shapes, others, edge)
+                _clip(a, limit, edge)
                 if occlusion and not _visible(
                     a, edge, world, capsules, start, item, others, shapes
                 ):
@@ -79,8 +87,8 @@ def _visible(
 
 @kernel
 def _gather(
-    a: Any, limit: float, world: Any, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
-    start: IntArray, item: IntArray, best: FloatArray, code: IntArray,
+    a: Any, limit: float, bulge: float, world: Any, bodies: AnyArray, shapes: AnyArray,
+    capsules: AnyArray, start: IntArray, item: IntArray, best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
     """The nearest facing edges within ``limit``, sorted; returns how many."""
     n = 0
@@ -90,7 +98,7 @@ def _gather(
             if c.nx * (a.x - c.x0) + c.ny * (a.y - c.y0) > 0.0 or c.before < 0:
                 n = _consider(a, 0.0, 0.0, c, p, limit, n, best, code)
     else:
-        n = _gather_cells(a, limit, world, capsules, start, item, best, code)
+        n = _gather_cells(a, limit, limit + bulge, world, capsules, start, item, best, code)
     for m in range(world.bodies):
         body = bodies[m]
         if body.kind == _STATIC:
@@ -102,15 +110,15 @@ def _gather(
 
 @kernel
 def _gather_cells(
-    a: Any, limit: float, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
-    best: FloatArray, code: IntArray,
+    a: Any, limit: float, far: float, world: Any, capsules: AnyArray, start: IntArray,
+    item: IntArray, best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
-    """Over the cells within ``limit``; a capsule counts in the cell of its point nearest to a."""
+    """Over the cells within ``far``; a capsule counts in the cell of its point nearest to a."""
     n, side = 0, world.side
-    i0 = max(0, math.floor((a.x - limit - world.origin_x) / side))
-    j0 = max(0, math.floor((a.y - limit - world.origin_y) / side))
-    i1 = min(world.nx - 1, math.floor((a.x + limit - world.origin_x) / side))
-    j1 = min(world.ny - 1, math.floor((a.y + limit - world.origin_y) / side))
+    i0 = max(0, math.floor((a.x - far - world.origin_x) / side))
+    j0 = max(0, math.floor((a.y - far - world.origin_y) / side))
+    i1 = min(world.nx - 1, math.floor((a.x + far - world.origin_x) / side))
+    j1 = min(world.ny - 1, math.floor((a.y + far - world.origin_y) / side))
     for i in range(i0, i1 + 1):
         for j in range(j0, j1 + 1):
             cell = world.grid + i * world.ny + j
@@ -196,3 +204,21 @@ def _edge(
     edge[1] += oy
     edge[2] += ox
     edge[3] += oy
+
+
+@kernel
+def _clip(a: Any, limit: float, edge: FloatArray) -> None:
+    """Cut an edge at the sensor's range; a cut end looks like a straight wall that goes on."""
+    dx, dy = edge[2] - edge[0], edge[3] - edge[1]
+    length = math.sqrt(dx * dx + dy * dy)
+    ux, uy = dx / length, dy / length
+    fx, fy = edge[0] - a.x, edge[1] - a.y
+    middle = -(fx * ux + fy * uy)  # along the edge, where it comes nearest to a
+    half = math.sqrt(max(limit * limit - (fx * fx + fy * fy) + middle * middle, 0.0))
+    x0, y0 = edge[0], edge[1]
+    if middle - half > 0.0:
+        edge[0], edge[1] = x0 + (middle - half) * ux, y0 + (middle - half) * uy
+        edge[4], edge[5], edge[8] = ux, uy, 1.0
+    if middle + half < length:
+        edge[2], edge[3] = x0 + (middle + half) * ux, y0 + (middle + half) * uy
+        edge[6], edge[7], edge[9] = ux, uy, 1.0

@@ -12,7 +12,7 @@ from benchnav.kernels import inlined, kernel
 from benchnav.sensors.sight import in_sight
 from benchnav.world.touch import BRUTE_FORCE
 
-CANDIDATES = 64  # nearest in range, of which those in sight are kept
+CANDIDATES = 32  # nearest in range that are looked at first
 _AGENT, _DYNAMIC = int(Kind.AGENT), int(Kind.DYNAMIC)
 
 
@@ -26,49 +26,67 @@ def find_neighbours(
 ) -> None:  # fmt: skip
     """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, K, …).
 
-    Where something could hide somebody, more candidates than K are gathered, and
-    the nearest K of those in sight are kept.
+    Where something could hide somebody, more candidates than K are gathered, and more
+    again, until K of them are in sight or nobody is left in range.
     """
     width, most, total = position.shape[1], position.shape[2], agents.shape[1]
-    listed = max(4 * most, CANDIDATES) + BRUTE_FORCE
-    best = np.empty(listed)  # squared distances
-    code = np.empty(listed, np.int64)  # j for an agent, A + m for a body
+    best = np.empty(total + bodies.shape[1] + 1)  # squared distances
+    code = np.empty(len(best), np.int64)  # j for an agent, A + m for a body
     for b in range(low // width, (high + width - 1) // width):
         world, here, things = worlds[b], agents[b], bodies[b]
         seen, table, crowd = sees[b], hashed[b], spots[b]
         hidden = occlusion and (world.bodies > 0 or world.last > world.first)
-        room = CANDIDATES if hidden else most
         for k in range(max(low - b * width, 0), min(high - b * width, width)):
             i, kept = chosen[b, k], 0
             if i < 0 or not here[i].present:
                 continue
             a = here[i]
-            n = _gather_bodies(a, limit, total, world.bodies, things, best, code)
-            n = _gather_agents(i, limit, room, side, seen, here, table, crowd, n, best, code)
-            for s in range(n):
-                if kept == most:
+            room = max(most, CANDIDATES) if hidden else most
+            while True:
+                n = _gather_bodies(a, limit, total, world.bodies, things, best, code)
+                n = _gather_agents(i, limit, room, side, seen, here, table, crowd, n, best, code)
+                kept = n
+                if hidden:
+                    kept = _keep_visible(
+                        a, n, most, here, world, capsules, start, item, things, shapes, code
+                    )
+                if kept == most or n < room:
                     break
+                room *= 2
+            for s in range(kept):
                 if code[s] < total:
                     other = here[code[s]]
-                    if hidden and not in_sight(
-                        a.x, a.y, other.x, other.y, -1, world, capsules, start, item, things, shapes
-                    ):
-                        continue
-                    position[b, k, kept, 0], position[b, k, kept, 1] = other.x, other.y
-                    velocity[b, k, kept, 0], velocity[b, k, kept, 1] = other.vx, other.vy
-                    radius[b, k, kept], kind[b, k, kept] = other.radius, _AGENT
+                    position[b, k, s, 0], position[b, k, s, 1] = other.x, other.y
+                    velocity[b, k, s, 0], velocity[b, k, s, 1] = other.vx, other.vy
+                    radius[b, k, s], kind[b, k, s] = other.radius, _AGENT
                 else:
-                    m = code[s] - total
-                    body = things[m]
-                    if hidden and not in_sight(
-                        a.x, a.y, body.x, body.y, m, world, capsules, start, item, things, shapes
-                    ):
-                        continue
-                    position[b, k, kept, 0], position[b, k, kept, 1] = body.x, body.y
-                    velocity[b, k, kept, 0], velocity[b, k, kept, 1] = body.vx, body.vy
-                    radius[b, k, kept], kind[b, k, kept] = body.bound, _DYNAMIC
-                kept += 1
+                    body = things[code[s] - total]
+                    position[b, k, s, 0], position[b, k, s, 1] = body.x, body.y
+                    velocity[b, k, s, 0], velocity[b, k, s, 1] = body.vx, body.vy
+                    radius[b, k, s], kind[b, k, s] = body.bound, _DYNAMIC
             count[b, k] = kept
+
+
+@kernel
+def _keep_visible(
+    a: Any, n: int, most: int, agents: AnyArray, world: Any, capsules: AnyArray, start: IntArray,
+    item: IntArray, bodies: AnyArray, shapes: AnyArray, code: IntArray,
+) -> int:  # fmt: skip
+    """Moves those in sight to the front of ``code``, up to ``most``; returns how many."""
+    kept = 0
+    for s in range(n):
+        m = code[s] - len(agents)
+        x, y = 0.0, 0.0
+        if m < 0:
+            x, y = agents[code[s]].x, agents[code[s]].y
+        else:
+            x, y = bodies[m].x, bodies[m].y
+        if kept < most and in_sight(
+            a.x, a.y, x, y, max(m, -1), world, capsules, start, item, bodies, shapes
+        ):
+            code[kept] = code[s]
+            kept += 1
+    return kept
 
 
 @inlined
@@ -120,8 +138,6 @@ def _gather_agents(
                     if d2 > worst or spot.ci != ci or spot.cj != cj or spot.index == i:
                         continue
                     if sees[team, spot.team]:
-                        if n == len(best):
-                            n = done = _nearest(done, n, room, best, code)
                         best[n], code[n] = d2, spot.index
                         n += 1
         n = done = _nearest(done, n, room, best, code)

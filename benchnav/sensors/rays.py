@@ -17,9 +17,9 @@ from benchnav.geometry.hash_grid import bucket
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import inlined, kernel
 from benchnav.sensors.sight import FEW
+from benchnav.world.fixed import walk
 from benchnav.world.touch import BRUTE_FORCE
 
-LISTED = 512  # things around one agent; in a crowd denser than that the farthest are not met
 _AGENT, _NOTHING, _DYNAMIC = int(Kind.AGENT), int(Kind.NOTHING), int(Kind.DYNAMIC)
 
 # columns of the list: ends, unit normal and distance of the line (edges), radius sum, kind,
@@ -30,8 +30,8 @@ X0, Y0, X1, Y1, NX, NY, OFF, REACH, KIND, VX, VY = range(11)
 @kernel
 def cast_rays(
     low: int, high: int, chosen: IntArray, fan_x: FloatArray, fan_y: FloatArray,
-    limit: float, thick: bool,
-    side: float, sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
+    limit: float, thick: bool, side: float, widest: float, most_shapes: int,
+    sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
     shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
     spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
     goal: FloatArray,
@@ -39,11 +39,12 @@ def cast_rays(
     """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, R).
 
     ``fan_x``, ``fan_y``: unit vectors in the agent's frame, padded by repetition to a
-    multiple of 8; ``side`` [m] of the hashed cells; ``sees`` (B, teams, teams).
+    multiple of 8; ``side`` [m] of the hashed cells, ``widest`` radius of an agent and
+    ``most_shapes``, capsules of the bodies of one world; ``sees`` (B, teams, teams).
     """
     width = chosen.shape[1]
     rays = distance.shape[2]
-    things = np.empty((LISTED, 11))
+    things = np.empty((FEW + agents.shape[1] + most_shapes, 11))  # room for everything
     best = np.empty(len(fan_x))
     who = np.empty(len(fan_x), np.int64)
     for b in range(low // width, (high + width - 1) // width):
@@ -58,7 +59,9 @@ def cast_rays(
             own = a.radius if thick else 0.0
             ca, sa = cos_sin(a.heading)
             n = _list_bodies(a, ca, sa, own, limit, world.bodies, others, shapes, things, 0)
-            n = _list_agents(i, ca, sa, own, limit, side, seen, here, table, crowd, things, n)
+            n = _list_agents(
+                i, ca, sa, own, limit, side, widest, seen, here, table, crowd, things, n
+            )
             if few:
                 n = _list_fixed(a, ca, sa, own, limit, world, capsules, things, n)
             gx, gy = a.x - a.goal_x, a.y - a.goal_y
@@ -93,8 +96,6 @@ def _list(
     things: FloatArray, n: int,
 ) -> int:  # fmt: skip
     """Append capsule c, which begins at (x0, y0) from the agent."""
-    if n == len(things):
-        return n
     x1, y1 = x0 + (c.x1 - c.x0), y0 + (c.y1 - c.y0)
     row = things[n]
     row[X0], row[Y0] = ca * x0 + sa * y0, ca * y0 - sa * x0
@@ -152,8 +153,9 @@ def _list_bodies(
 
 @kernel
 def _list_agents(
-    i: int, ca: float, sa: float, own: float, limit: float, side: float, sees: BoolArray,
-    agents: AnyArray, hashed: IntArray, spots: AnyArray, things: FloatArray, n: int,
+    i: int, ca: float, sa: float, own: float, limit: float, side: float, widest: float,
+    sees: BoolArray, agents: AnyArray, hashed: IntArray, spots: AnyArray, things: FloatArray,
+    n: int,
 ) -> int:  # fmt: skip
     a = agents[i]
     if len(agents) <= BRUTE_FORCE:
@@ -162,7 +164,7 @@ def _list_agents(
                 n = _list_agent(a, ca, sa, own, limit, sees, agents[j], things, n)
         return n
     size = len(hashed) - 1
-    for ring in range(math.ceil((limit + own + a.radius) / side) + 1):
+    for ring in range(math.ceil((limit + own + widest) / side) + 1):
         for ci in range(a.ci - ring, a.ci + ring + 1):
             rim = ci == a.ci - ring or ci == a.ci + ring
             for cj in range(a.cj - ring, a.cj + ring + 1, 1 if rim or ring == 0 else 2 * ring):
@@ -181,7 +183,7 @@ def _list_agent(
     things: FloatArray, n: int,
 ) -> int:  # fmt: skip
     x, y, reach = other.x - a.x, other.y - a.y, own + other.radius
-    if not other.present or not sees[a.team, other.team] or n == len(things):
+    if not other.present or not sees[a.team, other.team]:
         return n
     if x * x + y * y > (limit + reach) * (limit + reach):
         return n
@@ -234,17 +236,10 @@ def _first_on_map(
 ) -> tuple[float, int]:  # fmt: skip
     """(distance, kind) of the first fixed capsule nearer than ``limit``; (limit, NOTHING) if none.
 
-    Walks the grid cell by cell (Amanatides & Woo 1987); frame of the world.
+    Frame of the world; (dx, dy) is a unit vector.
     """
-    best, what, side = limit, _NOTHING, world.side
-    i = math.floor((x - world.origin_x) / side)
-    j = math.floor((y - world.origin_y) / side)
-    step_i, step_j = (1 if dx > 0.0 else -1), (1 if dy > 0.0 else -1)
-    # distances along the ray to the next column and row of cells, and between them
-    next_i = ((i + (dx > 0.0)) * side + world.origin_x - x) / dx if dx != 0.0 else math.inf
-    next_j = ((j + (dy > 0.0)) * side + world.origin_y - y) / dy if dy != 0.0 else math.inf
-    each_i = side / abs(dx) if dx != 0.0 else math.inf
-    each_j = side / abs(dy) if dy != 0.0 else math.inf
+    best, what = limit, _NOTHING
+    i, j, step_i, step_j, next_i, next_j, each_i, each_j = walk(world, x, y, dx, dy)
     entered = 0.0
     while entered <= best:
         if 0 <= i < world.nx and 0 <= j < world.ny:

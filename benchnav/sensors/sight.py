@@ -3,12 +3,12 @@
 Agents hide nobody. The test is against the same capsules that bodies touch.
 """
 
-import math
 from typing import Any
 
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
 from benchnav.kernels import kernel
+from benchnav.world.fixed import walk
 
 FEW = 64  # capsules up to which testing all is cheaper than walking the grid
 
@@ -58,19 +58,17 @@ def _clear_along(
     px: float, py: float, qx: float, qy: float, world: Any, capsules: AnyArray, start: IntArray,
     item: IntArray,
 ) -> bool:  # fmt: skip
-    """As `in_sight`, over the cells along pq; their lists reach beyond them."""
-    side = world.side
-    dx, dy = qx - px, qy - py
-    steps = math.ceil(math.sqrt(dx * dx + dy * dy) / (0.5 * side)) + 1
-    last = -1
-    for k in range(steps + 1):
-        x, y = px + dx * k / steps, py + dy * k / steps
-        i = min(max(math.floor((x - world.origin_x) / side), 0), world.nx - 1)
-        j = min(max(math.floor((y - world.origin_y) / side), 0), world.ny - 1)
-        cell = world.grid + i * world.ny + j
-        if cell != last:
+    """As `in_sight`, over the cells that pq crosses: what cuts pq in a cell is listed there."""
+    i, j, step_i, step_j, next_i, next_j, each_i, each_j = walk(world, px, py, qx - px, qy - py)
+    entered = 0.0
+    while entered <= 1.0:
+        if 0 <= i < world.nx and 0 <= j < world.ny:
+            cell = world.grid + i * world.ny + j
             for at in range(start[cell], start[cell + 1]):
                 if hides(capsules[item[at]], px, py, qx, qy):
                     return False
-        last = cell
+        if next_i < next_j:
+            entered, next_i, i = next_i, next_i + each_i, i + step_i
+        else:
+            entered, next_j, j = next_j, next_j + each_j, j + step_j
     return True

@@ -47,10 +47,10 @@ def _knots(body: Body) -> AnyArray:
     return out
 
 
-def top_speed(worlds: Sequence[World]) -> float:
+def top_speed(world: World) -> float:
     """Greatest speed [m/s] at which any body's law moves it."""
     top = 0.0
-    for law in (body.law for world in worlds for body in world.bodies):
+    for law in (body.law for body in world.bodies):
         if law.kind == LawKind.CIRCLE:
             top = max(top, abs(float(law.times[0] * law.points[1, 0])))
         elif law.kind == LawKind.TRACK and len(law.times) > 1:

@@ -11,26 +11,20 @@ def limited(
     c0: float, c1: float, twist: bool, unicycle: bool, heading: float,
     max_speed: float, max_turn_rate: float, dt: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """The command within limits: a planar velocity (holonomic) or a twist (unicycle).
+    """The command within limits: a twist where one was given or the body is a unicycle.
 
     A planar velocity u on a unicycle is tracked by one law: turn towards u at the
     rate that would face it at the end of the step, within the limit, and drive at
-    |u| cos(error), but never backwards. A twist on a holonomic body drives along
-    its heading.
+    |u| cos(error), but never backwards. A holonomic body obeys a twist as a unicycle
+    would.
     """
-    if unicycle:
-        if twist:
-            v, w = c0, c1
-        else:
+    if unicycle or twist:
+        v, w = c0, c1
+        if not twist:
             c, s = cos_sin(heading)
             ahead, aside = c * c0 + s * c1, c * c1 - s * c0
             v, w = max(0.0, ahead), angle_of(ahead, aside) / dt
         return min(max(v, 0.0), max_speed), min(max(w, -max_turn_rate), max_turn_rate)
-    if twist:
-        v = min(max(c0, 0.0), max_speed)
-        w = min(max(c1, -max_turn_rate), max_turn_rate)
-        c, s = cos_sin(heading + 0.5 * w * dt)
-        return v * c, v * s
     speed2 = c0 * c0 + c1 * c1
     if speed2 > max_speed * max_speed:
         scale = max_speed / math.sqrt(speed2)
@@ -40,10 +34,10 @@ def limited(
 
 @kernel
 def planar_velocity(
-    d0: float, d1: float, unicycle: bool, heading: float, h: float
+    d0: float, d1: float, turning: bool, heading: float, h: float
 ) -> tuple[float, float]:
-    """Velocity [m/s] during a substep: a unicycle's arc is driven along its mid-heading."""
-    if not unicycle:
+    """Velocity [m/s] during a substep: a twist's arc is driven along its mid-heading."""
+    if not turning:
         return d0, d1
     c, s = cos_sin(heading + 0.5 * d1 * h)
     return d0 * c, d0 * s

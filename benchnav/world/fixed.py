@@ -15,7 +15,7 @@ from benchnav.arena.solid import Solid, edge_chain
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
-from benchnav.kernels import kernel
+from benchnav.kernels import inlined, kernel
 from benchnav.world.records import CAPSULE, capsule_records
 
 MAX_CELLS = 1 << 16  # of one arena's grid
@@ -135,3 +135,23 @@ def cell_at(world: Any, x: float, y: float) -> int:
     i = min(max(i, 0), world.nx - 1)
     j = min(max(j, 0), world.ny - 1)
     return int(world.grid + i * world.ny + j)
+
+
+@inlined
+def walk(
+    world: Any, x: float, y: float, dx: float, dy: float
+) -> tuple[int, int, int, int, float, float, float, float]:
+    """How to walk the grid from (x, y) along (dx, dy), cell by cell (Amanatides & Woo 1987).
+
+    (i, j) of the first cell, the steps to the next column and row, the multiples of
+    (dx, dy) at which they are entered, and those from one to the next. Enter a column
+    where its multiple is the smaller one, else a row.
+    """
+    side = world.side
+    i = math.floor((x - world.origin_x) / side)
+    j = math.floor((y - world.origin_y) / side)
+    next_i = ((i + (dx > 0.0)) * side + world.origin_x - x) / dx if dx != 0.0 else math.inf
+    next_j = ((j + (dy > 0.0)) * side + world.origin_y - y) / dy if dy != 0.0 else math.inf
+    each_i = side / abs(dx) if dx != 0.0 else math.inf
+    each_j = side / abs(dy) if dy != 0.0 else math.inf
+    return i, j, 1 if dx > 0.0 else -1, 1 if dy > 0.0 else -1, next_i, next_j, each_i, each_j

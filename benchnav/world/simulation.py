@@ -12,6 +12,7 @@ from benchnav.episode.episode import Contacts, Status
 from benchnav.geometry.hash_grid import hash_table
 from benchnav.threads import run_rows
 from benchnav.world.bodies import body_at, stack_bodies, top_speed
+from benchnav.world.contacts import RELEASE
 from benchnav.world.fixed import stack_fixed
 from benchnav.world.records import AGENT as AGENT_RECORD
 from benchnav.world.records import CONTACT, OPEN_CONTACTS, SPOT, WORLD, field
@@ -34,7 +35,8 @@ class Simulation:
         self.agents = _agent_records(self.worlds)
         self.bodies, self.shapes, self.knots = stack_bodies(self.worlds)
         self.records = _world_records(self.worlds, self.agents)
-        margin = 0.5 * float(self.records["reach"].max())  # a radius and a substep's motion
+        # wider lists change nothing: what is out of reach is never the next touch
+        margin = float((0.5 * self.records["reach"]).max()) + RELEASE
         self.capsules, self.start, self.item = stack_fixed(self.worlds, self.records, margin)
         self._opened = np.zeros((self.B, self.A, OPEN_CONTACTS), CONTACT)
         self._opened["code"] = -1
@@ -44,6 +46,8 @@ class Simulation:
         self.hashed = hash_table(self.B, self.A)
         self.spots = np.zeros((self.B, self.A), SPOT)
         self.sees = _sees(self.worlds)
+        self.widest = float(self.agents["radius"].max())  # [m]
+        self.most_shapes = int((self.bodies["last"] - self.bodies["first"]).sum(1).max())
         self._views()
         self._place_bodies()
 
@@ -181,8 +185,7 @@ def _agent_records(worlds: Sequence[World]) -> AnyArray:
 def _world_records(worlds: Sequence[World], agents: AnyArray) -> AnyArray:
     """(B,) WORLD records; `stack_fixed` adds the grids' frames."""
     records = np.zeros(len(worlds), WORLD)
-    speed = max(float(agents["max_speed"].max()), top_speed(worlds))
-    for row, world in zip(records, worlds, strict=True):
+    for row, world, crew in zip(records, worlds, agents, strict=True):
         clock, rules = world.clock, world.rules
         row["dt"], row["h"] = clock.dt, clock.dt / clock.substeps
         row["substeps"], row["steps"] = clock.substeps, clock.steps
@@ -193,6 +196,7 @@ def _world_records(worlds: Sequence[World], agents: AnyArray) -> AnyArray:
         row["agents"], row["bodies"] = len(world.agents), len(world.bodies)
         row["running"] = bool(world.agents.evaluated.any())
         # no pair farther apart than this can touch within a substep
-        reach = 2.0 * float(agents["radius"].max()) + 2.0 * speed * float(row["h"])
+        speed = max(float(crew["max_speed"].max()), top_speed(world))
+        reach = 2.0 * float(crew["radius"].max()) + 2.0 * speed * float(row["h"])
         row["reach"] = 1.001 * reach + 1e-6
     return records

@@ -72,6 +72,7 @@ def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots:
     """Re-place the static obstacles whose time has come and whose new place is free.
 
     Free: no agent and no dynamic obstacle comes within its circumscribed circle there.
+    Drawing keeps it clear of what else is static.
     """
     for m in range(world.bodies):
         body = bodies[m]
@@ -108,6 +109,7 @@ def obey(
     for i in range(world.agents):
         a = agents[i]
         a.halted = False
+        a.turning = a.unicycle or twist[i]
         a.drive_0, a.drive_1 = 0.0, 0.0
         if a.status == _ACTIVE and a.present:
             a.drive_0, a.drive_1 = limited(
@@ -134,7 +136,7 @@ def aim_agents(world: Any, agents: AnyArray) -> None:
         a.hits = 0
         a.vx, a.vy = 0.0, 0.0
         if a.status == _ACTIVE and a.present and not a.halted:
-            a.vx, a.vy = planar_velocity(a.drive_0, a.drive_1, a.unicycle, a.heading, world.h)
+            a.vx, a.vy = planar_velocity(a.drive_0, a.drive_1, a.turning, a.heading, world.h)
 
 
 @inlined
@@ -229,12 +231,12 @@ def land_bodies(world: Any, bodies: AnyArray) -> None:
 
 @inlined
 def turn(world: Any, agents: AnyArray) -> None:
-    """Unicycles turn at their rate; holonomic agents look where they are told to go."""
+    """Twists turn at their rate; with a planar velocity one looks where one is told to go."""
     for i in range(world.agents):
         a = agents[i]
         if a.status != _ACTIVE or not a.present:
             continue
-        if a.unicycle:
+        if a.turning:
             a.heading = wrap(a.heading + a.drive_1 * world.h)
         elif a.drive_0 != 0.0 or a.drive_1 != 0.0:
             a.heading = wrap(angle_of(a.drive_0, a.drive_1))

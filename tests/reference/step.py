@@ -86,6 +86,7 @@ class SlowWorld:
     def step(self, command, twist):
         world, crew = self.world, self.world.agents
         clock = world.clock
+        self.turning = [d == Dynamics.UNICYCLE or twist for d in crew.dynamics]
         h = clock.dt / clock.substeps
         drive = [self._limit(i, command[i], twist) for i in range(len(crew))]
         for agent in self.agents:
@@ -98,27 +99,23 @@ class SlowWorld:
     def _limit(self, i, c, twist):
         crew, heading = self.world.agents, self.agents[i].heading
         dt, top, turn = self.world.clock.dt, crew.max_speed[i], crew.max_turn_rate[i]
-        if crew.dynamics[i] == Dynamics.UNICYCLE:
+        if crew.dynamics[i] == Dynamics.UNICYCLE or twist:
             v, w = c
             if not twist:
                 ahead = math.cos(heading) * c[0] + math.sin(heading) * c[1]
                 aside = math.cos(heading) * c[1] - math.sin(heading) * c[0]
                 v, w = max(0.0, ahead), math.atan2(aside, ahead) / dt
             return np.array([np.clip(v, 0, top), np.clip(w, -turn, turn)])
-        if twist:
-            v, w = np.clip(c[0], 0, top), np.clip(c[1], -turn, turn)
-            angle = heading + w * dt / 2
-            return v * np.array([math.cos(angle), math.sin(angle)])
         speed = np.hypot(*c)
         return np.asarray(c) * (min(1.0, top / speed) if speed > 0 else 1.0)
 
     def _substep(self, drive, begin, h):
-        world, crew = self.world, self.world.agents
+        world = self.world
         for i, agent in enumerate(self.agents):
             agent.hits, agent.v = 0, np.zeros(2)
             if agent.status == "active" and not agent.halted:
                 agent.v = np.array(drive[i])
-                if crew.dynamics[i] == Dynamics.UNICYCLE:
+                if self.turning[i]:
                     angle = agent.heading + drive[i][1] * h / 2
                     agent.v = drive[i][0] * np.array([math.cos(angle), math.sin(angle)])
         bodies = [law_position(body.law, begin) for body in world.bodies]
@@ -139,7 +136,7 @@ class SlowWorld:
         for i, agent in enumerate(self.agents):
             agent.p = agent.p + agent.v * left
             if agent.status == "active" and agent.present:
-                if crew.dynamics[i] == Dynamics.UNICYCLE:
+                if self.turning[i]:
                     agent.heading += drive[i][1] * h
                 elif drive[i].any():
                     agent.heading = math.atan2(drive[i][1], drive[i][0])

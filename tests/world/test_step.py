@@ -30,7 +30,9 @@ def drive(simulation, steps, seed=0, twist=False):
 
 
 @pytest.mark.parametrize("contact", list(ContactRule))
-@pytest.mark.parametrize(("unicycle", "twist"), [(True, True), (True, False), (False, False)])
+@pytest.mark.parametrize(
+    ("unicycle", "twist"), [(True, True), (True, False), (False, True), (False, False)]
+)
 def test_agrees_with_its_slow_twin(contact, unicycle, twist):
     touches = 0
     for seed in range(4):
@@ -307,3 +309,52 @@ def test_failed_agents_stand_and_end_the_world():
 def test_worlds_of_one_batch_share_clock_and_rules():
     with pytest.raises(ValueError, match="share their clock and rules"):
         Simulation([random_world(1), random_world(1, tolerance=0.1)])
+
+
+def mixed_world(seed):
+    """Agents of different radii and speeds, close enough to touch often."""
+    rng = np.random.default_rng(seed)
+    spots = np.stack(np.meshgrid(np.arange(4), np.arange(4)), -1).reshape(-1, 2) * 1.2 + 6.0
+    radius, speed = rng.uniform(0.2, 0.55, 16), rng.uniform(0.5, 2.0, 16)
+    return world(agents(spots, 20.0 - spots[::-1], radius, speed), [walls(20.0)])
+
+
+def run_towards(simulation, steps):
+    twist = np.zeros((simulation.B, simulation.A), bool)
+    for _ in range(steps):
+        simulation.step(2.0 * (simulation.goal - simulation.position), twist)
+    return simulation
+
+
+def test_a_big_fast_world_in_the_batch_changes_no_bit_of_the_others():
+    giant = world(agents([10.0, 10.0], [1.0, 1.0], radius=3.0, speed=40.0), [walls(20.0)])
+    worlds = [mixed_world(seed) for seed in range(12)]
+    together = run_towards(Simulation([*worlds, giant]), 40)
+    for seed, drawn in enumerate(worlds):
+        alone = run_towards(Simulation([drawn]), 40)
+        assert alone.position[0].tobytes() == together.position[seed].tobytes()
+        mine, theirs = alone.contacts(0), together.contacts(seed)
+        assert len(mine) > 3
+        assert mine.end.tobytes() == theirs.end.tobytes()
+
+
+def test_a_slow_agent_stays_in_contact_whatever_shares_the_batch():
+    """A gap below the release distance is noticed though the agent moves only 2.5 mm a substep."""
+    crew = agents([1.0, 10.0], [19.0, 10.0], radius=0.3, speed=0.1)
+    slow = world(crew, [walls(20.0)], dt=0.05)
+    simulation = Simulation([slow])
+    for k in range(160):
+        push = [-1.0, 0.0] if k < 150 else [0.1, 0.0]  # 0.7 m to the wall takes 7 s
+        simulation.step(np.array([[push]]), np.zeros((1, 1), bool))
+    seen = simulation.contacts(0)
+    assert len(seen) == 1
+    assert seen.start[0] == pytest.approx(7.0)
+    assert seen.end[0] == pytest.approx(7.6, abs=0.051)  # left at 7.5 s, 1 cm away 0.1 s later
+
+
+def test_a_holonomic_body_turns_at_the_rate_it_is_told():
+    crew = agents([[10.0, 10.0], [5.0, 5.0]], [[1.0, 1.0]] * 2)
+    simulation = Simulation([world(crew)])
+    for _ in range(5):
+        simulation.step(np.array([[[1.0, 1.0], [0.0, 1.0]]]), np.ones((1, 2), bool))
+    np.testing.assert_allclose(simulation.heading[0], [1.0, 1.0])
