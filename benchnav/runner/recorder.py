@@ -23,6 +23,11 @@ class Recorder:
         self._executed: list[FloatArray] = []
         self._seconds: list[float] = []
 
+    @property
+    def seconds(self) -> FloatArray:
+        """(T,) [s] per world of every decision so far."""
+        return np.array(self._seconds)
+
     def record_state(self) -> None:
         """Keep the state of now."""
         for name, kept in self._state.items():
@@ -70,7 +75,7 @@ class Recorder:
                 executed=executed[:steps, b, :agents].copy(),
                 arrival=self.simulation.arrival[b, :agents].copy(),
                 contacts=self.simulation.contacts(b),
-                timings=Timings(np.array(self._seconds[:steps]), share, len(identities)),
+                timings=Timings(self.seconds[:steps], share, len(identities)),
                 failure=failure,
                 reproducible=reproducible,
             )

@@ -105,11 +105,10 @@ def _lockstep(assignment: Assignment, batch: list[Seeded], charge: str) -> list[
     if charge:
         _charge(simulation, recorder)
     else:
+        drivers = drivers_of(assignment, simulation)
+        reproducible = all(driver.navigator.reproducible for driver in drivers)
         try:
-            drivers = _drivers(assignment, simulation)
-            reproducible = all(driver.navigator.reproducible for driver in drivers)
-            planning = _reset(assignment, drivers, [seed for seed, _ in batch])
-            _run(simulation, drivers, recorder)
+            planning = drive(assignment, drivers, recorder, [seed for seed, _ in batch])
         except CallFailed as failed:
             if len(batch) > 1:
                 raise
@@ -119,13 +118,30 @@ def _lockstep(assignment: Assignment, batch: list[Seeded], charge: str) -> list[
     return recorder.episodes(identities, planning, failure, reproducible)
 
 
+def drive(
+    assignment: Assignment,
+    drivers: list[Driver],
+    recorder: Recorder,
+    seeds: Sequence[int],
+    decisions: int | None = None,
+) -> float:
+    """Run fresh drivers until no world runs, or for so many decisions.
+
+    Returns the seconds of the evaluated navigator's reset. Raises CallFailed where a
+    navigator fails.
+    """
+    planning = _reset(assignment, drivers, seeds)
+    _run(recorder.simulation, drivers, recorder, decisions)
+    return planning
+
+
 def _charge(simulation: Simulation, recorder: Recorder) -> None:
     for b in range(simulation.B):
         simulation.fail(b, np.flatnonzero(simulation.world(b).agents.evaluated))
     recorder.restate()
 
 
-def _drivers(assignment: Assignment, simulation: Simulation) -> list[Driver]:
+def drivers_of(assignment: Assignment, simulation: Simulation) -> list[Driver]:
     """The evaluated navigator, then the background ones, which know the scenario's map."""
     drivers = [Driver(make(NAVIGATORS, assignment.navigator), simulation, 0, assignment.track)]
     for which, spec in enumerate(assignment.background, start=1):
@@ -134,21 +150,23 @@ def _drivers(assignment: Assignment, simulation: Simulation) -> list[Driver]:
     return [driver for driver in drivers if driver.chosen.size]
 
 
-def _reset(assignment: Assignment, drivers: list[Driver], seeds: list[int]) -> float:
+def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) -> float:
     """Brief everybody. Returns the seconds that the evaluated navigator took."""
     about = (assignment.scenario_hash, assignment.split)
     seconds = [d.reset([generator(*about, seed, d.which) for seed in seeds]) for d in drivers]
     return seconds[0]
 
 
-def _run(simulation: Simulation, drivers: list[Driver], recorder: Recorder) -> None:
-    """Sense, act, step and record until no world runs."""
+def _run(
+    simulation: Simulation, drivers: list[Driver], recorder: Recorder, decisions: int | None
+) -> None:
+    """Sense, act, step and record until no world runs, or for so many decisions."""
     twist = np.zeros(simulation.present.shape, np.bool_)
     for driver in drivers:
         driver.mark_twists(twist)
     dt = simulation.world(0).clock.dt
     step = 0
-    while simulation.running.any():
+    while simulation.running.any() and step != decisions:
         served = int(simulation.running.sum())
         command = np.zeros_like(simulation.position)
         seconds = [driver.act(command, step * dt) for driver in drivers]

@@ -83,7 +83,8 @@ def _tasks(suite: Suite, folder: RunFolder, cells: list[Cell], summary: Summary)
         summary.total += len(suite.seeds)
         summary.stored += len(suite.seeds) - len(missing)
         tasks += [
-            Task(cell, folder.cell(cell.key), *chunk) for chunk in chunks(missing, cell.effort)
+            Task(cell, folder.cell(cell.key), first, stop, probe=suite.seeds.start)
+            for first, stop in chunks(missing, cell.effort)
         ]
     summary.found = summary.stored
     return sorted(tasks, key=lambda task: -task.cell.effort * len(task.seeds))

@@ -1,13 +1,14 @@
 """The unit of work: one cell for a range of seeds."""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from benchnav.episode.episode import Episode
 from benchnav.metrics.measure import all_metrics
+from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.measured import measured
-from benchnav.runner.rollout import rollout
+from benchnav.runner.rollout import Seeded, rollout
 from benchnav.runner.suite import Cell
 from benchnav.store.part import Part
 from benchnav.store.part_writer import PartWriter
@@ -26,6 +27,7 @@ class Task:
     first: int
     stop: int
     charge: str = ""  # a reason for which every episode fails without running
+    probe: int = -1  # seed in whose world latency is taken; one for each cell
 
     @property
     def seeds(self) -> range:
@@ -34,7 +36,7 @@ class Task:
 
     def alone(self) -> list["Task"]:
         """The same, seed by seed."""
-        return [Task(self.cell, self.folder, s, s + 1, self.charge) for s in self.seeds]
+        return [replace(self, first=seed, stop=seed + 1) for seed in self.seeds]
 
 
 @dataclass(frozen=True)
@@ -76,11 +78,24 @@ def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:
     metrics = all_metrics()
     failures: list[tuple[int, str]] = []
     with PartWriter(Part(task.folder, task.first, task.stop)) as writer:
-        for episodes in rollout(cell.assignment, worlds, task.charge):
+        for batch in rollout(cell.assignment, worlds, task.charge):
+            episodes = _timed(task, batch)
             writer.add(episodes, measured(_ticking(episodes, tick), metrics))
             failures += [(e.identity.seed, e.failure) for e in episodes if e.failure]
         writer.seal()
     return Outcome(len(worlds), sum(w.redraws for _, w in worlds), tuple(sorted(failures)))
+
+
+def _timed(task: Task, batch: list[Episode]) -> list[Episode]:
+    """The episodes with peak memory, and with latency where it is to be taken."""
+    timed = []
+    for episode in batch:
+        seeded: Seeded = (episode.identity.seed, episode.world)
+        wanted = seeded[0] == task.probe and not episode.failure
+        alone = latency(task.cell.assignment, seeded) if wanted else None
+        timings = replace(episode.timings, latency=alone, memory=peak_memory())
+        timed.append(replace(episode, timings=timings))
+    return timed
 
 
 def _ticking(episodes: Sequence[Episode], tick: Callable[[int], None]) -> Iterator[Episode]:

@@ -1,0 +1,37 @@
+"""What a machine needs for one world at a time: seconds per call, and memory."""
+
+import sys
+
+from benchnav.arrays import FloatArray
+from benchnav.runner.answer import CallFailed
+from benchnav.runner.recorder import Recorder
+from benchnav.runner.rollout import Assignment, Seeded, drive, drivers_of
+from benchnav.world.simulation import Simulation
+
+DECISIONS = 50  # of a latency pass: enough for a percentile, few enough to cost nothing
+
+
+def latency(assignment: Assignment, seeded: Seeded) -> FloatArray | None:
+    """(K ≤ `DECISIONS`,) [s] of the navigator's calls when it serves one world alone.
+
+    A pass of its own, with a navigator made for it, and thrown away: nothing that is
+    scored knows of it. None where the navigator fails in it.
+    """
+    simulation = Simulation([seeded[1]])
+    recorder = Recorder(simulation)
+    try:
+        drivers = drivers_of(assignment, simulation)
+        drive(assignment, drivers, recorder, [seeded[0]], DECISIONS)
+    except CallFailed:
+        return None
+    return recorder.seconds
+
+
+def peak_memory() -> int | None:
+    """[bytes] the most that this process ever held in RAM; None where the system does not tell."""
+    try:
+        import resource
+    except ImportError:  # not on Windows
+        return None
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return int(most) if sys.platform == "darwin" else int(most) * 1024
