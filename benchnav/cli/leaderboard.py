@@ -50,6 +50,7 @@ def leaderboard(
 
     from benchnav.leaderboard import leaderboard as tabulate
     from benchnav.leaderboard import render
+    from benchnav.leaderboard.label import require_one_navigator_per_label
     from benchnav.metrics.measure import all_metrics
     from benchnav.store.run_folder import RunFolder
 
@@ -58,11 +59,13 @@ def leaderboard(
     folders = [RunFolder.open(run) for run in runs]
     for folder in folders:
         _warn_if_unfinished(folder)
-    tables = [_measured(f.path, list(metrics.values()), recompute) for f in folders]
+    tables = {str(f.path): _measured(f.path, list(metrics.values()), recompute) for f in folders}
+    require_one_navigator_per_label(tables)
     missing = [gap for folder in folders for gap in _not_applicable(folder)]
-    if not sum(len(table) for table in tables):
+    joined = pa.concat_tables(tables.values(), promote_options="default")
+    if not len(joined):
         raise StoreError(f"There must be episodes to make a table of. {runs[0]} holds none.")
-    board = tabulate(pa.concat_tables(tables), metrics, missing)
+    board = tabulate(joined, metrics, missing)
     text = render(board, wanted.value, metric or None)
     if out is None:
         put(text.rstrip("\n"))

@@ -13,6 +13,7 @@ from benchnav.leaderboard.compare import flips_for, holm, pairs, sign_flip
 from benchnav.leaderboard.estimate import Column, Sample, estimate
 from benchnav.leaderboard.grid import Stratum, strata
 from benchnav.leaderboard.interval import resample
+from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.metrics.metric import Metric
 
 if TYPE_CHECKING:
@@ -47,13 +48,14 @@ def comparisons(
     """Every pair of navigators on one metric, in every scenario, track and role.
 
     ``results`` has the schema `benchnav.store.results.RESULTS`. Raises UsageError for a
-    metric that is not among ``metrics``.
+    metric that is not among ``metrics``, or where one label stands for two navigators.
     """
     if metric not in metrics:
         raise UsageError(
             f"A metric to compare by must be a known one. Got {metric!r} instead."
             f"{did_you_mean(metric, metrics)}"
         )
+    require_one_navigator_per_label({"the results": results})
     found: list[Comparison] = []
     for s in strata(results, metrics):
         if metric in s.metrics:

@@ -20,6 +20,7 @@ from benchnav.leaderboard.estimate import (
 )
 from benchnav.leaderboard.grid import Stratum, strata
 from benchnav.leaderboard.interval import resample
+from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.leaderboard.record import (
     ALL,
     ALL_INTERQUARTILE,
@@ -46,8 +47,10 @@ def leaderboard(
     ``results`` has the schema `benchnav.store.results.RESULTS` and may join several
     runs; the order of its rows changes nothing. ``metrics`` maps names to definitions;
     a metric that it lacks is shown and not ranked. ``not_applicable`` are cells that
-    were not run. Raises UsageError where one navigator has two values in one world.
+    were not run. Raises UsageError where one label stands for two navigators, or has two
+    values in one world.
     """
+    require_one_navigator_per_label({"the results": results})
     records: list[Record] = []
     found = strata(results, metrics)
     for _, group in groupby(found, key=lambda s: (s.split, s.track, s.role)):

@@ -1,12 +1,15 @@
 import math
 
 import numpy as np
+import pyarrow as pa
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import Leaderboard, NotApplicable, comparisons, leaderboard
+from benchnav.leaderboard.label import COLUMN as HASH
+from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE
 from tests.leaderboard.tables import METRICS, metric, row, scores, simulated, table
 
@@ -285,3 +288,34 @@ def test_comparisons_pair_the_worlds_of_both():
     assert found.p == pytest.approx(0.5)
     with pytest.raises(UsageError, match="Did you mean 'success'"):
         comparisons(table(rows), METRICS, "succes")
+
+
+def hashed(rows, *hashes):
+    """The table of some rows with the navigator hash of each."""
+    whole = table(rows)
+    if HASH in whole.column_names:
+        whole = whole.drop_columns([HASH])
+    return whole.append_column(HASH, pa.array(hashes, pa.string()))
+
+
+def test_two_navigators_under_one_label_are_never_merged():
+    rows = [row("a", 0, "success", 1.0), row("a", 1, "success", 0.0)]
+    for reader in (leaderboard, lambda t, m: comparisons(t, m, "success")):
+        with pytest.raises(UsageError, match=r"label 'a' must .* aaaa in .* and bbbb in .* label"):
+            reader(hashed(rows, "aaaa", "bbbb"), METRICS)
+
+
+def test_equal_and_unknown_hashes_agree():
+    rows = [row("a", 0, "success", 1.0), row("a", 1, "success", 0.0), row("b", 0, "success", 0.0)]
+    for hashes in [("aaaa", "", "bbbb"), ("aaaa", "aaaa", "aaaa"), (None, "aaaa", None)]:
+        assert only(leaderboard(hashed(rows, *hashes), METRICS), "a").episodes == 2
+    without = table(rows)
+    if HASH in without.column_names:
+        without = without.drop_columns([HASH])
+    assert only(leaderboard(without, METRICS), "a").episodes == 2
+
+
+def test_differently_configured_runs_are_told_by_their_names():
+    one, two = (hashed([row("a", 0, "success", 1.0)], h) for h in ("aaaa", "bbbb"))
+    with pytest.raises(UsageError, match="aaaa in runs/x and bbbb in runs/y"):
+        require_one_navigator_per_label({"runs/x": one, "runs/y": two})
