@@ -64,7 +64,7 @@ class Analysis:
 
     @cached_property
     def density(self) -> FloatArray:
-        """(N,) [1/m²] Voronoi density at 2 Hz; (0,) without a measurement area."""
+        """(N,) [1/m²] Voronoi density at 1 Hz; (0,) without a measurement area."""
         return voronoi_density(self.world, self.trajectories)
 
     @cached_property

@@ -37,13 +37,16 @@ def jam(episode: Episode) -> FloatArray:
 
 
 def density_mean(episode: Episode, members: BoolArray) -> float:
-    """[1/m²] mean over time of the Voronoi density."""
+    """[1/m²] mean over time, at 1 Hz, of the Voronoi density.
+
+    Cells are kept below 2 m²: none reaches farther than 0.8 m from its agent.
+    """
     density = analyse(episode).density
     return float(density.mean()) if len(density) else math.nan
 
 
 def density_peak(episode: Episode, members: BoolArray) -> float:
-    """[1/m²] greatest Voronoi density."""
+    """[1/m²] greatest Voronoi density, at 1 Hz."""
     density = analyse(episode).density
     return float(density.max()) if len(density) else math.nan
 

@@ -1,9 +1,11 @@
 """Voronoi density in the measurement area, computed with PedPy.
 
-Places are taken at 2 Hz, whatever the decision step. Cells are cut by everything that
+Places are taken at 1 Hz, whatever the decision step. Cells are cut by everything that
 never moves (walls and static obstacles; what is thinner than 2 mm is made so thick,
 so that no cell reaches through a thin wall) and, as Steffen & Seyfried do for sparse
-crowds, kept below 2 m²: no cell reaches farther than 0.8 m from its agent.
+crowds, kept below 2 m²: no cell reaches farther than 0.8 m from its agent. So an agent
+farther than that from the area adds nothing, and one farther than three times that does
+not even bound a cell that does: both, and what is built out there, are left out.
 """
 
 from typing import Any
@@ -12,32 +14,37 @@ import numpy as np
 
 from benchnav.arena.solid import Solid
 from benchnav.arena.world import World
-from benchnav.arrays import FloatArray, IntArray
+from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.metrics.trajectory import Trajectories, positions_at, present_at
 
-FRAME_RATE = 2.0  # [Hz]
+Box = tuple[float, float, float, float]  # x0, y0, x1, y1 [m]
+FRAME_RATE = 2.0  # [Hz] of what is quick to compute
+DENSITY_RATE = 1.0  # [Hz]
 REACH = 0.8  # [m]: a circle of 2.01 m²
 QUARTER = 16  # segments of a quarter of that circle
 SKIN = 1e-3  # [m] half the least thickness of a wall
 
 
 def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
-    """(N,) [1/m²] at 2 Hz from the start on; (0,) where the world has no measurement area."""
+    """(N,) [1/m²] at 1 Hz from the start on; (0,) where the world has no measurement area."""
     area = world.measurement_area
     if area is None:
         return np.zeros(0)
     import pedpy
     import shapely
 
-    times = frame_times(trajectories)
+    times = frame_times(trajectories, DENSITY_RATE)
     ids, frames, points = bodies_at(trajectories, times)
-    walkable = walkable_area(world)
-    inside = shapely.contains_xy(walkable, points[:, 0], points[:, 1])
     density = np.zeros(len(times))
-    if not inside.any():
+    counts = _matter(area, frames, points)
+    if not counts.any():
+        return density
+    walkable = _nearby(walkable_area(world), area)
+    counts &= shapely.contains_xy(walkable, points[:, 0], points[:, 1])
+    if not counts.any():
         return density
     cells = pedpy.compute_individual_voronoi_polygons(
-        traj_data=_table(ids[inside], frames[inside], points[inside]),
+        traj_data=_table(ids[counts], frames[counts], points[counts]),
         walkable_area=pedpy.WalkableArea(walkable),
         cut_off=pedpy.Cutoff(radius=REACH, quad_segments=QUARTER),
     )
@@ -48,10 +55,30 @@ def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
     return density
 
 
-def frame_times(trajectories: Trajectories) -> FloatArray:
-    """(N,) [s] at 2 Hz, to the end of the record."""
+def _matter(area: Box, frames: IntArray, points: FloatArray) -> BoolArray:
+    """(N,) points that can change the density, in frames in which there is any."""
+    beyond = np.maximum(np.maximum(area[:2] - points, points - area[2:]), 0.0)
+    away = np.hypot(beyond[:, 0], beyond[:, 1])
+    busy = np.zeros(int(frames.max(initial=0)) + 1, dtype=np.bool_)
+    busy[frames[away <= REACH]] = True
+    matter: BoolArray = busy[frames] & (away <= 3.0 * REACH)
+    return matter
+
+
+def _nearby(walkable: Any, area: Box) -> Any:
+    """The part of the walkable area that cells of those who matter can reach."""
+    import shapely
+
+    x0, y0, x1, y1 = area
+    margin = 4.0 * REACH
+    near = shapely.box(x0 - margin, y0 - margin, x1 + margin, y1 + margin).intersection(walkable)
+    return near if near.geom_type == "Polygon" else walkable
+
+
+def frame_times(trajectories: Trajectories, rate: float = FRAME_RATE) -> FloatArray:
+    """(N,) [s] at ``rate`` [Hz], to the end of the record."""
     record = trajectories.duration.shape[1] * trajectories.dt
-    return np.arange(int(record * FRAME_RATE + 1e-9) + 1) / FRAME_RATE
+    return np.arange(int(record * rate + 1e-9) + 1) / rate
 
 
 def bodies_at(
@@ -101,4 +128,4 @@ def _table(ids: IntArray, frames: IntArray, points: FloatArray) -> Any:
     import pedpy
 
     columns = {"id": ids, "frame": frames, "x": points[:, 0], "y": points[:, 1]}
-    return pedpy.TrajectoryData(data=pd.DataFrame(columns), frame_rate=FRAME_RATE)
+    return pedpy.TrajectoryData(data=pd.DataFrame(columns), frame_rate=DENSITY_RATE)

@@ -1,6 +1,7 @@
 """Density against PedPy itself; jam, flow, rotation and fluctuation against closed forms."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pandas as pd
@@ -8,7 +9,7 @@ import pytest
 import shapely
 
 from benchnav.arena.solid import Kind, Solid
-from benchnav.metrics import congestion, groups
+from benchnav.metrics import congestion, density, groups
 from benchnav.metrics.analysis import analyse
 from benchnav.metrics.density import walkable_area
 from benchnav.testing.episodes import Setting, Walk, box, record, room, straight
@@ -27,19 +28,19 @@ def _still(places, setting, radius=0.2, speed=(0.0, 0.0)):
 
 
 def test_density_is_pedpys_own():
-    """PedPy, called directly on the same trajectories at every fifth state."""
+    """PedPy, called directly on the same trajectories at every tenth state."""
     import pedpy
 
     episode = crowd().episode()
     steps, rows = len(episode.position), []
     over = episode.status != 0
     gone = np.where(over.any(axis=0), episode.arrival, math.inf)
-    for frame, k in enumerate(range(0, steps, 5)):
+    for frame, k in enumerate(range(0, steps, 10)):
         present = np.flatnonzero(0.1 * k <= gone)
         rows += [(agent, frame, *episode.position[k, agent]) for agent in present]
     data = pd.DataFrame(rows, columns=["id", "frame", "x", "y"])
     cells = pedpy.compute_individual_voronoi_polygons(
-        traj_data=pedpy.TrajectoryData(data=data, frame_rate=2.0),
+        traj_data=pedpy.TrajectoryData(data=data, frame_rate=1.0),
         walkable_area=pedpy.WalkableArea(shapely.box(*ROOM)),
         cut_off=pedpy.Cutoff(radius=0.8, quad_segments=16),
     )
@@ -55,6 +56,53 @@ def test_density_is_pedpys_own():
     assert congestion.density_peak(episode, ALL) == pytest.approx(
         expected["density"].max(), rel=2e-3
     )
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_leaving_out_who_is_far_away_changes_no_density(seed, monkeypatch):
+    """With and without: random walks among walls, in and out of the measurement area."""
+    rng = np.random.default_rng(seed)
+    wall = Solid(Kind.WALL, (np.array([[0.6, -9.0], [0.6, 0.5]]),))
+    solids = (room((-9, -9, 9, 9)), wall, box((-2.6, 0.0), 0.8, 2.0))
+    setting = Setting(
+        horizon=12.0, bounds=(-9, -9, 9, 9), area=(-1.5, -1.0, 1.5, 2.0), solids=solids
+    )
+    walks = [
+        Walk(straight(rng.uniform(-7, 7, 2), rng.uniform(-1, 1, 2)), (90.0, 90.0), 0.2)
+        for _ in range(12)
+    ]
+    episode = record(walks, setting)
+    some = analyse(episode).density
+    calls = []
+    for name, everything in [
+        ("_matter", lambda area, frames, points: calls.append(1) or frames >= 0),
+        ("_nearby", lambda walkable, area: calls.append(2) or walkable),
+    ]:
+        monkeypatch.setattr(density, name, everything)
+    whole = analyse(replace(episode)).density
+    assert calls == [1, 2]
+    assert (some > 0).any()
+    np.testing.assert_allclose(some, whole, rtol=1e-9, atol=1e-12)
+
+
+def test_frames_in_which_nobody_is_near_are_not_computed(monkeypatch):
+    """One walks past: cells are asked for while it is within 0.8 m of the area, and no longer."""
+    import pedpy
+
+    asked = []
+    real = pedpy.compute_individual_voronoi_polygons
+
+    def counted(**arguments):
+        asked.append(sorted(set(arguments["traj_data"].data["frame"])))
+        return real(**arguments)
+
+    monkeypatch.setattr(pedpy, "compute_individual_voronoi_polygons", counted)
+    setting = Setting(horizon=20.0, area=(-1.0, -1.0, 1.0, 1.0))
+    episode = record([Walk(straight((-10.0, 0.0), (1.0, 0.0)), (90.0, 0.0), 0.2)], setting)
+    found = analyse(episode).density
+    assert asked == [[9, 10, 11]]
+    assert len(found) == 21
+    assert np.flatnonzero(found).tolist() == [9, 10, 11]
 
 
 def test_density_of_a_lattice_is_one_over_its_cell():
