@@ -47,6 +47,13 @@ def run(
     track: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="Instead of the suite's. Repeatable.")
     ] = None,
+    salt: Annotated[
+        str | None,
+        typer.Option(
+            metavar="HEX",
+            help="Of navigators' randomness, to repeat a run: its manifest has it. [default: new]",
+        ),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
 ) -> None:
     """Execute a suite into a run folder.
@@ -59,7 +66,7 @@ def run(
     from benchnav.runner.suite import Selection, load_suite
 
     chosen = Selection(
-        tuple(scenario or ()), tuple(track or ()), tuple(navigator or ()), seeds or ""
+        tuple(scenario or ()), tuple(track or ()), tuple(navigator or ()), seeds or "", salt or ""
     )
     asked = load_suite(suite, chosen)
     folder = (

@@ -13,8 +13,10 @@ from benchnav.navigation.map import Map
 class Briefing:
     """Roles, goals, limits, clock, and the map that the track grants.
 
-    Nothing in it reveals the scenario's name or seed; the generator is seeded by a
-    keyed hash and is the only source of randomness that a navigator may use.
+    It names neither scenario, split nor seed. The generator is the only source of
+    randomness that a navigator may use; it is seeded with a salt of the run that no
+    navigator is handed, so that trying seeds does not tell which world this is. What
+    is there to see, starts, goals, sizes, says what it says.
     """
 
     dt: float  # [s] between decisions

@@ -1,27 +1,85 @@
-"""The generator that a navigator is briefed with."""
+"""The generator that a navigator is briefed with, and the order in which it meets worlds.
+
+Both follow from a salt that is drawn for each run, stands in the run's manifest and is
+handed to no navigator. Who knows the public rules alone can therefore not try scenarios,
+splits and seeds until one fits what it was handed. This guards against what is handed
+over, and no more: code that reads the run folder or the memory of its process learns the
+salt, and the same world is recognised by its starts and goals whenever it is met again.
+"""
 
 import hashlib
 import json
+import re
+import secrets
+from typing import Any
 
 import numpy as np
+from numpy.random.bit_generator import ISpawnableSeedSequence
 
-_KEY = b"benchnav briefing 1"  # another key would be another stream for every episode
+from benchnav.arrays import AnyArray
+
+_SALT = re.compile(r"(?:[0-9a-f]{2}){1,64}")  # the key of blake2b has at most 64 bytes
 
 
-def generator(scenario_hash: str, split: str, seed: int, driver: int) -> np.random.Generator:
+def draw_salt() -> str:
+    """A new salt: 128 bits of the system's randomness, in hexadecimal digits."""
+    return secrets.token_hex(16)
+
+
+def check_salt(salt: str) -> None:
+    """Raise ValueError, with the rule and what came instead, where ``salt`` is none."""
+    if not _SALT.fullmatch(salt):
+        raise ValueError(f"must be 1 to 64 bytes in digits 0-9 a-f; got {salt[:140]!r}")
+
+
+def generator(
+    salt: str, scenario_hash: str, split: str, seed: int, driver: int
+) -> np.random.Generator:
     """The one source of randomness of a navigator in one world.
 
-    Seeded by a keyed hash, so that neither the generator nor its seed reveals the
-    scenario, split or seed of the world, nor shares a stream with the draw of it.
-    The same for every navigator and track: they are compared on the same luck.
+    Within a run it is the same for every navigator and track (they are compared on the
+    same luck), every batch and number of workers. It shares no stream with the draw of
+    the world.
 
     Args:
+        salt: of the run.
         scenario_hash: of the scenario.
         split: train, validation or test.
         seed: of the world.
         driver: 0 for the evaluated navigator, k > 0 for background driver k - 1.
     """
-    message = json.dumps([scenario_hash, split, seed, driver]).encode()
-    hashed = hashlib.blake2b(message, key=_KEY, digest_size=32).digest()
-    entropy = int.from_bytes(hashed, "little")
-    return np.random.Generator(np.random.PCG64(np.random.SeedSequence(entropy)))
+    hashed = _hashed(salt, "stream", scenario_hash, split, seed, driver)
+    seeds: Any = _Seeds(hashed)  # numpy takes every ISeedSequence; its stubs know one
+    return np.random.Generator(np.random.PCG64(seeds))
+
+
+def place(salt: str, scenario_hash: str, split: str, seed: int) -> bytes:
+    """Worlds sorted by this stand in an order that tells nothing about their seeds."""
+    return _hashed(salt, "place", scenario_hash, split, seed)
+
+
+class _Seeds(ISpawnableSeedSequence):
+    """A seed sequence that is a hash, and nothing that went into it."""
+
+    def __init__(self, hashed: bytes) -> None:
+        self._hashed = hashed
+        self._spawned = 0
+
+    def generate_state(self, n_words: int, dtype: Any = np.uint32) -> AnyArray:
+        """(n_words,) as numpy asks for them."""
+        kind = np.dtype(dtype)
+        stream = hashlib.shake_256(b"state" + self._hashed).digest(n_words * kind.itemsize)
+        return np.frombuffer(stream, kind.newbyteorder("<")).astype(kind)
+
+    def spawn(self, n_children: int) -> list["_Seeds"]:
+        """New sequences, independent of this one and of those that were spawned before."""
+        first, self._spawned = self._spawned, self._spawned + n_children
+        return [
+            _Seeds(hashlib.sha256(f"child {k} ".encode() + self._hashed).digest())
+            for k in range(first, self._spawned)
+        ]
+
+
+def _hashed(salt: str, *about: str | int) -> bytes:
+    message = json.dumps(about).encode()
+    return hashlib.blake2b(message, key=bytes.fromhex(salt), digest_size=32).digest()

@@ -13,7 +13,7 @@ from benchnav.navigation.configure import Spec, make, split
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.answer import CallFailed
 from benchnav.runner.driver import Driver
-from benchnav.runner.generators import generator
+from benchnav.runner.generators import generator, place
 from benchnav.runner.recorder import Recorder
 from benchnav.world.simulation import Simulation
 
@@ -33,6 +33,7 @@ class Assignment:
     label: str  # of the navigator in the suite
     navigator: Spec
     background: tuple[Spec, ...] = ()  # navigators of the scenario's other teams
+    salt: str = ""  # of the run; no navigator is handed it
 
     def identity(self, seed: int) -> Identity:
         """Of the episode with this seed."""
@@ -47,6 +48,8 @@ def rollout(
 ) -> Iterator[list[Episode]]:
     """Every world's episode, batch by batch; the batching changes no state and no command.
 
+    Rows are given in an order that tells nothing about the seeds.
+
     A call that fails for a batch is tried again from the start of the episodes with
     fewer worlds, so that no state of a navigator is touched twice, until the worlds
     that fail alone are found: only they are charged.
@@ -57,7 +60,8 @@ def rollout(
         charge: a reason for which every world is charged without running (its
             navigator killed the process, say); "" runs them.
     """
-    pending = deque(_batches(worlds))
+    about = (assignment.salt, assignment.scenario_hash, assignment.split)
+    pending = deque(_batches(sorted(worlds, key=lambda world: place(*about, world[0]))))
     while pending:
         batch = pending.popleft()
         try:
@@ -152,7 +156,7 @@ def drivers_of(assignment: Assignment, simulation: Simulation) -> list[Driver]:
 
 def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) -> float:
     """Brief everybody. Returns the seconds that the evaluated navigator took."""
-    about = (assignment.scenario_hash, assignment.split)
+    about = (assignment.salt, assignment.scenario_hash, assignment.split)
     seconds = [d.reset([generator(*about, seed, d.which) for seed in seeds]) for d in drivers]
     return seconds[0]
 

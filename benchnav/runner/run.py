@@ -6,7 +6,9 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from benchnav.errors import RunConflictError
 from benchnav.runner.executor import execute
+from benchnav.runner.generators import draw_salt
 from benchnav.runner.progress import Progress
 from benchnav.runner.suite import Cell, Suite
 from benchnav.runner.task import Task, chunks
@@ -49,14 +51,16 @@ def run_suite(
         summary: filled while the run goes on; None: a new one.
 
     Raises:
-        RunConflictError: ``out`` holds something else, or another process writes it.
+        RunConflictError: ``out`` holds another suite, salt or thing, or another process writes it.
         StoreError: the disk refuses, or a stored part is damaged.
         UnsolvableError: a scenario cannot be drawn.
     """
     told = progress if progress is not None else Progress()
     summary = summary if summary is not None else Summary()
     cells = list(suite.cells())
-    folder = RunFolder.start(out, Manifest(suite.resolved(), tuple(_said(c) for c in cells)))
+    said = tuple(_said(c) for c in cells)
+    folder = RunFolder.start(out, Manifest(suite.resolved(), said, suite.salt or draw_salt()))
+    _refuse_another_salt(suite, folder)
     with folder.writing():
         tasks = _tasks(suite, folder, cells, summary)
         told.begin(summary.total, summary.stored)
@@ -83,11 +87,26 @@ def _tasks(suite: Suite, folder: RunFolder, cells: list[Cell], summary: Summary)
         summary.total += len(suite.seeds)
         summary.stored += len(suite.seeds) - len(missing)
         tasks += [
-            Task(cell, folder.cell(cell.key), first, stop, probe=suite.seeds.start)
-            for first, stop in chunks(missing, cell.effort)
+            Task(
+                cell,
+                folder.cell(cell.key),
+                *chunk,
+                salt=folder.manifest.salt,
+                probe=suite.seeds.start,
+            )
+            for chunk in chunks(missing, cell.effort)
         ]
     summary.found = summary.stored
     return sorted(tasks, key=lambda task: -task.cell.effort * len(task.seeds))
+
+
+def _refuse_another_salt(suite: Suite, folder: RunFolder) -> None:
+    held = folder.manifest.salt
+    if suite.salt not in ("", held):
+        raise RunConflictError(
+            f"The salt must be that of the run in {folder.path}, {held}. Got {suite.salt} instead."
+            " Leave --salt out to go on there, or give another --out."
+        )
 
 
 def _said(cell: Cell) -> dict[str, str]:

@@ -13,6 +13,7 @@ from benchnav.navigation.configure import Spec, configure, make, split
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.tracks import TRACKS
 from benchnav.plugins import NAVIGATORS
+from benchnav.runner.generators import check_salt
 from benchnav.runner.rollout import Assignment
 from benchnav.runner.suite_file import SuiteFile, parse_seeds, suite_path
 from benchnav.scenario.catalogue import find
@@ -88,6 +89,7 @@ class Selection:
     tracks: tuple[str, ...] = ()
     navigators: tuple[str, ...] = ()
     seeds: str = ""
+    salt: str = ""  # in hexadecimal digits; empty: the run draws one
 
 
 @dataclass(frozen=True)
@@ -101,6 +103,7 @@ class Suite:
     scenarios: tuple[Scenario, ...]
     tracks: tuple[str, ...]
     entries: tuple[Entry, ...]
+    salt: str = ""  # of navigators' randomness; empty: each new run draws its own
 
     def cells(self) -> Iterator[Cell]:
         """Every cell, n/a ones included: by scenario, track, navigator."""
@@ -110,7 +113,7 @@ class Suite:
                     yield Cell(scenario, self.split, track, entry)
 
     def resolved(self) -> dict[str, Any]:
-        """Everything that has a say in the results, as plain data for the manifest."""
+        """Everything but the salt that has a say in the results, as plain data for the manifest."""
         return {
             "name": self.name,
             "version": self.version,
@@ -131,7 +134,7 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     """The suite that ships as ``name`` or stands in that file, with what was selected.
 
     Raises:
-        UsageError: no such suite, track or seeds; a label or scenario twice.
+        UsageError: no such suite, track, seeds or salt; a label or scenario twice.
         ScenarioError: the suite file or a scenario is wrong.
         PluginError: a navigator cannot be used.
     """
@@ -153,7 +156,8 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     _refuse_twice("track", tracks, path)
     _refuse_twice("navigator label", [e.label for e in entries], path)
     seeds = _seeds(selection.seeds or str(said.seeds))
-    return Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries)
+    salt = _salt(selection.salt)
+    return Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries, salt)
 
 
 def _wanted_navigators(said: SuiteFile, selected: Sequence[str]) -> list[tuple[int | None, Spec]]:
@@ -202,6 +206,15 @@ def _seeds(text: str) -> range:
         return parse_seeds(text)
     except ValueError as error:
         raise UsageError(f"seeds {error}.") from None
+
+
+def _salt(text: str) -> str:
+    try:
+        if text:
+            check_salt(text.lower())
+    except ValueError as error:
+        raise UsageError(f"The salt {error}.") from None
+    return text.lower()
 
 
 def _refuse_unknown_tracks(tracks: Sequence[str]) -> None:

@@ -8,7 +8,7 @@ from benchnav.episode.episode import Episode
 from benchnav.metrics.measure import all_metrics
 from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.measured import measured
-from benchnav.runner.rollout import Seeded, rollout
+from benchnav.runner.rollout import Assignment, Seeded, rollout
 from benchnav.runner.suite import Cell
 from benchnav.store.part import Part
 from benchnav.store.part_writer import PartWriter
@@ -27,7 +27,13 @@ class Task:
     first: int
     stop: int
     charge: str = ""  # a reason for which every episode fails without running
+    salt: str = ""  # of the run
     probe: int = -1  # seed in whose world latency is taken; one for each cell
+
+    @property
+    def assignment(self) -> Assignment:
+        """Who runs where, in this run."""
+        return replace(self.cell.assignment, salt=self.salt)
 
     @property
     def seeds(self) -> range:
@@ -78,7 +84,7 @@ def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:
     metrics = all_metrics()
     failures: list[tuple[int, str]] = []
     with PartWriter(Part(task.folder, task.first, task.stop)) as writer:
-        for batch in rollout(cell.assignment, worlds, task.charge):
+        for batch in rollout(task.assignment, worlds, task.charge):
             episodes = _timed(task, batch)
             writer.add(episodes, measured(_ticking(episodes, tick), metrics))
             failures += [(e.identity.seed, e.failure) for e in episodes if e.failure]
@@ -92,7 +98,7 @@ def _timed(task: Task, batch: list[Episode]) -> list[Episode]:
     for episode in batch:
         seeded: Seeded = (episode.identity.seed, episode.world)
         wanted = seeded[0] == task.probe and not episode.failure
-        alone = latency(task.cell.assignment, seeded) if wanted else None
+        alone = latency(task.assignment, seeded) if wanted else None
         timings = replace(episode.timings, latency=alone, memory=peak_memory())
         timed.append(replace(episode, timings=timings))
     return timed

@@ -23,6 +23,7 @@ class Manifest:
 
     suite: Mapping[str, Any]  # resolved: hashes of scenarios, full configurations, seeds
     cells: tuple[Mapping[str, Any], ...]  # key, scenario, track, navigator, reason it is n/a or ""
+    salt: str = ""  # of the randomness that navigators are handed, in hexadecimal digits
     schema: int = SCHEMA
     versions: Mapping[str, str] = field(default_factory=lambda: versions())
     platform: str = field(default_factory=platform.platform)
@@ -79,7 +80,7 @@ def load_manifest(run: Path) -> Manifest:
                 f" benchnav {said['versions'].get('benchnav')} wrote it; install that one."
             )
         manifest = Manifest(
-            said["suite"], tuple(said["cells"]), schema, said["versions"],
+            said["suite"], tuple(said["cells"]), said.get("salt", ""), schema, said["versions"],
             said["platform"], said["created"],
         )  # fmt: skip
         whole = manifest.suite_hash == said["suite_hash"]

@@ -9,7 +9,7 @@ from benchnav.runner import task as task_module
 from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.rollout import Assignment
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import load_suite
+from benchnav.runner.suite import Selection, load_suite
 from benchnav.store.reading import read_episodes
 from benchnav.world.build import build
 
@@ -21,7 +21,7 @@ def suite(tmp_path, scenario_file, troubled):
         f"name: small\nscenarios: [{scenario_file}]\n"
         "navigators: [orca, {type: 'troubled_navigators:Walk', label: walk}]\nseeds: '3:9'\n"
     )
-    return load_suite(str(path))
+    return load_suite(str(path), Selection(salt="5a"))
 
 
 @pytest.mark.parametrize("workers", [0, 1])

@@ -20,6 +20,7 @@ from benchnav.runner.progress import Progress
 from benchnav.runner.run import run_suite
 from benchnav.runner.suite import Selection, load_suite
 from benchnav.runner.task import chunks
+from benchnav.store.manifest import load_manifest
 from benchnav.store.part import SEAL
 from benchnav.store.reading import read_episodes, read_results
 from benchnav.store.run_folder import RunFolder
@@ -54,6 +55,9 @@ def table(run):
     }
 
 
+SALT = "5a" * 16  # for runs that are compared
+
+
 class Counting(Progress):
     def __init__(self):
         self.done = 0
@@ -66,7 +70,7 @@ class Counting(Progress):
 
 
 def test_no_number_of_workers_and_no_chunk_size_changes_a_bit(suite_file, tmp_path, monkeypatch):
-    suite = load_suite(str(suite_file))
+    suite = load_suite(str(suite_file), Selection(salt=SALT))
     told = Counting()
     summary = run_suite(suite, tmp_path / "here", workers=0, progress=told)
     assert (summary.total, summary.stored, summary.found) == (12, 12, 0)
@@ -93,6 +97,29 @@ def test_what_is_missing_is_run_and_nothing_else(suite_file, tmp_path, small_tas
     assert all(seal.stat().st_mtime_ns == when for seal, when in kept.items())
     again = run_suite(suite, out, workers=2)
     assert again.found == again.stored == 12
+
+
+def test_each_run_has_a_salt_of_its_own_and_can_be_repeated(suite_file, tmp_path):
+    suite = load_suite(str(suite_file))
+    first, other, again = (tmp_path / name for name in ("first", "other", "again"))
+    run_suite(suite, first, workers=0)
+    run_suite(suite, other, workers=0)
+    salt = load_manifest(first).salt
+    assert len(bytes.fromhex(salt)) == 16
+    assert salt != load_manifest(other).salt
+    walked, differently = digests(first), digests(other)
+    assert all(walked["walk", s] != differently["walk", s] for s in range(6))
+    run_suite(load_suite(str(suite_file), Selection(salt=salt.upper())), again, workers=0)
+    assert digests(again) == walked
+
+
+def test_another_salt_does_not_get_the_folder(suite_file, tmp_path):
+    suite = load_suite(str(suite_file), Selection(seeds="1", salt=SALT))
+    run_suite(suite, tmp_path / "r", workers=0)
+    other = load_suite(str(suite_file), Selection(seeds="1", salt="00"))
+    with pytest.raises(RunConflictError, match=f"{SALT}. Got 00 instead"):
+        run_suite(other, tmp_path / "r", workers=0)
+    assert run_suite(suite, tmp_path / "r", workers=0).found == 2
 
 
 def test_another_suite_does_not_get_the_folder(suite_file, tmp_path):
@@ -200,7 +227,7 @@ def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file,
     stored = len(list(read_episodes(out)))
     assert 0 < stored < 160
     assert not list(out.glob("parts/*/.writing*"))
-    chosen = Selection(seeds="160", navigators=("orca",))
+    chosen = Selection(seeds="160", navigators=("orca",), salt=load_manifest(out).salt)
     resumed = run_suite(load_suite(str(suite_file), chosen), out, workers=1)
     assert resumed.found == stored
     run_suite(load_suite(str(suite_file), chosen), whole, workers=1)

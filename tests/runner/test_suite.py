@@ -113,6 +113,9 @@ def test_a_wrong_selection_is_asked_wrongly(write):
         load_suite(write(), Selection(tracks=("knwon",)))
     with pytest.raises(UsageError, match="seeds must be N"):
         load_suite(write(), Selection(seeds="x"))
+    for wrong in ("x", "abc", "00" * 65):
+        with pytest.raises(UsageError, match="The salt must be 1 to 64 bytes"):
+            load_suite(write(), Selection(salt=wrong))
 
 
 def test_a_navigator_can_be_written_out_where_it_is_selected(write):
