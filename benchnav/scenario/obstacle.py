@@ -6,14 +6,14 @@ from benchnav.scenario.base import Distance, Point, Spec
 from benchnav.scenario.law import Law, RecordedTrack
 from benchnav.scenario.region import Region
 from benchnav.scenario.sampler import Count, NonNegativeScalar, Scalar, fixed
-from benchnav.scenario.shape import Movable, Placeable, shape_is_fixed
+from benchnav.scenario.shape import Movable, Shape, shape_is_fixed
 from benchnav.scenario.validation import FieldError
 
 
 class StaticGroup(Spec):
     """Furniture: fixed at given points, or drawn from a region."""
 
-    shape: Placeable
+    shape: Shape
     count: Count | None = Field(None, description="1 if not given; not with `at`")
     at: tuple[Point, ...] | None = Field(
         None, min_length=1, max_length=1000, description="one obstacle at each point [m]"

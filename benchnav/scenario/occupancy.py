@@ -1,4 +1,4 @@
-"""Occupancy maps as walls: the outline of what is blocked, exact to the cell."""
+"""Occupancy maps as solids: the outline of what is blocked, exact to the cell."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 
 from benchnav.arena.solid import Kind, Solid
+from benchnav.arrays import BoolArray, FloatArray
 from benchnav.errors import MapError
 from benchnav.geometry.contour import outlines
 from benchnav.scenario.importers import movingai, ros_map
@@ -15,7 +16,15 @@ from benchnav.scenario.importers.grid import MAX_CELLS, Occupancy
 Format = Literal["movingai", "ros"]
 Bounds = tuple[float, float, float, float]
 
-__all__ = ["MAX_CELLS", "Format", "Occupancy", "occupancy_solids", "read_occupancy", "trace"]
+__all__ = [
+    "MAX_CELLS",
+    "Format",
+    "Occupancy",
+    "occupancy_loops",
+    "occupancy_solids",
+    "read_occupancy",
+    "trace",
+]
 
 
 def read_occupancy(path: Path | str, format: Format, cell: float | None = None) -> Occupancy:
@@ -38,7 +47,7 @@ def trace(occupancy: Occupancy, unknown_is_free: bool = False) -> tuple[Solid, .
     blocked cells that touch at a corner. Unknown cells are blocked unless
     ``unknown_is_free``.
     """
-    blocked = occupancy.blocked if unknown_is_free else occupancy.blocked | occupancy.unknown
+    blocked = _blocked(occupancy, unknown_is_free)
     return tuple(
         Solid(Kind.WALL, tuple(occupancy.points(loop) for loop in outline.loops))
         for outline in outlines(blocked)
@@ -74,3 +83,26 @@ def occupancy_solids(
     x, y = float(shift[0]), float(shift[1])
     moved = tuple(solid.moved(shift) for solid in solids)
     return moved, (xmin + x, ymin + y, xmax + x, ymax + y)
+
+
+def occupancy_loops(
+    path: Path | str, format: Format, cell: float | None = None, unknown_is_free: bool = False
+) -> tuple[FloatArray, ...]:
+    """What an occupancy map blocks, as one thing that stands in the open: its loops (V, 2) [m].
+
+    As `occupancy_solids`, in the map's own frame, but nothing lies outside the map:
+    what reaches its edge ends there.
+
+    Raises:
+        MapError: the file is not what it must be, or no cell is blocked.
+    """
+    occupancy = read_occupancy(path, format, cell)
+    blocked = _blocked(occupancy, unknown_is_free)
+    if not blocked.any():
+        raise MapError(f"{path}:1: an obstacle's map must have a blocked cell; all are free.")
+    _, *regions = outlines(np.pad(blocked, 1))  # first the outside, around the free rim
+    return tuple(occupancy.points(loop - 1.0) for region in regions for loop in region.loops)
+
+
+def _blocked(occupancy: Occupancy, unknown_is_free: bool) -> BoolArray:
+    return occupancy.blocked if unknown_is_free else occupancy.blocked | occupancy.unknown

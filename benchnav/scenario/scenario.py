@@ -16,7 +16,7 @@ from benchnav.scenario.law import RecordedTrack
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
 from benchnav.scenario.region import region_problem
 from benchnav.scenario.sampler import support
-from benchnav.scenario.shape import Mesh, Occupancy
+from benchnav.scenario.shape import Mesh, Occupancy, Shape
 from benchnav.scenario.team import Driver, PointsGoal, PointsStart, RegionGoal, RegionStart, Team
 from benchnav.scenario.terms import Clock, Rules, Sensing, Track
 from benchnav.scenario.validation import FieldError
@@ -103,12 +103,16 @@ class Scenario(Spec):
 
     def files(self) -> Iterator[tuple[tuple[PathKey, ...], Path]]:
         """Where in the scenario a file is named, and its path; a ROS map's image comes with it."""
-        for i, wall in enumerate(self.walls):
-            if isinstance(wall.shape, Mesh | Occupancy):
-                key: tuple[PathKey, ...] = ("walls", i, "shape", "file")
-                path = self._folder / wall.shape.file
+        shapes: list[tuple[tuple[PathKey, ...], Shape]] = [
+            *((("walls", i), wall.shape) for i, wall in enumerate(self.walls)),
+            *((("static", i), group.shape) for i, group in enumerate(self.static)),
+        ]
+        for place, shape in shapes:
+            if isinstance(shape, Mesh | Occupancy):
+                key = (*place, "shape", "file")
+                path = self._folder / shape.file
                 yield key, path
-                image = _image_of(path) if wall.shape.type == "occupancy" else None
+                image = _image_of(path) if shape.type == "occupancy" else None
                 if image is not None:
                     yield key, image
         for i, group in enumerate(self.dynamic):

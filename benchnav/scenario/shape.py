@@ -118,7 +118,6 @@ class Occupancy(Spec):
 
 
 Movable = Annotated[Box | Disc | Polygon, Field(discriminator="type")]
-Placeable = Annotated[Box | Disc | Polygon | Polyline, Field(discriminator="type")]
 Shape = Annotated[Box | Disc | Polygon | Polyline | Mesh | Occupancy, Field(discriminator="type")]
 
 

@@ -120,6 +120,7 @@ class _Draw:
         return draw_pieces(
             groups, self.scenario.bounds, structure.wall, keep_free,
             self.streams(_STATIC, len(groups)), self.streams(_ELSEWHERE, len(groups)),
+            self.scenario.folder,
         )  # fmt: skip
 
     def bodies(self, given: list[list[Body]], standing: Barrier) -> list[Body]:

@@ -75,7 +75,7 @@ def shifted(shape: FloatArray, points: FloatArray) -> FloatArray:
 def clear(shapes: FloatArray, wall: Barrier, gap: float) -> BoolArray:
     """(N,) True where a shape (N, Q, 5) is farther than ``gap`` [m] ≥ 0 from every solid.
 
-    A shape is one capsule (Q = 1) or one counter-clockwise loop of edges (Q > 2).
+    A shape is one capsule (Q = 1) or the edges of loops (Q > 2), counter-clockwise around it.
     """
     far: BoolArray = _clear(
         np.ascontiguousarray(shapes), wall.capsules, wall.first, wall.hollow, gap
@@ -107,12 +107,23 @@ def _apart(shape: FloatArray, capsules: FloatArray, gap: float) -> bool:
 
 @kernel
 def _nested(shape: FloatArray, capsules: FloatArray, first: IntArray, hollow: BoolArray) -> bool:
-    """One holds the other; where their edges are apart, one point of each decides that."""
-    closed = len(shape) > 2
+    """One holds part of the other; where edges are apart, one point of each loop decides that."""
     for s in range(len(hollow)):
         edges = capsules[first[s] : first[s + 1]]
-        inside = _winding(shape[0, 0], shape[0, 1], edges) + (1 if hollow[s] else 0)
-        if inside > 0 or (closed and _winding(edges[0, 0], edges[0, 1], shape) > 0):
+        if _holds(edges, shape, 1 if hollow[s] else 0):
+            return True
+        if len(shape) > 2 and _holds(shape, edges, 0):
+            return True
+    return False
+
+
+@kernel
+def _holds(loops: FloatArray, other: FloatArray, around: int) -> bool:
+    """A loop of ``other`` (Q, 5) begins inside ``loops`` (P, 5), outside which it is ``around``."""
+    for q in range(len(other)):
+        x, y = other[q, 0], other[q, 1]
+        goes_on = q > 0 and x == other[q - 1, 2] and y == other[q - 1, 3]
+        if not goes_on and _winding(x, y, loops) + around > 0:
             return True
     return False
 

@@ -96,7 +96,7 @@ def _clearance(scenario: Scenario) -> float:
         return 0.0
     least = float("inf")
     for group in scenario.static:
-        shape = draw_solid(group.shape, 0.0, Kind.STATIC, np.random.default_rng(0))
+        shape = draw_solid(group.shape, 0.0, Kind.STATIC, np.random.default_rng(0), scenario.folder)
         if group.at is not None or not is_convex(shape):
             return 0.0
         least = min(least, group.gap)

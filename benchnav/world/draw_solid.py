@@ -11,7 +11,7 @@ from benchnav.arena.solid import Kind, Solid
 from benchnav.arrays import FloatArray
 from benchnav.geometry.rotation import rotated
 from benchnav.scenario.sampler import Scalar, sample
-from benchnav.scenario.shape import Box, Disc, Mesh, Occupancy, Polygon, Polyline
+from benchnav.scenario.shape import Box, Disc, Mesh, Occupancy, Polygon, Polyline, Shape
 from benchnav.scenario.wall import Wall
 
 Bounds = tuple[float, float, float, float]
@@ -24,12 +24,20 @@ def bounds_wall(bounds: Bounds) -> Solid:
 
 
 def draw_solid(
-    shape: Box | Disc | Polygon | Polyline, heading: Scalar, kind: Kind, rng: np.random.Generator
+    shape: Shape, heading: Scalar, kind: Kind, rng: np.random.Generator, folder: Path = Path()
 ) -> Solid:
-    """A solid about the origin."""
+    """A solid about the origin; all parts of a mesh or a map are one.
+
+    ``folder`` is what the names of files are relative to.
+
+    Raises MapError or MeshError where such a file is wrong.
+    """
     if isinstance(shape, Disc):
         return Solid(kind, (), (0.0, 0.0), sample(shape.radius, rng))
     turn = sample(heading, rng)
+    if isinstance(shape, Mesh | Occupancy):
+        loops = _loops(shape, folder)
+        return Solid(kind, loops if turn == 0.0 else tuple(rotated(loop, turn) for loop in loops))
     if isinstance(shape, Box):
         w = 0.5 * sample(shape.width, rng)
         d = w if shape.depth is None else 0.5 * sample(shape.depth, rng)
@@ -58,6 +66,23 @@ def draw_wall(wall: Wall, folder: Path, rng: np.random.Generator) -> tuple[list[
         return list(solids), mesh
     solid = draw_solid(shape, wall.heading, Kind.WALL, rng)
     return [solid.moved(np.array([sample(wall.at[0], rng), sample(wall.at[1], rng)]))], None
+
+
+def _loops(shape: Mesh | Occupancy, folder: Path) -> tuple[FloatArray, ...]:
+    """About the origin of the file's own frame."""
+    path = folder / shape.file
+    if isinstance(shape, Occupancy):
+        return _occupancy_loops(path, shape.format, shape.cell, shape.unknown_is_free)
+    about = (0.0, (0.0, 0.0), Kind.STATIC)
+    solids, _ = _mesh(path, shape.unit, shape.up, shape.scale, shape.band, *about)
+    return tuple(loop for solid in solids for loop in solid.loops)
+
+
+@lru_cache(maxsize=32)
+def _occupancy_loops(path: Path, *arguments: Any) -> tuple[FloatArray, ...]:
+    from benchnav.scenario.occupancy import occupancy_loops
+
+    return occupancy_loops(path, *arguments)
 
 
 @lru_cache(maxsize=8)

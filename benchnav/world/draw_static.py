@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 
 import numpy as np
 
@@ -59,6 +60,7 @@ def draw_pieces(
     keep_free: Barrier,
     streams: Streams,
     others: Streams,
+    folder: Path = Path(),
 ) -> list[Piece]:
     """All static obstacles of one draw, in the order of their groups.
 
@@ -69,11 +71,13 @@ def draw_pieces(
         keep_free: fixed starts, goals and tracks, which sampled obstacles keep clear of.
         streams: a generator per group, for shapes and for places at the start.
         others: a generator per group, for places before the start and after it.
+        folder: what the names of meshes and maps are relative to.
 
     Raises:
         NoPlaceError: an obstacle finds no place.
+        InputError: a mesh or a map is not one.
     """
-    search = _Search(bounds, keep_free)
+    search = _Search(bounds, keep_free, folder)
     pieces: list[list[Piece]] = []
     standing = walls
     for i, (group, rng) in enumerate(zip(groups, streams, strict=True)):
@@ -100,6 +104,7 @@ class _Search:
 
     bounds: Bounds
     keep_free: Barrier
+    folder: Path
 
     def now(
         self, group: StaticGroup, name: str, standing: Barrier, rng: np.random.Generator
@@ -108,7 +113,7 @@ class _Search:
         pieces: list[Piece] = []
         count = 1 if group.count is None else int(sample(group.count, rng))
         for k in range(count if group.at is None else len(group.at)):
-            shape = draw_solid(group.shape, group.heading, Kind.STATIC, rng)
+            shape = draw_solid(group.shape, group.heading, Kind.STATIC, rng, self.folder)
             if group.at is not None:
                 place = np.array(group.at[k])
             else:

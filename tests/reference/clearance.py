@@ -1,9 +1,12 @@
 """Slow twins of the placement test: shapely polygons, and a path search on a fine grid."""
 
 from collections import deque
+from itertools import pairwise
 
 import numpy as np
 import shapely
+
+from benchnav.arena.solid import Kind, Solid
 
 _FAR = 1e4
 
@@ -29,7 +32,9 @@ def solid_area(solid):
 def shape_area(shape):
     """Capsules (Q, 5) as a shapely geometry; thin closed chains are filled."""
     if len(shape) > 2 and np.all(shape[:, 4] == 0.0):
-        return shapely.Polygon(shape[:, 0:2])
+        ends = [q for q in range(len(shape)) if np.any(shape[q, 0:2] != shape[q - 1, 2:4])] or [0]
+        loops = [shape[a:b, 0:2] for a, b in pairwise([*ends, len(shape)])]
+        return solid_area(Solid(Kind.STATIC, tuple(loops)))
     return shapely.union_all([
         shapely.LineString([c[0:2], c[2:4]]).buffer(c[4], quad_segs=128) if c[4] > 0
         else shapely.LineString([c[0:2], c[2:4]])

@@ -57,7 +57,7 @@ def test_shipped_files(path):
          "s.yaml:18: teams[0].radios is not a known key. Did you mean 'radius'?"),
         ("type: disc, radius: 0.5", "type: dsic, radius: 0.5",
          "s.yaml:7: static[0].shape must have one of the types 'box', 'disc', 'polygon',"
-         " 'polyline'; got 'dsic'. Did you mean 'disc'?"),
+         " 'polyline', 'mesh', 'occupancy'; got 'dsic'. Did you mean 'disc'?"),
         ("type: disc, radius: 0.5", "radius: 0.5",
          "s.yaml:7: static[0].shape must have the key `type`; got a mapping (radius)."),
         ("count: 2", "count: 2.5",
@@ -101,6 +101,9 @@ def test_shipped_files(path):
          "shape: {type: occupancy, file: none.map, format: movingai}",
          "s.yaml:4: walls[0].shape.file must name a file, relative to the scenario's own;"
          " none.map is not one."),
+        ("type: disc, radius: 0.5", "type: mesh, file: none.stl",
+         "s.yaml:7: static[0].shape.file must name a file, relative to the scenario's own;"
+         " none.stl is not one."),
         ("name: tests/small", "name: Tests Small",
          "s.yaml:1: name must match"),
         ("min_distance: 2", "min_distnace: 2",

@@ -15,16 +15,17 @@ _PLACE = st.tuples(st.floats(-4, 4), st.floats(-4, 4)).map(np.array)
 
 @st.composite
 def solids(draw):
-    """Discs, turned boxes, boxes with a hole, thin walls."""
+    """Discs, turned boxes, boxes with a hole, two boxes as one, thin walls."""
     at = draw(_PLACE)
     size = draw(st.floats(0.2, 2.0))
-    kind = draw(st.sampled_from(["disc", "box", "frame", "line"]))
+    kind = draw(st.sampled_from(["disc", "box", "frame", "pair", "line"]))
     turn = draw(st.floats(0, 6.2))
     square = rotated(size * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]]), turn)
     loops = {
         "disc": (),
         "box": (square,),
         "frame": (square, 0.8 * square[::-1]),
+        "pair": (square, 0.5 * square + 2.5 * size),
         "line": (rotated(size * np.array([[-1, 0], [0, 0.5], [1, 0], [0, 0.5]]), turn),),
     }[kind]
     radius = size if kind == "disc" else 0.0
@@ -33,15 +34,19 @@ def solids(draw):
 
 @st.composite
 def shapes(draw):
-    """Points, tracks and small boxes about the origin."""
-    kind = draw(st.sampled_from(["point", "track", "box"]))
+    """Points, tracks, boxes and pairs of boxes about the origin."""
+    kind = draw(st.sampled_from(["point", "track", "box", "pair"]))
     if kind == "point":
         return np.zeros((1, 5))
     if kind == "track":
         end = draw(_PLACE)
         return np.array([[0.0, 0.0, *end, draw(st.floats(0.1, 1.0))]])
     size = draw(st.floats(0.1, 5.0))
-    return Solid(Kind.STATIC, (size * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]]),)).capsules
+    square = size * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]])
+    loops = (
+        (square,) if kind == "box" else (square, 0.5 * square + draw(st.floats(1.6, 3.0)) * size)
+    )
+    return Solid(Kind.STATIC, loops).capsules
 
 
 @settings(max_examples=300, deadline=None)
