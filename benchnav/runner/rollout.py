@@ -91,14 +91,16 @@ def _terms(world: World) -> tuple[Clock, Rules, Sensing]:
 
 
 def _split(batch: list[Seeded], failed: CallFailed) -> list[list[Seeded]]:
-    """Smaller batches, in one of which the failure shows again."""
+    """Smaller batches, in one of which the failure shows again.
+
+    Suspects run alone and all others in halves, so that a world starts again no more
+    than log2(B) + 1 times, also where every world fails at a time of its own.
+    """
     guilty = set() if failed.suspects is None else set(failed.suspects.tolist())
-    if guilty:
-        innocent = [world for b, world in enumerate(batch) if b not in guilty]
-        alone = [[batch[b]] for b in sorted(guilty)]
-        return [innocent, *alone] if innocent else alone
-    half = len(batch) // 2
-    return [batch[:half], batch[half:]]
+    alone = [[world] for b, world in enumerate(batch) if b in guilty]
+    others = [world for b, world in enumerate(batch) if b not in guilty]
+    half = len(others) // 2
+    return [part for part in (others[:half], others[half:], *alone) if part]
 
 
 def _lockstep(assignment: Assignment, batch: list[Seeded], charge: str) -> list[Episode]:

@@ -131,6 +131,30 @@ class Talks(Walk):
         return super().act(observation)
 
 
+class Staggered(Navigator):
+    """Fails in every world, in each at a time of its own: raises, or answers NaN."""
+
+    how, resets = "nan", []
+
+    def reset(self, briefings, rows):
+        self.when = {int(r): 0.2 * (1 + rank(b) % 37) for r, b in zip(rows, briefings)}
+        self.resets.extend(rank(b) for b in briefings)
+
+    def act(self, observation):
+        command = np.zeros((*observation.active.shape, 2))
+        for b, row in enumerate(observation.rows):
+            if observation.time[b] > self.when[int(row)]:
+                if self.how == "raise":
+                    raise ValueError("now")
+                command[b, 0] = np.nan
+        return command
+
+
+def rank(briefing):
+    """A number that differs from world to world."""
+    return int(abs(briefing.start[0, 0]) * 1e9)
+
+
 class Alone(Walk):
     """Only knows one world at a time."""
 

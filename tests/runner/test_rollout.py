@@ -1,6 +1,7 @@
 """Worlds in lockstep: no batching shows in the results, and everybody pays only for themselves."""
 
 import pickle
+from collections import Counter
 
 import numpy as np
 import pytest
@@ -102,6 +103,20 @@ def test_a_failure_costs_its_own_episodes_only(play, in_the_east, navigator):
         mine = episode.world.agents.evaluated
         assert (episode.status[-1, mine] == Status.FAILED).all()
         assert np.isnan(episode.arrival[mine]).all()
+
+
+@pytest.mark.parametrize("how", ["nan", "raise"])
+def test_worlds_that_fail_one_after_another_start_again_a_few_times(play, monkeypatch, how):
+    from troubled_navigators import Staggered
+
+    monkeypatch.setattr(Staggered, "how", how)
+    monkeypatch.setattr(Staggered, "resets", [])
+    episodes = play("Staggered", range(32))
+    assert all(episode.failure for episode in episodes.values())
+    assert len({len(episode.requested) for episode in episodes.values()}) > 15
+    begun = Counter(Staggered.resets)
+    assert len(begun) == 32
+    assert max(begun.values()) <= 1 + 5
 
 
 def test_who_can_do_only_one_world_at_a_time_is_run_one_world_at_a_time(play):
