@@ -5,6 +5,10 @@ from dataclasses import dataclass
 
 from benchnav.leaderboard.record import Record
 
+PREFIXES = {  # unit → what it is divided by, and then called
+    "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")),
+    "B": ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"), (1.0, "B")),
+}
 ROUNDING = 1e-12  # what is smaller is left over from arithmetic
 
 
@@ -26,12 +30,13 @@ def cell(r: Record | None, *, interval: bool, decided: bool) -> Cell:
         return Cell("")
     if math.isnan(r.value):
         return Cell("–")
-    text = number(r.value, r.value)
-    if interval and not math.isnan(r.low):
-        widest = max(abs(r.value), abs(r.low), abs(r.high))
-        low, value, high = (number(x, widest) for x in (r.low, r.value, r.high))
-        text = f"{value} [{low}, {high}]"
-    unit = f" {r.unit}" if r.unit else ""
+    bounds = (r.low, r.high) if interval and not math.isnan(r.low) else ()
+    widest = max(map(abs, (r.value, *bounds)))
+    size, name = prefixed(r.unit, widest)
+    text, *ends = (number(x / size, widest / size) for x in (r.value, *bounds))
+    if ends:
+        text = f"{text} [{', '.join(ends)}]"
+    unit = f" {name}" if name else ""
     count = f" ({r.defined})" if r.defined < r.episodes else ""
     return Cell(f"{text}{unit}{count}", decided and r.rank_low == 1)
 
@@ -52,6 +57,14 @@ def rank(r: Record | None) -> Cell:
 def heading(r: Record) -> Cell:
     """A metric and its direction."""
     return Cell(r.metric + {"higher": " ↑", "lower": " ↓", None: ""}[r.better])
+
+
+def prefixed(unit: str, scale: float) -> tuple[float, str]:
+    """What to divide by so that ``scale`` has digits before the point, and the unit then."""
+    steps = PREFIXES.get(unit, ((1.0, unit),))
+    if scale == 0.0:
+        return 1.0, unit
+    return next((step for step in steps if scale >= step[0]), steps[-1])
 
 
 def number(value: float, scale: float) -> str:

@@ -9,7 +9,7 @@ _LATEX = {
     "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
     "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}", "[": "{[}", "]": "{]}",
     '"': r"\textquotedbl{}", "–": "--", "↑": r"$\uparrow$", "↓": r"$\downarrow$",
-    "·": r"\textperiodcentered{}",
+    "·": r"\textperiodcentered{}", "µ": r"\textmu{}",
 }  # fmt: skip
 
 

@@ -9,7 +9,7 @@ from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.cell import Cell, cell, entrant, heading, rank
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Leaderboard, Record
 
-DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "decision_time_p50")
+DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
 NARROW = 4  # metrics up to which every cell shows its interval
 INTERVALS = 2  # metrics that show it in a wider table
 WIDE = 8  # metrics beyond which a table has a row for each of them
@@ -35,27 +35,27 @@ class Section:
     notes: tuple[str, ...]
 
 
-def choose(board: Leaderboard, metrics: Sequence[str] | None) -> tuple[str, ...]:
-    """The metrics to show: the default few, ``["all"]``, or those named.
+def choose(held: Sequence[str], metrics: Sequence[str] | None) -> tuple[str, ...]:
+    """The metrics to show of those ``held``: the default few, ``["all"]``, or those named.
 
-    Raises UsageError for a metric that the leaderboard does not hold.
+    Raises UsageError for a metric that is not held.
     """
     if metrics is None:
-        return tuple(name for name in DEFAULT if name in board.metrics) or board.metrics[:NARROW]
+        return tuple(name for name in DEFAULT if name in held) or tuple(held[:NARROW])
     if list(metrics) == ["all"]:
-        return board.metrics
+        return tuple(held)
     for name in metrics:
-        if name not in board.metrics:
+        if name not in held:
             raise UsageError(
                 f"A metric to show must be one that the leaderboard holds. Got {name!r} instead."
-                f"{did_you_mean(name, board.metrics)} 'all' shows all."
+                f"{did_you_mean(name, held)} 'all' shows all."
             )
     return tuple(dict.fromkeys(metrics))
 
 
 def sections(board: Leaderboard, metrics: Sequence[str] | None) -> Iterator[Section]:
     """Tables of a leaderboard, one per track, scenario and role."""
-    shown = choose(board, metrics)
+    shown = choose(board.metrics, metrics)
     groups = {key: list(group) for key, group in groupby(board.records, key=_key)}
     for key, records in groups.items():
         if key[2] == ALL_INTERQUARTILE:

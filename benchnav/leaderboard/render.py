@@ -34,7 +34,7 @@ def render(board: Leaderboard, format: str, metrics: Sequence[str] | None = None
 
 def _tidy(board: Leaderboard, metrics: Sequence[str] | None) -> list[dict[str, Any]]:
     """Records as plain values; what is undefined is None."""
-    shown = set(choose(board, ["all"] if metrics is None else metrics))
+    shown = set(choose(board.metrics, ["all"] if metrics is None else metrics))
     names = [f.name for f in fields(Record)]
     rows = []
     for record in board.records:

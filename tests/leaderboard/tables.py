@@ -25,7 +25,7 @@ METRICS = {
         metric("spl", high=1.0),
         metric("time_to_goal", "lower", unit="s", conditional=True),
         metric("turning", "lower", unit="rad/m"),
-        metric("decision_time_p50", "lower", unit="s", verifiable=False),
+        metric("latency_p50", "lower", unit="s", verifiable=False),
         metric("path_length", None, unit="m"),
     )
 }
@@ -69,7 +69,7 @@ def simulated(navigators, scenarios, seeds, rng, tracks=("unknown",)):
                 columns = {
                     "success": won, "collided": hit, "spl": won * rng.uniform(0.7, 1.0, seeds),
                     "time_to_goal": times, "turning": rng.gamma(2.0, 0.1 + 0.05 * n, seeds),
-                    "decision_time_p50": rng.lognormal(-9 + n, 0.2, seeds),
+                    "latency_p50": rng.lognormal(-9 + n, 0.2, seeds),
                     "path_length": rng.normal(20.0, 2.0, seeds),
                 }  # fmt: skip
                 place = {"scenario": f"leaders/s{s}@1", "track": track, "scenario_hash": f"{s:08x}"}

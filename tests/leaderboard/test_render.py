@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from benchnav.errors import UsageError
 from benchnav.leaderboard import Leaderboard, NotApplicable, escape, leaderboard, render
 from benchnav.leaderboard.cell import number
-from tests.leaderboard.tables import METRICS, row, scores, simulated, table
+from tests.leaderboard.tables import METRICS, metric, row, scores, simulated, table
 
 FORMATS = ("markdown", "csv", "latex", "html", "json")
 TIDY = ("navigator", "scenario", "track", "role", "metric", "value", "low", "high", "unit",
@@ -202,3 +202,18 @@ def test_json_gives_any_name_back(name):
 )  # fmt: skip
 def test_numbers_keep_about_three_figures(value, text):
     assert number(value, value) == text
+
+
+@pytest.mark.parametrize(
+    ("values", "unit", "text"),
+    [([8.7e-7] * 2, "s", "870 ns"), ([2.25e-3] * 2, "s", "2.25 ms"), ([12.5] * 2, "s", "12.5 s"),
+     ([1.5e-5, 2.5e-5], "s", "20.0 µs"), ([0.0] * 2, "s", "0 s"), ([5.12e8] * 2, "B", "512 MB"),
+     ([0.002] * 2, "m", "0.0020 m")],
+)  # fmt: skip
+def test_seconds_and_bytes_take_a_prefix(values, unit, text):
+    known = {"taken": metric("taken", "lower", unit=unit, verifiable=False)}
+    board = leaderboard(table(scores({"a": values}, "taken")), known)
+    shown = render(board, "markdown").split("value [")[0]
+    assert text in re.sub(r" \[.*?\]", "", shown)
+    assert {r.unit for r in board.records} == {unit}
+    assert "µ" not in render(board, "latex")

@@ -91,7 +91,7 @@ def test_two_values_in_one_world_are_refused():
 
 
 def test_timings_of_repeated_runs_are_averaged():
-    name = "decision_time_p50"
+    name = "latency_p50"
     rows = [row("a", 0, name, 1.0), row("a", 0, name, 3.0), row("a", 1, name, 2.0)]
     assert only(board(rows), "a", name).value == pytest.approx(2.0)
 

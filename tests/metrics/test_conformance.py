@@ -50,6 +50,10 @@ SHIPPED = [
     "decision_time_p50",
     "decision_time_p95",
     "decision_time_p99",
+    "latency_p50",
+    "latency_p95",
+    "latency_p99",
+    "peak_memory",
     "planning_time",
     "over_budget",
 ]
