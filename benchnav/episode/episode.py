@@ -28,6 +28,7 @@ class Identity:
     seed: int
     track: str  # known, stale, partial, unknown
     navigator: str  # the label in the suite
+    navigator_hash: str = ""  # of what the label stands for: configuration, source, version
 
 
 @dataclass(frozen=True, eq=False)

@@ -34,10 +34,14 @@ class Assignment:
     navigator: Spec
     background: tuple[Spec, ...] = ()  # navigators of the scenario's other teams
     salt: str = ""  # of the run; no navigator is handed it
+    navigator_hash: str = ""  # of its configuration, source and version
 
     def identity(self, seed: int) -> Identity:
         """Of the episode with this seed."""
-        return Identity(self.scenario, self.scenario_hash, self.split, seed, self.track, self.label)
+        return Identity(
+            self.scenario, self.scenario_hash, self.split, seed, self.track, self.label,
+            self.navigator_hash,
+        )  # fmt: skip
 
 
 Seeded = tuple[int, World]

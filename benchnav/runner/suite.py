@@ -32,6 +32,12 @@ class Entry:
     source: str  # distribution and version that it comes from
     required: frozenset[Need]
 
+    @property
+    def hash(self) -> str:
+        """Of all that the label stands for: type, every parameter, source and its version."""
+        said = json.dumps([dict(self.spec), self.source], sort_keys=True)
+        return hashlib.sha256(said.encode()).hexdigest()[:16]
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -49,6 +55,7 @@ class Cell:
         return Assignment(
             scenario.identity, scenario.hash, self.split, self.track, entry.label, entry.spec,
             tuple({"type": d.type, **d.params} for d in scenario.drivers),
+            navigator_hash=entry.hash,
         )  # fmt: skip
 
     @property

@@ -54,16 +54,22 @@ EPISODES = pa.schema(
         ("batch", pa.int64()),
         ("latency_seconds", pa.large_list(pa.float64())),  # null where not taken
         ("memory_bytes", pa.int64()),  # null where not known
+        ("navigator_hash", pa.string()),
     ]
 )
-LATER = ("latency_seconds", "memory_bytes")  # columns that older parts lack; null there
-DICTIONARY = [*_IDENTITY, "failure"]  # columns whose values repeat
+LATER = (
+    "latency_seconds",
+    "memory_bytes",
+    "navigator_hash",
+)  # columns that older parts lack; null there
+DICTIONARY = [*_IDENTITY, "navigator_hash", "failure"]  # columns whose values repeat
 
 
 def to_table(episodes: Sequence[Episode]) -> pa.Table:
     """(N rows) of `EPISODES`."""
     columns: dict[str, Any] = {
-        name: [getattr(e.identity, name) for e in episodes] for name in (*_IDENTITY, "seed")
+        name: [getattr(e.identity, name) for e in episodes]
+        for name in (*_IDENTITY, "seed", "navigator_hash")
     }
     for name in ("failure", "reproducible", "digest"):
         columns[name] = [getattr(e, name) for e in episodes]
@@ -123,8 +129,9 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
         values("decision_seconds", np.float64), scalar("planning_seconds"), scalar("batch"),
         None if latency is None else np.array(latency, np.float64), scalar("memory_bytes"),
     )  # fmt: skip
+    identity = {name: scalar(name) for name in (*_IDENTITY, "seed")}
     return Episode(
-        identity=Identity(**{name: scalar(name) for name in (*_IDENTITY, "seed")}),
+        identity=Identity(**identity, navigator_hash=scalar("navigator_hash") or ""),
         world=world_from_json(scalar("world")),
         contacts=Contacts(**contacts),
         timings=timings,

@@ -18,6 +18,7 @@ import pyarrow.parquet as pq
 from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError
 from benchnav.store.episodes import from_table
+from benchnav.store.results import completed
 
 SEAL = ".seal.json"
 EPISODES_FILE = ".episodes.parquet"
@@ -53,7 +54,7 @@ class Part:
 
     def results(self) -> pa.Table:
         """Its measured values. Raises CorruptPartError."""
-        return self._table(RESULTS_FILE)
+        return completed(self._table(RESULTS_FILE))
 
     def episodes(self) -> Iterator[Episode]:
         """Its episodes, by seed. Raises CorruptPartError."""

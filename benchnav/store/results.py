@@ -8,7 +8,7 @@ import pyarrow as pa
 
 RESULTS = pa.schema(
     [
-        ("navigator", pa.string()),
+        ("navigator", pa.string()),  # the label
         ("scenario", pa.string()),  # "leaders/dynamic@1"
         ("scenario_hash", pa.string()),
         ("track", pa.string()),
@@ -25,5 +25,14 @@ RESULTS = pa.schema(
         ("failure", pa.string()),  # why the navigator failed in this episode; "" if it did not
         ("horizon", pa.float64()),  # [s]
         ("dt", pa.float64()),  # [s]
+        ("navigator_hash", pa.string()),  # of configuration, source, version; "" in older parts
     ]
 )
+
+
+def completed(table: pa.Table) -> pa.Table:
+    """The table with what older parts lack."""
+    if "navigator_hash" in table.column_names:
+        return table
+    field = RESULTS.field("navigator_hash")
+    return table.append_column(field, pa.repeat(pa.scalar("", field.type), len(table)))

@@ -14,8 +14,10 @@ from benchnav.errors import (
     RunConflictError,
     UnsolvableError,
 )
+from benchnav.metrics.measure import all_metrics
 from benchnav.plugins import register_navigator
 from benchnav.runner import task as task_module
+from benchnav.runner.measured import measure_again
 from benchnav.runner.progress import Progress
 from benchnav.runner.run import run_suite
 from benchnav.runner.suite import Selection, load_suite
@@ -45,13 +47,16 @@ def digests(run):
     return {(e.identity.navigator, e.identity.seed): e.digest for e in read_episodes(run)}
 
 
+TIMINGS = ("decision_time", "planning_time", "latency", "peak_memory")
+
+
 def table(run):
     """The results, timings aside."""
     rows = read_results(run).to_pylist()
     return {
         (r["navigator"], r["seed"], r["role"], r["metric"]): repr(r["value"])
         for r in rows
-        if not r["metric"].startswith(("decision_time", "planning_time"))
+        if not r["metric"].startswith(TIMINGS)
     }
 
 
@@ -111,6 +116,22 @@ def test_each_run_has_a_salt_of_its_own_and_can_be_repeated(suite_file, tmp_path
     assert all(walked["walk", s] != differently["walk", s] for s in range(6))
     run_suite(load_suite(str(suite_file), Selection(salt=salt.upper())), again, workers=0)
     assert digests(again) == walked
+
+
+def test_one_label_for_two_configurations_is_told_apart(suite_file, tmp_path):
+    plain = Selection(navigators=("orca",), seeds="1")
+    short = Selection(navigators=("{type: orca, label: orca, time_horizon: 0.05}",), seeds="1")
+    hashes = []
+    for k, chosen in enumerate((plain, short, plain)):
+        run_suite(load_suite(str(suite_file), chosen), tmp_path / f"{k}", workers=0)
+        rows = read_results(tmp_path / f"{k}")
+        assert set(rows["navigator"].to_pylist()) == {"orca"}
+        (found,) = set(rows["navigator_hash"].to_pylist())
+        again = measure_again(tmp_path / f"{k}", all_metrics())
+        assert set(again["navigator_hash"].to_pylist()) == {found}
+        hashes.append(found)
+    assert hashes[0] == hashes[2] != hashes[1]
+    assert all(len(found) == 16 for found in hashes)
 
 
 def test_another_salt_does_not_get_the_folder(suite_file, tmp_path):

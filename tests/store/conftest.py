@@ -65,7 +65,7 @@ def make_episode(rng, seed=0, steps=5, agents=3, bodies=2, events=2, failure="")
     arrival = rng.random(agents)
     arrival[:1] = np.nan
     episode = Episode(
-        identity=Identity("a/b@1", "f" * 64, "test", seed, "known", "orca"),
+        identity=Identity("a/b@1", "f" * 64, "test", seed, "known", "orca", f"hash {seed}"),
         world=world,
         position=rng.normal(size=(steps + 1, agents, 2)),
         heading=rng.normal(size=(steps + 1, agents)),
@@ -91,7 +91,7 @@ def make_results(episodes):
             "scenario_hash": e.identity.scenario_hash, "track": e.identity.track,
             "split": e.identity.split, "seed": e.identity.seed, "role": "leader",
             "metric": "success", "value": 0.5, "agents": 2, "defined": 2, "failure": e.failure,
-            "horizon": 10.0, "dt": 0.1,
+            "horizon": 10.0, "dt": 0.1, "navigator_hash": e.identity.navigator_hash,
         }
         for e in episodes
     ]  # fmt: skip

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 from benchnav.errors import CorruptPartError, RunConflictError, StoreError
+from benchnav.store import part_writer
 from benchnav.store.manifest import MANIFEST, load_manifest
 from benchnav.store.part import EPISODES_FILE, RESULTS_FILE, SEAL, Part
 from benchnav.store.part_writer import TEMPORARY, PartWriter
 from benchnav.store.reading import read_episodes, read_results
+from benchnav.store.results import RESULTS
 from benchnav.store.run_folder import RunFolder
 
 
@@ -34,6 +36,19 @@ def test_parts_are_read_back_by_seed(tools, run):
         tools.same(left, right)
     assert read_results(run).column("seed").to_pylist() == [0, 1, 2, 3, 4]
     assert folder.done("cell") == {0, 1, 2, 3, 4}
+
+
+def test_results_of_before_navigators_had_hashes_are_read(tools, run, monkeypatch):
+    folder = RunFolder.start(run, tools.manifest())
+    old = [tools.episode(np.random.default_rng(0), 0)]
+    before = RESULTS.remove(RESULTS.get_field_index("navigator_hash"))
+    with monkeypatch.context() as then:
+        then.setattr(part_writer, "RESULTS", before)
+        with PartWriter(Part(folder.cell("cell"), 0, 1)) as writer:
+            writer.add(old, tools.results(old).drop_columns(["navigator_hash"]))
+            writer.seal()
+    write(tools, folder, 1, 3)
+    assert read_results(run).column("navigator_hash").to_pylist() == ["", "hash 1", "hash 2"]
 
 
 def test_nothing_is_visible_before_the_seal_and_leftovers_are_swept(tools, run):
