@@ -13,7 +13,10 @@ Out = Annotated[
     Path,
     typer.Option(metavar="FILE", help="Scenario file to write; the map is copied beside it."),
 ]
-Agents = Annotated[int, typer.Option(metavar="N", help="How many agents.")]
+Agents = Annotated[
+    int | None,
+    typer.Option(metavar="N", help="How many agents. [default: 20, or as many as have room]"),
+]
 Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there.")]
 
 
@@ -27,7 +30,7 @@ def movingai(
             metavar="FILE", help="Starts and goals from this .scen file. [default: drawn]"
         ),
     ] = None,
-    agents: Agents = 20,
+    agents: Agents = None,
     bucket: Annotated[
         int | None, typer.Option(metavar="N", help="Only queries of this bucket of the .scen file.")
     ] = None,
@@ -48,8 +51,11 @@ def movingai(
 def ros_map(
     map: Annotated[Path, typer.Argument(metavar="YAML", help="The map's YAML file.")],
     out: Out,
-    agents: Agents = 20,
-    radius: Annotated[float, typer.Option(metavar="M", help="Of an agent [m].")] = 0.2,
+    agents: Agents = None,
+    radius: Annotated[
+        float | None,
+        typer.Option(metavar="M", help="Of an agent [m]. [default: 0.2, or less on a small map]"),
+    ] = None,
     unknown_is_free: Annotated[
         bool, typer.Option("--unknown-is-free", help="Agents may enter what the map does not know.")
     ] = False,

@@ -5,9 +5,11 @@ import pytest
 import yaml
 
 from benchnav.errors import MapError, UsageError
+from benchnav.runner.rollout import Assignment, rollout
 from benchnav.scenario.importers import import_movingai, import_ros_map, write_scenario
 from benchnav.scenario.load import load_scenario
 from benchnav.scenario.occupancy import occupancy_solids
+from benchnav.world.build import build
 from tests.importers.data import published
 
 MAP = "type octile\nheight 4\nwidth 5\nmap\n.....\n.@T..\nG.OW.\n@...S\n"
@@ -139,5 +141,39 @@ def test_published_movingai_maps_become_scenarios(name, tmp_path):
 
 @pytest.mark.parametrize("name", ["depot", "tb3_sandbox", "turtlebot3/map", "testmap"])
 def test_published_ros_maps_become_scenarios(name, tmp_path):
-    write_scenario(import_ros_map(published(f"ros_maps/{name}.yaml")), tmp_path / "scenario.yaml")
-    assert load_scenario(tmp_path / "scenario.yaml").teams[0].count == 20
+    path = published(f"ros_maps/{name}.yaml")
+    write_scenario(import_ros_map(path), tmp_path / "scenario.yaml")
+    scenario = load_scenario(tmp_path / "scenario.yaml")
+    assert (scenario.teams[0].count == 20) == (name == "depot")
+    assert scenario.teams[0].count >= 2
+    worlds = [build(scenario, "test", seed) for seed in range(3)]
+    least = scenario.teams[0].goal.min_distance
+    for world in worlds:
+        assert world.redraws < 5
+        way = world.agents.goal - world.agents.start
+        assert np.hypot(way[:, 0], way[:, 1]).min() >= least > 2 * world.agents.radius[0]
+    assignment = Assignment(
+        scenario.identity, scenario.hash, "test", "known", "straight-line", "straight-line"
+    )
+    (episodes,) = rollout(assignment, list(enumerate(worlds)))
+    assert [episode.failure for episode in episodes] == [""] * 3
+
+
+def test_agents_are_as_large_and_as_many_as_a_map_has_room_for(ros, tmp_path):
+    full = import_ros_map(ros)["teams"][0]
+    assert (full["count"], full["radius"]) == (20, 0.2)
+    few = np.full((20, 20), 205, np.uint8)  # unknown but for 2 × 1 m
+    few[4:14, 10:15] = 254
+    (ros.parent / "images" / "lab.pgm").write_bytes(b"P5\n20 20\n255\n" + few.tobytes())
+    ros.write_text(ros.read_text().replace("resolution: 0.5", "resolution: 0.2"))
+    team = import_ros_map(ros, radius=0.1)["teams"][0]
+    assert team["start"]["region"]["bounds"] == pytest.approx([3, 3.2, 4, 5.2])
+    assert team["count"] == int(2.0 / 0.36)
+    assert team["goal"]["min_distance"] == pytest.approx(0.25)
+    small = import_ros_map(ros)["teams"][0]
+    assert (small["count"], small["radius"]) == (5, 0.1)  # for 0.2 m there is room for one
+    assert import_ros_map(ros, agents=3)["teams"][0]["count"] == 3
+    with pytest.raises(MapError, match=r"a radius of 0\.6 m free around it\. Try a smaller"):
+        import_ros_map(ros, radius=0.6)
+    with pytest.raises(UsageError, match="radius must be > 0 m; got 0"):
+        import_ros_map(ros, radius=0)

@@ -3,6 +3,7 @@
 import math
 import re
 import shutil
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -13,10 +14,14 @@ from benchnav.errors import MapError, UsageError
 from benchnav.scenario.document import shown
 from benchnav.scenario.importers import movingai, ros_map
 from benchnav.scenario.importers.grid import Occupancy
+from benchnav.scenario.importers.room import Room, largest_room
 
 Mapping = dict[str, Any]
 
+_MOST = 20  # agents, unless more are asked for
+_RADII = tuple(0.2 / 2**k for k in range(6))  # [m]
 _SPEED = 1.0  # [m/s]
+_APART = 0.25  # of the smaller side of where they are: start and goal, at least
 _PATIENCE = 3.0  # the horizon is so many times the time of an undisturbed journey
 
 
@@ -24,7 +29,7 @@ def import_movingai(
     map_path: Path | str,
     scen_path: Path | str | None = None,
     *,
-    agents: int = 20,
+    agents: int | None = None,
     bucket: int | None = None,
     cell: float = 1.0,
     radius: float | None = None,
@@ -32,20 +37,22 @@ def import_movingai(
     """A scenario on a MovingAI map.
 
     With a ``.scen`` file, starts and goals are those of its first rows, from above,
-    that share neither a start nor a goal with one before; else they are drawn anywhere.
+    that share neither a start nor a goal with one before; else they are drawn as on a
+    map_server map.
 
     Args:
         map_path: a ``.map`` file.
         scen_path: a ``.scen`` file of that map.
-        agents: how many.
+        agents: how many; None: 20, or without a ``.scen`` file as many as have room.
         bucket: takes only the rows of this bucket.
         cell: [m] a cell.
         radius: [m] of an agent; None: 0.3 cells.
 
     Raises:
-        MapError: a file is not what it must be, or has too few rows.
-        UsageError: a bucket without a ``.scen`` file.
+        MapError: a file is not what it must be, has too few rows, or no agent has room.
+        UsageError: a bucket without a ``.scen`` file, or no agents, or no radius.
     """
+    _demand_sane(agents, radius)
     path = Path(map_path)
     occupancy = movingai.read_map(path, cell)
     _demand_free(path, ~occupancy.blocked)
@@ -54,9 +61,11 @@ def import_movingai(
     if scen_path is None:
         if bucket is not None:
             raise UsageError(f"A bucket is one of a .scen file; got {bucket} without such a file.")
-        places = _anywhere(occupancy, size)
-        journey = _across(occupancy)
+        room = _room(path, occupancy, ~occupancy.blocked, (size,))
+        agents = _crew(room) if agents is None else agents
+        places, journey = _within(room), sum(room.sides)
     else:
+        agents = _MOST if agents is None else agents
         queries = movingai.read_scen(scen_path, path, occupancy)
         rows = _rows(Path(scen_path), queries, agents, bucket)
         places = {
@@ -68,19 +77,28 @@ def import_movingai(
 
 
 def import_ros_map(
-    path: Path | str, *, agents: int = 20, radius: float = 0.2, unknown_is_free: bool = False
+    path: Path | str,
+    *,
+    agents: int | None = None,
+    radius: float | None = None,
+    unknown_is_free: bool = False,
 ) -> Mapping:
-    """A scenario on a map_server map, starts and goals drawn anywhere.
+    """A scenario on a map_server map.
+
+    Starts and goals are drawn in the largest part of the map that agents can be in,
+    goals at least a quarter of its smaller side away.
 
     Args:
         path: the map's YAML file.
-        agents: how many.
-        radius: [m] of an agent.
+        agents: how many; None: 20, or as many as have room.
+        radius: [m] of an agent; None: 0.2 m, or half of it, a quarter, … until two have room.
         unknown_is_free: whether agents may enter cells that the map does not know.
 
     Raises:
-        MapError: the file is not what it must be.
+        MapError: the file is not what it must be, or no agent has room.
+        UsageError: no agents, or no radius.
     """
+    _demand_sane(agents, radius)
     path = Path(path)
     occupancy = ros_map.read_map(path)
     free = ~occupancy.blocked if unknown_is_free else ~(occupancy.blocked | occupancy.unknown)
@@ -88,8 +106,11 @@ def import_ros_map(
     shape: Mapping = {"type": "occupancy", "file": str(path.resolve()), "format": "ros"}
     if unknown_is_free:
         shape["unknown_is_free"] = True
-    places = _anywhere(occupancy, radius)
-    return _scenario("ros", path, shape, occupancy, places, agents, radius, _across(occupancy))
+    sizes = _RADII if radius is None else (radius,)
+    room = _room(path, occupancy, free, sizes)
+    count = _crew(room) if agents is None else agents
+    places, journey = _within(room), sum(room.sides)
+    return _scenario("ros", path, shape, occupancy, places, count, room.radius, journey)
 
 
 def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> list[Path]:
@@ -155,10 +176,6 @@ def _scenario(
     radius: float,
     journey: float,
 ) -> Mapping:
-    if agents < 1:
-        raise UsageError(f"agents must be ≥ 1; got {agents}.")
-    if not 0.0 < radius < math.inf:
-        raise UsageError(f"radius must be > 0 m; got {radius}.")
     name = re.sub(r"[^a-z0-9]+", "-", path.stem.lower()).strip("-") or "map"
     horizon = 10.0 * math.ceil(max(50.0, _PATIENCE * journey / _SPEED) / 10.0)
     team = {"name": "agents", "count": agents, "radius": radius, "max_speed": _SPEED, **places}
@@ -175,20 +192,39 @@ def _scenario(
     }
 
 
-def _anywhere(occupancy: Occupancy, radius: float) -> Mapping:
-    region = {"type": "anywhere", "margin": radius}
-    xmin, ymin, xmax, ymax = occupancy.bounds
-    apart = round(0.25 * min(xmax - xmin, ymax - ymin), 3)
+def _demand_sane(agents: int | None, radius: float | None) -> None:
+    if agents is not None and agents < 1:
+        raise UsageError(f"agents must be ≥ 1; got {agents}.")
+    if radius is not None and not 0.0 < radius < math.inf:
+        raise UsageError(f"radius must be > 0 m; got {radius}.")
+
+
+def _room(path: Path, occupancy: Occupancy, free: BoolArray, radii: Sequence[float]) -> Room:
+    """Of the first radius for which two agents have room, else of the last for which one has."""
+    found = None
+    for radius in radii:
+        found = largest_room(occupancy, free, radius) or found
+        if found is not None and found.capacity >= 2:
+            return found
+    if found is None:
+        raise MapError(
+            f"{path}:1: the map must have a place for an agent; none has a radius of"
+            f" {radii[-1]:g} m free around it. Try a smaller radius."
+        )
+    return found
+
+
+def _crew(room: Room) -> int:
+    return max(1, min(_MOST, room.capacity))
+
+
+def _within(room: Room) -> Mapping:
+    start, goal = ({"type": "rectangle", "bounds": list(room.box)} for _ in range(2))
+    apart = round(_APART * min(room.sides), 3)
     return {
-        "start": {"type": "region", "region": region, "separation": radius},
-        "goal": {"type": "region", "region": dict(region), "min_distance": apart},
+        "start": {"type": "region", "region": start, "separation": room.radius},
+        "goal": {"type": "region", "region": goal, "min_distance": apart},
     }
-
-
-def _across(occupancy: Occupancy) -> float:
-    """[m] once along both sides of the map."""
-    xmin, ymin, xmax, ymax = occupancy.bounds
-    return (xmax - xmin) + (ymax - ymin)
 
 
 def _points(places: FloatArray) -> Mapping:
