@@ -14,9 +14,17 @@ from itertools import pairwise
 from typing import Any
 
 
+def core_count() -> int:
+    """Cores that this process may run on, or those of the machine where no system call tells."""
+    if hasattr(os, "sched_getaffinity"):  # Linux
+        return len(os.sched_getaffinity(0))
+    count = getattr(os, "process_cpu_count", os.cpu_count)  # the former from Python 3.13
+    return count() or 1
+
+
 def thread_count() -> int:
     """Threads that kernels use: BENCHNAV_THREADS, or the cores this process may run on."""
-    return int(os.environ.get("BENCHNAV_THREADS", "0")) or len(os.sched_getaffinity(0))
+    return int(os.environ.get("BENCHNAV_THREADS", "0")) or core_count()
 
 
 @lru_cache(maxsize=1)

@@ -12,6 +12,7 @@ import typer
 
 from benchnav.cli.console import columns, put
 from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS
+from benchnav.threads import core_count
 
 _CORE = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pydantic", "pedpy")
 _EXTRAS = {
@@ -37,7 +38,7 @@ def doctor() -> None:
 def _machine() -> Iterator[Line]:
     yield "ok", "python", f"{platform.python_version()} ({sys.executable})"
     yield "ok", "machine", platform.platform()
-    cores = len(os.sched_getaffinity(0))
+    cores = core_count()
     yield "ok", "cores", f"{cores}, so `benchnav run` uses {cores} workers"
 
 

@@ -1,6 +1,5 @@
 """Executes a suite into a run folder."""
 
-import os
 from collections import Counter
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ from benchnav.runner.suite import Cell, Suite
 from benchnav.runner.task import Task, chunks
 from benchnav.store.manifest import Manifest
 from benchnav.store.run_folder import RunFolder
+from benchnav.threads import core_count
 
 
 @dataclass
@@ -30,7 +30,7 @@ class Summary:
 
 def default_workers() -> int:
     """The cores that this process may use."""
-    return len(os.sched_getaffinity(0))
+    return core_count()
 
 
 def run_suite(

@@ -1,6 +1,5 @@
 """The folder that executing a suite leaves: append-only, resumable, one writer at a time."""
 
-import fcntl
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,11 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from benchnav.errors import RunConflictError, StoreError
+from benchnav.store.lock import LOCKS, locked
 from benchnav.store.manifest import MANIFEST, Manifest, load_manifest
 from benchnav.store.part import EPISODES_FILE, RESULTS_FILE, Part, parts_of
 from benchnav.store.part_writer import TEMPORARY
-
-LOCK = ".lock"
 
 
 @dataclass(frozen=True)
@@ -76,7 +74,7 @@ class RunFolder:
 
         Raises RunConflictError where another process writes it.
         """
-        with _locked(self.path):
+        with locked(self.path):
             self._sweep()
             try:
                 yield
@@ -93,30 +91,8 @@ class RunFolder:
                     path.unlink()
 
 
-@contextmanager
-def _locked(path: Path) -> Iterator[None]:
-    try:
-        handle = os.open(path / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
-    except OSError as error:
-        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
-    try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            holder = os.pread(handle, 64, 0).decode(errors="replace").strip() or "unknown"
-            raise RunConflictError(
-                f"{path} must have one writer. The process {holder} writes it now."
-                " Wait for it, or give another --out."
-            ) from None
-        os.truncate(handle, 0)
-        os.pwrite(handle, str(os.getpid()).encode(), 0)
-        yield
-    finally:
-        os.close(handle)
-
-
 def _is_free(folder: Path) -> bool:
-    return all(p.name == LOCK or p.name.startswith(TEMPORARY) for p in folder.iterdir())
+    return all(p.name in LOCKS or p.name.startswith(TEMPORARY) for p in folder.iterdir())
 
 
 def _write(path: Path, text: str) -> None:

@@ -1,13 +1,14 @@
 """A run folder is append-only, resumable, and refuses what does not belong to it."""
 
 import json
+import os
 import resource
 
 import numpy as np
 import pytest
 
 from benchnav.errors import CorruptPartError, RunConflictError, StoreError
-from benchnav.store import part_writer
+from benchnav.store import lock, part_writer
 from benchnav.store.manifest import MANIFEST, load_manifest
 from benchnav.store.part import EPISODES_FILE, RESULTS_FILE, SEAL, Part
 from benchnav.store.part_writer import TEMPORARY, PartWriter
@@ -86,6 +87,30 @@ def test_a_folder_with_something_else_is_refused(tools, tmp_path):
     assert (tmp_path / "thesis.tex").read_text() == "x"
     with pytest.raises(RunConflictError):
         RunFolder.start(tmp_path / "thesis.tex", tools.manifest())
+
+
+def test_a_system_without_locks_has_one_writer_too(tools, run, monkeypatch):
+    monkeypatch.setattr(lock, "fcntl", None)
+    folder = RunFolder.start(run, tools.manifest())
+    with folder.writing():
+        with pytest.raises(RunConflictError, match=rf"The process {os.getpid()} writes it now"):
+            folder.writing().__enter__()
+        assert (run / lock.MARK).exists()
+    assert not (run / lock.MARK).exists()
+    (run / lock.MARK).write_text("12345")
+    with pytest.raises(RunConflictError, match=r"12345 .* delete .*\.writer where it was killed"):
+        folder.writing().__enter__()
+    assert (run / lock.MARK).exists()
+    (run / lock.MARK).unlink()
+    with folder.writing():
+        pass
+
+
+def test_a_system_that_opens_no_folders_seals_parts(tools, run, monkeypatch):
+    monkeypatch.delattr(os, "O_DIRECTORY")
+    folder = RunFolder.start(run, tools.manifest())
+    write(tools, folder, 0, 2)
+    assert folder.done("cell") == {0, 1}
 
 
 def test_two_writers_are_refused(tools, run):
