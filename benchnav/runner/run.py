@@ -5,7 +5,8 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from benchnav.errors import RunConflictError
+from benchnav.errors import RunConflictError, UsageError
+from benchnav.plugins import METRICS
 from benchnav.runner.executor import execute
 from benchnav.runner.generators import draw_salt
 from benchnav.runner.progress import Progress
@@ -51,10 +52,16 @@ def run_suite(
         summary: filled while the run goes on; None: a new one.
 
     Raises:
+        UsageError: no metric is registered.
         RunConflictError: ``out`` holds another suite, salt or thing, or another process writes it.
         StoreError: the disk refuses, or a stored part is damaged.
         UnsolvableError: a scenario cannot be drawn.
     """
+    if not METRICS.names():
+        raise UsageError(
+            "Metrics must be registered, or nothing would be measured. There are none: the"
+            " installed metadata is stale. Install benchnav again (pip install -e . in a checkout)."
+        )
     told = progress if progress is not None else Progress()
     summary = summary if summary is not None else Summary()
     cells = list(suite.cells())

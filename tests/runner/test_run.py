@@ -13,9 +13,10 @@ from benchnav.errors import (
     MissingExtraError,
     RunConflictError,
     UnsolvableError,
+    UsageError,
 )
 from benchnav.metrics.measure import all_metrics
-from benchnav.plugins import register_navigator
+from benchnav.plugins import METRICS, register_navigator
 from benchnav.runner import task as task_module
 from benchnav.runner.measured import measure_again
 from benchnav.runner.progress import Progress
@@ -141,6 +142,15 @@ def test_another_salt_does_not_get_the_folder(suite_file, tmp_path):
     with pytest.raises(RunConflictError, match=f"{SALT}. Got 00 instead"):
         run_suite(other, tmp_path / "r", workers=0)
     assert run_suite(suite, tmp_path / "r", workers=0).found == 2
+
+
+def test_without_any_metric_nothing_is_run(suite_file, tmp_path, monkeypatch):
+    suite = load_suite(str(suite_file))
+    monkeypatch.setattr(METRICS, "_found", {})
+    monkeypatch.setattr(METRICS, "_local", {})
+    with pytest.raises(UsageError, match="Metrics must be registered"):
+        run_suite(suite, tmp_path / "r", workers=0)
+    assert not (tmp_path / "r").exists()
 
 
 def test_another_suite_does_not_get_the_folder(suite_file, tmp_path):
