@@ -7,13 +7,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from benchnav.cli.console import one_of, put, say, write
-from benchnav.errors import StoreError
+from benchnav.errors import UsageError
 
 if TYPE_CHECKING:
-    import pyarrow as pa
-
-    from benchnav.leaderboard import NotApplicable
-    from benchnav.metrics.metric import Metric
     from benchnav.store.run_folder import RunFolder
 
 
@@ -25,6 +21,12 @@ class Format(StrEnum):
     LATEX = "latex"
     HTML = "html"
     JSON = "json"
+
+
+class Curve(StrEnum):
+    """What is shown against time."""
+
+    SUCCESS = "success"
 
 
 def leaderboard(
@@ -41,57 +43,39 @@ def leaderboard(
         bool,
         typer.Option("--recompute", help="Measure the stored episodes again, with every metric."),
     ] = False,
+    compare: Annotated[
+        tuple[str, str] | None,
+        typer.Option(metavar="A B", help="Say how much A exceeds B instead. [metric: success]"),
+    ] = None,
+    curve: Annotated[
+        str | None, typer.Option(help="Show this against time instead: success.")
+    ] = None,
 ) -> None:
     """Print the table of one or more runs.
 
     Means, 95 % intervals, and ties shown as ties.
     """
-    import pyarrow as pa
-
-    from benchnav.leaderboard import leaderboard as tabulate
-    from benchnav.leaderboard import render
-    from benchnav.leaderboard.label import require_one_navigator_per_label
-    from benchnav.metrics.measure import all_metrics
+    from benchnav.cli import board
     from benchnav.store.run_folder import RunFolder
 
-    wanted = one_of(Format, "--format", format)
-    metrics = {metric.name: metric for metric in all_metrics()}
+    wanted = one_of(Format, "--format", format).value
     folders = [RunFolder.open(run) for run in runs]
     for folder in folders:
         _warn_if_unfinished(folder)
-    tables = {str(f.path): _measured(f.path, list(metrics.values()), recompute) for f in folders}
-    require_one_navigator_per_label(tables)
-    missing = [gap for folder in folders for gap in _not_applicable(folder)]
-    joined = pa.concat_tables(tables.values(), promote_options="default")
-    if not len(joined):
-        raise StoreError(f"There must be episodes to make a table of. {runs[0]} holds none.")
-    board = tabulate(joined, metrics, missing)
-    text = render(board, wanted.value, metric or None)
+    if curve is not None:
+        one_of(Curve, "--curve", curve)
+        if compare is not None or metric or recompute:
+            raise UsageError("--curve must stand without --compare, --metric and --recompute.")
+        text = board.curve(folders, wanted)
+    elif compare is not None:
+        text = board.comparison(folders, wanted, compare, metric or ["success"], recompute)
+    else:
+        text = board.table(folders, wanted, metric or None, recompute)
     if out is None:
         put(text.rstrip("\n"))
     else:
         write(out, text)
         say(f"{out} is written")
-
-
-def _measured(run: Path, metrics: "list[Metric]", recompute: bool) -> "pa.Table":
-    from benchnav.store.reading import read_results
-
-    if not recompute:
-        return read_results(run)
-    from benchnav.runner.measured import measure_again
-
-    return measure_again(run, metrics)
-
-
-def _not_applicable(folder: "RunFolder") -> "list[NotApplicable]":
-    from benchnav.leaderboard import NotApplicable
-
-    return [
-        NotApplicable(cell["navigator"], cell["scenario"], cell["track"], cell["reason"])
-        for cell in folder.manifest.cells
-        if cell["reason"]
-    ]
 
 
 def _warn_if_unfinished(folder: "RunFolder") -> None:

@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import trim_mean
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.leaderboard.interval import (
@@ -14,6 +13,7 @@ from benchnav.leaderboard.interval import (
     mean,
     recover,
     resampled_means,
+    trimmed_mean,
     wilson,
 )
 
@@ -128,11 +128,11 @@ def interquartile_mean_over(samples: list[Sample]) -> Estimate:
     """
     values = np.array([mean(sample.value) for sample in samples])
     whole = ~np.isnan(values).any(axis=0)
-    found = _unknown(np.where(whole, trim_mean(np.nan_to_num(values), 0.25, axis=0), np.nan))
+    found = _unknown(np.where(whole, trimmed_mean(np.nan_to_num(values), 0.25), np.nan))
     counts = _counts(samples)
     for _, columns in _alike(np.ones_like(values, dtype=np.bool_), counts.min(axis=0) > 1):
         drawn = [resampled_means(s.value[:, columns], s.weights) for s in samples]
-        means = np.asarray(trim_mean(drawn, 0.25, axis=0))
+        means = trimmed_mean(np.array(drawn), 0.25)
         n = counts[:, columns]
         straight = np.zeros(len(columns))
         freedom = n.sum(axis=0) - len(samples)

@@ -5,7 +5,7 @@ docs/statistics.md holds the simulation by which the methods were chosen.
 """
 
 import numpy as np
-from scipy.stats import norm, t
+from scipy.special import ndtr, ndtri, stdtrit  # scipy.stats takes a second to import
 
 from benchnav.arrays import FloatArray
 
@@ -20,7 +20,7 @@ def wilson(rate: FloatArray, size: FloatArray) -> tuple[FloatArray, FloatArray]:
     inference", JASA 22 (1927). It holds, and is only wider than needed, for the mean of
     any quantity in [0, 1], whose variance is at most rate·(1 − rate).
     """
-    z = norm.ppf(1 - ALPHA / 2)
+    z = ndtri(1 - ALPHA / 2)
     centre = (rate + z * z / (2 * size)) / (1 + z * z / size)
     half = z / (1 + z * z / size) * np.sqrt(rate * (1 - rate) / size + z * z / (4 * size**2))
     low = np.where(rate == 0.0, 0.0, np.maximum(centre - half, 0.0))
@@ -54,9 +54,21 @@ def effective_size(rates: FloatArray, agents: FloatArray) -> FloatArray:
     rho = np.clip(np.where(np.isfinite(rho), rho, 1.0), 0.0, 1.0)
     with np.errstate(invalid="ignore", divide="ignore"):
         worth = total / (1 + (total / worlds - 1) * rho)
-        shrink = t.ppf(1 - ALPHA / 2, total - 1) / t.ppf(1 - ALPHA / 2, worlds - 1)
+        shrink = students(total - 1) / students(worlds - 1)
     effective: FloatArray = np.fmax(worth * shrink**2, worlds)
     return effective
+
+
+def students(freedom: FloatArray) -> FloatArray:
+    """(C,) Student's quantile at 1 − α/2; NaN without a degree of freedom."""
+    return np.asarray(stdtrit(freedom, 1 - ALPHA / 2), dtype=np.float64)
+
+
+def trimmed_mean(values: FloatArray, share: float) -> FloatArray:
+    """Mean along the first axis without the ``share`` of it at either end."""
+    cut = int(share * len(values))
+    middle: FloatArray = np.sort(values, axis=0)[cut : len(values) - cut].mean(axis=0)
+    return middle
 
 
 def resample(count: int, rng: np.random.Generator) -> FloatArray:
@@ -115,11 +127,11 @@ def bca(
     """
     resamples = len(means)
     below = (means < estimate).sum(axis=0) + 0.5 * (means == estimate).sum(axis=0)
-    bias = norm.ppf(np.clip(below / resamples, 0.5 / resamples, 1 - 0.5 / resamples))
-    reach = np.sqrt(count / (count - 1)) * t.ppf(1 - ALPHA / 2, freedom)
+    bias = ndtri(np.clip(below / resamples, 0.5 / resamples, 1 - 0.5 / resamples))
+    reach = np.sqrt(count / (count - 1)) * students(freedom)
     ordered = np.sort(np.ascontiguousarray(means.T), axis=1)
-    low = _quantile(ordered, norm.cdf(_correct(bias, bias - reach, acceleration)))
-    high = _quantile(ordered, norm.cdf(_correct(bias, bias + reach, acceleration)))
+    low = _quantile(ordered, ndtr(_correct(bias, bias - reach, acceleration)))
+    high = _quantile(ordered, ndtr(_correct(bias, bias + reach, acceleration)))
     return np.minimum(low, estimate), np.maximum(high, estimate)
 
 

@@ -1,18 +1,14 @@
 """Leaderboard → Markdown, CSV, LaTeX, HTML, JSON."""
 
-import csv
-import io
-import json
-import math
 from collections.abc import Callable, Sequence
-from dataclasses import fields
-from typing import Any, Literal
+from typing import Literal
 
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard import escape
 from benchnav.leaderboard.cell import Cell
 from benchnav.leaderboard.layout import LEGEND, Section, choose, sections
 from benchnav.leaderboard.record import Leaderboard, Record
+from benchnav.leaderboard.tidy import as_csv, as_json
 
 Format = Literal["markdown", "csv", "latex", "html", "json"]
 
@@ -32,37 +28,17 @@ def render(board: Leaderboard, format: str, metrics: Sequence[str] | None = None
     return _RENDERERS[format](board, metrics)
 
 
-def _tidy(board: Leaderboard, metrics: Sequence[str] | None) -> list[dict[str, Any]]:
-    """Records as plain values; what is undefined is None."""
+def _chosen(board: Leaderboard, metrics: Sequence[str] | None) -> list[Record]:
     shown = set(choose(board.metrics, ["all"] if metrics is None else metrics))
-    names = [f.name for f in fields(Record)]
-    rows = []
-    for record in board.records:
-        if record.metric in shown:
-            row = {name: getattr(record, name) for name in names}
-            rows.append({k: None if _undefined(v) else v for k, v in row.items()})
-    return rows
-
-
-def _undefined(value: object) -> bool:
-    return isinstance(value, float) and math.isnan(value)
+    return [record for record in board.records if record.metric in shown]
 
 
 def _json(board: Leaderboard, metrics: Sequence[str] | None) -> str:
-    lines = [json.dumps(row, allow_nan=False) for row in _tidy(board, metrics)]
-    return "[\n" + ",\n".join(lines) + "\n]\n"
+    return as_json(_chosen(board, metrics))
 
 
 def _csv(board: Leaderboard, metrics: Sequence[str] | None) -> str:
-    out = io.StringIO()
-    names = [f.name for f in fields(Record)]
-    writer = csv.DictWriter(out, names, lineterminator="\n")
-    writer.writeheader()
-    for row in _tidy(board, metrics):
-        writer.writerow(
-            {k: escape.spreadsheet(v) if isinstance(v, str) else v for k, v in row.items()}
-        )
-    return out.getvalue()
+    return as_csv(Record, _chosen(board, metrics))
 
 
 def _markdown(board: Leaderboard, metrics: Sequence[str] | None) -> str:

@@ -1,3 +1,5 @@
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -12,6 +14,8 @@ from benchnav.leaderboard.interval import (
     recover,
     resample,
     resampled_means,
+    students,
+    trimmed_mean,
     wilson,
 )
 
@@ -124,3 +128,13 @@ def test_recovered_interval_of_one_stratum_is_its_own():
 def test_recovered_interval_narrows_with_strata_and_stays_in_range():
     value, low, high = np.full(4, 1.0), np.full(4, 0.84), np.full(4, 1.0)
     assert recover(value, low, high, 0.0, 1.0) == pytest.approx((0.92, 1.0))
+
+
+@given(st.lists(st.floats(-9, 9), min_size=2, max_size=9), st.integers(1, 50))
+def test_quantiles_and_trimmed_means_are_scipys(values, freedom):
+    found = students(np.array([freedom, 0, math.nan]))
+    assert found[0] == pytest.approx(stats.t.ppf(0.975, freedom))
+    assert np.isnan(found[1:]).all()
+    column = np.array(values)[:, None]
+    expected = pytest.approx(stats.trim_mean(column, 0.25, axis=0), abs=1e-12)
+    assert trimmed_mean(column, 0.25) == expected
