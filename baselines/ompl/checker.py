@@ -2,8 +2,10 @@
 
 from typing import Literal, Protocol
 
-from benchnav.geometry.capsule_grid import capsule_grid, is_clear
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.geometry.capsule_grid import CapsuleGrid, capsule_grid, is_clear
 from benchnav.geometry.sweep import inside_solid, solid_index
+from benchnav.kernels import kernel
 from benchnav.navigation.map import Map
 
 SKIN = 1e-6  # [m] taken off the radius: an agent may stand in contact, give or take rounding
@@ -25,18 +27,35 @@ class PlanarChecker:
     """The exact swept test against the map's solids."""
 
     def __init__(self, map: Map, radius: float) -> None:
-        self._capsules = map.capsules
-        self._grid = capsule_grid(map.capsules, max(radius - SKIN, 0.0))
-        self._first, self._outside = solid_index(map.solids)
+        grid = capsule_grid(map.capsules, max(radius - SKIN, 0.0))
+        self._grid: _Grid = (*grid,)
+        self._solids = (map.capsules, *solid_index(map.solids))
 
     def point_is_free(self, x: float, y: float) -> bool:
-        return self.motion_is_free(x, y, x, y) and not inside_solid(
-            x, y, self._capsules, self._first, self._outside
-        )
+        return _point_is_free(self._grid, self._solids, x, y)
 
     def motion_is_free(self, px: float, py: float, qx: float, qy: float) -> bool:
-        free: bool = is_clear(self._grid, px, py, qx, qy)
-        return free
+        return _motion_is_free(self._grid, px, py, qx, qy)
+
+
+# A plain tuple crosses from Python into a kernel in a third of the time of a named one,
+# and crossing is most of what a check costs.
+_Grid = tuple[FloatArray, FloatArray, IntArray, IntArray, float, float, float, int, int]
+_Solids = tuple[FloatArray, IntArray, IntArray]
+
+
+@kernel
+def _point_is_free(grid: _Grid, solids: _Solids, x: float, y: float) -> bool:
+    return _motion_is_free(grid, x, y, x, y) and not inside_solid(
+        x, y, solids[0], solids[1], solids[2]
+    )
+
+
+@kernel
+def _motion_is_free(g: _Grid, px: float, py: float, qx: float, qy: float) -> bool:
+    grid = CapsuleGrid(g[0], g[1], g[2], g[3], g[4], g[5], g[6], g[7], g[8])
+    free: bool = is_clear(grid, px, py, qx, qy)
+    return free
 
 
 class CountingChecker:

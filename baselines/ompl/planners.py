@@ -1,5 +1,6 @@
 """The planners: each a class that says which of OMPL's it is, and its budget."""
 
+import math
 from hashlib import blake2b
 from typing import Any
 from weakref import WeakKeyDictionary
@@ -37,13 +38,23 @@ class TreePlanner(OmplPlanner):
         seed: int,
     ) -> FloatArray:  # fmt: skip
         query = Query(start, goal, around(map.bounds, start, goal))
-        return search(self._planner, query, checker, seed, self._budget())
+        step = self._range(reach, query.bounds)
+
+        def made(geometric: Any, information: Any) -> Any:
+            planner = self._planner(geometric, information)
+            if step is not None:
+                planner.setRange(step)
+            return planner
+
+        return search(made, query, checker, seed, self._budget())
 
     def _planner(self, geometric: Any, information: Any) -> Any:
-        planner = getattr(geometric, self.ompl_name)(information)
-        if self.config.range is not None:
-            planner.setRange(self.config.range)
-        return planner
+        return getattr(geometric, self.ompl_name)(information)
+
+    def _range(self, reach: float, bounds: Bounds) -> float | None:
+        """[m] of the longest motion; None leaves it to OMPL."""
+        longest: float | None = self.config.range
+        return longest
 
     def _budget(self) -> Budget:
         return Budget(self.config.iterations, 0, self.config.seconds)
@@ -58,8 +69,20 @@ class RRTConnect(TreePlanner):
         iterations: int = Field(
             100_000, ge=1, description="calls of the termination condition until it gives up"
         )
+        range: float | None = Field(
+            None,
+            gt=0,
+            description="[m] of the longest motion added to a tree; none: four radii of the disc,"
+            " at least 1/50 of the diagonal of the map",
+        )
 
     ompl_name = "RRTConnect"
+
+    def _range(self, reach: float, bounds: Bounds) -> float | None:
+        # OMPL's choice is a fifth of the diagonal; among walls such motions are hardly ever free
+        x0, y0, x1, y1 = bounds
+        longest: float | None = self.config.range
+        return longest or max(4.0 * reach, 0.02 * math.hypot(x1 - x0, y1 - y0))
 
 
 class RRTStar(TreePlanner):
@@ -95,6 +118,9 @@ class BITStar(TreePlanner):
         batch: int = Field(100, ge=1, description="samples in a batch")
 
     ompl_name = "BITstar"
+
+    def _range(self, reach: float, bounds: Bounds) -> float | None:
+        return None
 
     def _planner(self, geometric: Any, information: Any) -> Any:
         planner = geometric.BITstar(information)
