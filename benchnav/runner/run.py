@@ -11,7 +11,7 @@ from benchnav.runner.executor import execute
 from benchnav.runner.generators import draw_salt
 from benchnav.runner.progress import Progress
 from benchnav.runner.suite import Cell, Suite
-from benchnav.runner.task import Task, chunks
+from benchnav.runner.task import Outcome, Task, chunks
 from benchnav.store.manifest import Manifest
 from benchnav.store.run_folder import RunFolder
 from benchnav.threads import core_count
@@ -27,6 +27,17 @@ class Summary:
     redraws: int = 0  # draws of worlds that were thrown away as unsolvable, in this execution
     not_applicable: list[tuple[Cell, str]] = field(default_factory=list)
     failures: Counter[tuple[str, str]] = field(default_factory=Counter)  # (navigator, reason)
+
+    def count(self, task: Task, outcome: Outcome) -> None:
+        """A task is finished."""
+        self.stored += outcome.episodes
+        self.redraws += outcome.redraws
+        label = task.cell.entry.label
+        self.failures.update((label, reason) for _, reason in outcome.failures)
+        if outcome.lacks:
+            self.total -= len(task.seeds)
+            if all(cell != task.cell for cell, _ in self.not_applicable):
+                self.not_applicable.append((task.cell, outcome.lacks))
 
 
 def default_workers() -> int:
@@ -57,29 +68,23 @@ def run_suite(
         StoreError: the disk refuses, or a stored part is damaged.
         UnsolvableError: a scenario cannot be drawn.
     """
-    if not METRICS.names():
-        raise UsageError(
-            "Metrics must be registered, or nothing would be measured. There are none: the"
-            " installed metadata is stale. Install benchnav again (pip install -e . in a checkout)."
-        )
+    _refuse_without_metrics()
     told = progress if progress is not None else Progress()
     summary = summary if summary is not None else Summary()
     cells = list(suite.cells())
-    said = tuple(_said(c) for c in cells)
-    folder = RunFolder.start(out, Manifest(suite.resolved(), said, suite.salt or draw_salt()))
-    _refuse_another_salt(suite, folder)
+    folder = _start(suite, out, cells)
     with folder.writing():
+        reasons = {cell.key: cell.reason for cell in cells}
+        folder = folder.amend(reasons)  # what was not installed then may be now
         tasks = _tasks(suite, folder, cells, summary)
         told.begin(summary.total, summary.stored)
         try:
             with closing(execute(tasks, _count(workers), told)) as finished:
                 for task, outcome in finished:
-                    summary.stored += outcome.episodes
-                    summary.redraws += outcome.redraws
-                    label = task.cell.entry.label
-                    summary.failures.update((label, reason) for _, reason in outcome.failures)
+                    summary.count(task, outcome)
         finally:
             told.end()
+            folder.amend(reasons | {cell.key: why for cell, why in summary.not_applicable})
     return summary
 
 
@@ -100,20 +105,31 @@ def _tasks(suite: Suite, folder: RunFolder, cells: list[Cell], summary: Summary)
                 *chunk,
                 salt=folder.manifest.salt,
                 probe=suite.seeds.start,
-            )
+            )  # fmt: skip
             for chunk in chunks(missing, cell.effort)
         ]
     summary.found = summary.stored
     return sorted(tasks, key=lambda task: -task.cell.effort * len(task.seeds))
 
 
-def _refuse_another_salt(suite: Suite, folder: RunFolder) -> None:
+def _refuse_without_metrics() -> None:
+    if not METRICS.names():
+        raise UsageError(
+            "Metrics must be registered, or nothing would be measured. There are none: the"
+            " installed metadata is stale. Install benchnav again (pip install -e . in a checkout)."
+        )
+
+
+def _start(suite: Suite, out: Path, cells: list[Cell]) -> RunFolder:
+    said = tuple(_said(c) for c in cells)
+    folder = RunFolder.start(out, Manifest(suite.resolved(), said, suite.salt or draw_salt()))
     held = folder.manifest.salt
     if suite.salt not in ("", held):
         raise RunConflictError(
             f"The salt must be that of the run in {folder.path}, {held}. Got {suite.salt} instead."
             " Leave --salt out to go on there, or give another --out."
         )
+    return folder
 
 
 def _said(cell: Cell) -> dict[str, str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from benchnav.errors import ScenarioError, UsageError, did_you_mean
+from benchnav.errors import MissingExtraError, ScenarioError, UsageError, did_you_mean
 from benchnav.navigation.configure import Spec, configure, make, split
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.tracks import TRACKS
@@ -31,6 +31,7 @@ class Entry:
     spec: Mapping[str, Any]  # {type: name, …every parameter}
     source: str  # distribution and version that it comes from
     required: frozenset[Need]
+    lacks: str = ""  # what is not installed that it needs to be made; "" if it can be
 
     @property
     def hash(self) -> str:
@@ -71,6 +72,8 @@ class Cell:
     @property
     def reason(self) -> str:
         """Why it is n/a; "" where it can be run."""
+        if self.entry.lacks:
+            return self.entry.lacks
         required, sensing = self.entry.required, self.scenario.sensing
         if self.track not in self.scenario.granted_tracks:
             return f"the scenario has no track {self.track!r}"
@@ -197,9 +200,12 @@ def _entry(spec: Spec, where: str) -> Entry:
             raise ScenarioError(f"{where} label must have 1 to 80 characters; got {label[:90]!r}.")
     name, _ = split(NAVIGATORS, spec, where=where)
     _, config = configure(NAVIGATORS, spec, where=where)
-    navigator = make(NAVIGATORS, spec, where=where)
     full = {"type": name, **config.model_dump(mode="json")}
-    return Entry(label, full, NAVIGATORS.source(name).distribution, navigator.required)
+    source = NAVIGATORS.source(name).distribution
+    try:
+        return Entry(label, full, source, make(NAVIGATORS, spec, where=where).required)
+    except MissingExtraError as error:
+        return Entry(label, full, source, frozenset(), str(error))
 
 
 def _scenario(name: str, folder: Path) -> Scenario:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from benchnav.episode.episode import Episode
+from benchnav.errors import MissingExtraError
 from benchnav.metrics.measure import all_metrics
 from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.measured import measured
@@ -52,6 +53,7 @@ class Outcome:
     episodes: int
     redraws: int  # draws of worlds that were thrown away as unsolvable
     failures: tuple[tuple[int, str], ...] = field(default=())  # (seed, reason)
+    lacks: str = ""  # what is not installed, and how to: then nothing was stored
 
 
 def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
@@ -68,7 +70,7 @@ def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
 
 
 def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:
-    """Run a task; its part is on disk when this returns.
+    """Run a task; its part is on disk when this returns, unless an extra lacks.
 
     Args:
         task: what to run.
@@ -77,8 +79,14 @@ def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:
     Raises:
         UnsolvableError: the scenario cannot be drawn.
         StoreError: the disk refuses.
-        MissingExtraError: the navigator needs something that is not installed.
     """
+    try:
+        return _work(task, tick)
+    except MissingExtraError as error:
+        return Outcome(0, 0, lacks=str(error))
+
+
+def _work(task: Task, tick: Callable[[int], None]) -> Outcome:
     cell = task.cell
     worlds = [(seed, build(cell.scenario, cell.split, seed)) for seed in task.seeds]
     metrics = all_metrics()

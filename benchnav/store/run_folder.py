@@ -1,9 +1,9 @@
 """The folder that executing a suite leaves: append-only, resumable, one writer at a time."""
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from benchnav.errors import RunConflictError, StoreError
@@ -49,6 +49,18 @@ class RunFolder:
             )
         _write(path / MANIFEST, manifest.dump())
         return cls(path, manifest)
+
+    def amend(self, reasons: Mapping[str, str]) -> "RunFolder":
+        """Say anew which cells are n/a: why, by key; a writer may, while it holds the folder.
+
+        Raises StoreError where the disk refuses.
+        """
+        cells = tuple({**c, "reason": reasons.get(c["key"], "")} for c in self.manifest.cells)
+        if cells == self.manifest.cells:
+            return self
+        amended = replace(self.manifest, cells=cells)
+        _write(self.path / MANIFEST, amended.dump())
+        return RunFolder(self.path, amended)
 
     def cell(self, key: str) -> Path:
         """The folder of one cell's parts."""

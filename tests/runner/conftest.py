@@ -175,6 +175,11 @@ class Unfit(Walk):
         raise MissingExtraError("Unfit", "plan")
 
 
+class Unmade(Walk):
+    def __init__(self, config=None):
+        raise MissingExtraError("Unmade", "plan")
+
+
 class Sees(Navigator):
     """Keeps what it is told and shown, for tests in this process."""
 

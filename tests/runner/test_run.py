@@ -10,7 +10,6 @@ import pytest
 
 from benchnav.errors import (
     BenchnavError,
-    MissingExtraError,
     RunConflictError,
     UnsolvableError,
     UsageError,
@@ -174,11 +173,32 @@ def test_failures_are_counted_by_reason(suite_file, tmp_path, workers, in_the_ea
 
 
 @pytest.mark.parametrize("workers", [0, 1])
-def test_what_is_not_installed_is_no_failure_of_the_navigator(suite_file, tmp_path, workers):
+@pytest.mark.parametrize("navigator", ["Unfit", "Unmade"])
+def test_what_is_not_installed_makes_a_cell_n_a_and_stops_nobody_else(
+    suite_file, tmp_path, workers, navigator, small_tasks
+):
+    chosen = Selection(navigators=(f"troubled_navigators:{navigator}", "walk"))
+    suite, out = load_suite(str(suite_file), chosen), tmp_path / "r"
+    summary = run_suite(suite, out, workers=workers)
+    why = f"{navigator} needs an extra: pip install 'benchnav[plan]'"
+    assert [(c.entry.label, said) for c, said in summary.not_applicable] == [
+        (f"troubled_navigators:{navigator}", why)
+    ]
+    assert (summary.total, summary.stored, summary.failures) == (6, 6, {})
+    assert {e.identity.navigator for e in read_episodes(out)} == {"walk"}
+    assert [cell["reason"] for cell in load_manifest(out).cells] == [why, ""]
+
+
+def test_a_cell_is_run_once_its_extra_is_there(suite_file, tmp_path, monkeypatch):
+    import troubled_navigators
+
     chosen = Selection(navigators=("troubled_navigators:Unfit",))
-    with pytest.raises(MissingExtraError, match=r"pip install 'benchnav\[plan\]'"):
-        run_suite(load_suite(str(suite_file), chosen), tmp_path / "r", workers=workers)
-    assert list(read_episodes(tmp_path / "r")) == []
+    suite, out = load_suite(str(suite_file), chosen), tmp_path / "r"
+    assert run_suite(suite, out, workers=0).stored == 0
+    monkeypatch.setattr(troubled_navigators.Unfit, "reset", troubled_navigators.Walk.reset)
+    summary = run_suite(suite, out, workers=0)
+    assert (summary.stored, summary.not_applicable) == (6, [])
+    assert len(list(read_episodes(out))) == 6
 
 
 def test_a_navigator_that_kills_its_process_pays_for_its_own_episodes(
