@@ -7,6 +7,7 @@ import json
 import pytest
 
 from benchnav.store.part import RESULTS_FILE
+from benchnav.store.reading import read_episodes
 
 
 @pytest.fixture
@@ -25,6 +26,22 @@ def test_a_second_run_finds_everything_and_a_quiet_one_says_nothing(call, suite,
     assert "8 episodes stored, 0 of them run" in stderr
     code, stdout, stderr = call("run", suite, "--out", run, "--workers", 0, "--quiet")
     assert (code, stdout, stderr) == (0, f"{run}\n", "")
+
+
+def test_the_salt_of_a_run_repeats_it_elsewhere(call, suite, run, tmp_path):
+    salt = json.loads((run / "manifest.json").read_text())["salt"]
+    again, other = tmp_path / "again", tmp_path / "other"
+    for out, options in ((again, ("--salt", salt)), (other, ())):
+        code, *_ = call("run", suite, "--out", out, "--workers", 0, "--quiet", *options)
+        assert code == 0
+    digests = [{e.identity: e.digest for e in read_episodes(out)} for out in (run, again, other)]
+    assert digests[0] == digests[1] != digests[2]
+    code, _, stderr = call("run", suite, "--out", run, "--salt", "00")
+    assert code == 1
+    assert salt in stderr
+    code, _, stderr = call("run", suite, "--out", tmp_path / "no", "--salt", "0x1")
+    assert code == 2
+    assert "The salt must be 1 to 64 bytes" in stderr
 
 
 @pytest.mark.parametrize("format", ["markdown", "csv", "latex", "html", "json"])
