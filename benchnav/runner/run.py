@@ -2,7 +2,7 @@
 
 from collections import Counter
 from contextlib import closing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from benchnav.errors import RunConflictError, UsageError
@@ -98,16 +98,11 @@ def _tasks(suite: Suite, folder: RunFolder, cells: list[Cell], summary: Summary)
         missing = set(suite.seeds) - folder.done(cell.key)
         summary.total += len(suite.seeds)
         summary.stored += len(suite.seeds) - len(missing)
-        tasks += [
-            Task(
-                cell,
-                folder.cell(cell.key),
-                *chunk,
-                salt=folder.manifest.salt,
-                probe=suite.seeds.start,
-            )  # fmt: skip
-            for chunk in chunks(missing, cell.effort)
-        ]
+        task = Task(
+            cell, folder.cell(cell.key), 0, 0, salt=folder.manifest.salt, probe=suite.seeds.start
+        )
+        for first, stop in chunks(missing, cell.effort):
+            tasks.append(replace(task, first=first, stop=stop))
     summary.found = summary.stored
     return sorted(tasks, key=lambda task: -task.cell.effort * len(task.seeds))
 
