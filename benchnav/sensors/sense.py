@@ -87,7 +87,8 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
     run_rows(
         cast_rays, chosen.size, chosen, fan_x, fan_y, float(sensor.range), sensor.thick, side,
         s.widest, s.most_shapes, s.sees, s.records, s.agents, s.bodies, s.shapes, s.capsules,
-        s.start, s.item, s.hashed, s.spots, out.distance, out.kind, out.approach, out.goal, least=LEAST,
+        s.start, s.item, s.hashed, s.spots, out.distance, out.kind, out.approach, out.goal,
+        least=LEAST,
     )  # fmt: skip
     return out
 
