@@ -2,17 +2,15 @@
 
 import inspect
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
 from benchnav.cli.console import columns, put
 from benchnav.cli.listing import REGISTRIES, Kind, sentence
+from benchnav.cli.scenario_page import scenario_page
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.plugins import Registry
-
-if TYPE_CHECKING:
-    from benchnav.scenario.scenario import Scenario
 
 
 def show(
@@ -97,31 +95,7 @@ def _scenario(name: str) -> Iterator[str]:
     from benchnav.scenario.catalogue import find, names
 
     if name.partition("@")[0] in names() or name.endswith((".yaml", ".yml")):
-        yield _describe(find(name))
-
-
-def _describe(scenario: "Scenario") -> str:
-    x0, y0, x1, y1 = scenario.bounds
-    clock = scenario.clock
-    teams = ", ".join(
-        f"{team.name} ({team.role}s, {_said(team.count)} of them"
-        f"{'' if team.evaluated else f', driven by {team.driver.type}'})"
-        for team in scenario.teams
-    )
-    facts = [
-        ("is", f"a scenario: {scenario.title}"),
-        ("hash", scenario.hash),
-        ("arena", f"{x1 - x0:g} m × {y1 - y0:g} m"),
-        ("teams", teams),
-        ("clock", f"a decision every {clock.dt:g} s, until {clock.horizon:g} s"),
-        ("tracks", ", ".join(scenario.granted_tracks)),
-    ]
-    text = scenario.identity + "\n" + columns([("  " + key, value) for key, value in facts])
-    return f"{text}\n\n{scenario.description.strip()}" if scenario.description.strip() else text
-
-
-def _said(count: Any) -> str:
-    return f"{count:g}" if isinstance(count, int | float) else str(count)
+        yield scenario_page(find(name))
 
 
 def _suite(name: str) -> Iterator[str]:

@@ -6,12 +6,14 @@ from typing import Annotated
 import typer
 
 from benchnav.cli.console import put
+from benchnav.cli.scenario_page import said_of_worlds
 
 
 def validate(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario or suite file.")],
     draw: Annotated[
-        bool, typer.Option(help="Also draw one world of a scenario, to see that it can be solved.")
+        bool,
+        typer.Option(help="Also draw worlds of a scenario: can they be solved, do they differ?"),
     ] = True,
 ) -> None:
     """Check a scenario or suite file.
@@ -54,3 +56,4 @@ def _scenario(file: Path, draw: bool) -> None:
         f" static obstacles and {len(world.bodies)} moving ones; {world.redraws} draws before it"
         " were not solvable"
     )
+    put(f"its worlds {said_of_worlds(scenario)}")
