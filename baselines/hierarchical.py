@@ -6,7 +6,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from benchnav.arrays import FloatArray, IntArray
+from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.configure import make
 from benchnav.navigation.controller import Controller
@@ -37,6 +37,12 @@ class GuidedConfig(PluginConfig):
         "map-change",
         description="when to plan again: never, when the map's revision rises (map-change), or then"
         " and at intervals ({every: seconds})",
+    )
+    patience: float = Field(
+        4.0,
+        gt=0,
+        description="[s] without getting a radius away, after which an agent that may"
+        " plan again does: others can push it round a corner that its path does not turn",
     )
     lookahead: float = Field(1.0, gt=0, description="[m] of path between agent and target, at most")
     cut: float = Field(0.03, gt=0, description="[m] by which corners of the path may be missed")
@@ -94,8 +100,16 @@ class Hierarchical(Navigator):
             time = float(observation.time[world])
             if map is not None and self._is_due(state, map, time):
                 state.revision, state.planned = map.revision, time
-                for agent in np.flatnonzero(observation.active[world]):
-                    self._plan(int(row), int(agent), map, observation.position[world, agent])
+                again = observation.active[world]
+            elif map is not None and self.config.replan != "never":
+                place = observation.position[world]
+                again = observation.active[world] & state.waited(place, time, self.config.patience)
+                for agent, plan in enumerate(self.plans[int(row)]):
+                    again[agent] &= plan.solved  # the map is the same: so would be the answer
+            else:
+                continue
+            for agent in np.flatnonzero(again):
+                self._plan(int(row), int(agent), map, observation.position[world, agent])
         return self.controller.steer(observation, self._tracker.guide(observation))
 
     def _is_due(self, state: "_Row", map: Map, time: float) -> bool:
@@ -128,6 +142,20 @@ class _Row:
         self.streams = agent_streams(briefing)
         self.revision = 0 if briefing.map is None else briefing.map.revision
         self.planned = 0.0  # [s]
+        self._place = briefing.start.copy()  # (A, 2) [m] within a radius of which it has been
+        self._since = np.zeros(len(briefing))  # (A,) [s] when it came there
+
+    def waited(self, position: FloatArray, time: float, patience: float) -> BoolArray:
+        """(A,) True where an agent has been in one place for so long [s]; it then waits anew."""
+        count = len(self._since)
+        offset = position[:count] - self._place
+        left = np.sum(offset * offset, axis=1) > self.briefing.radius**2
+        long: BoolArray = ~left & (time - self._since >= patience * (1.0 - 1e-9))
+        self._place[left] = position[:count][left]
+        self._since[left | long] = time
+        result = np.zeros(len(position), np.bool_)
+        result[:count] = long
+        return result
 
 
 class OmplPure(Hierarchical):

@@ -118,6 +118,27 @@ def test_when_it_plans_again(replan, times):
     assert planned == times
 
 
+@pytest.mark.parametrize("replan", ["map-change", "never"])
+def test_who_waits_too_long_plans_again(replan):
+    """One agent walks and one stands; one that has no path needs no other on the same map."""
+    told, seen = stand(2, [(9.0, 0.0), (9.0, 5.0)])
+    navigator = Hierarchical(
+        Hierarchical.Config(planner="detour", replan=replan, patience=0.6, cut=1e-9)
+    )
+    navigator.reset([told], seen.rows)
+    planned = []
+    for k in range(9):
+        position = np.array([[(0.3 * k, 0.0), (2.0, 0.01 * k)]])
+        before = len(navigator.planner.calls)
+        if k == 5:
+            navigator.planner.config = Detour.Config(fails=True)
+        navigator.act(replace(seen, time=np.array([k * 0.2]), position=position))
+        for call in navigator.planner.calls[before:]:
+            planned.append(round(k * 0.2, 1))
+            assert call[1] == tuple(position[0, 1])
+    assert planned == ([] if replan == "never" else [0.6, 1.2])
+
+
 def test_a_failed_new_plan_leaves_the_old_path():
     told, seen = stand(1, [(6.0, 0.0)])
     navigator = Hierarchical(Hierarchical.Config(planner="detour"))
