@@ -97,25 +97,20 @@ class Hierarchical(Navigator):
     def act(self, observation: Observation) -> FloatArray:
         for world, row in enumerate(observation.rows):
             state, map = self._state[int(row)], observation.maps[world]
-            time = float(observation.time[world])
-            if map is not None and self._is_due(state, map, time):
-                state.revision, state.planned = map.revision, time
-                again = observation.active[world]
-            elif map is not None and self.config.replan != "never":
-                place = observation.position[world]
-                again = observation.active[world] & state.waited(place, time, self.config.patience)
-                for agent, plan in enumerate(self.plans[int(row)]):
-                    again[agent] &= plan.solved  # the map is the same: so would be the answer
-            else:
+            if map is None or self.config.replan == "never":
                 continue
-            for agent in np.flatnonzero(again):
-                self._plan(int(row), int(agent), map, observation.position[world, agent])
+            place, time = observation.position[world], float(observation.time[world])
+            waited = state.waited(place, time, self.config.patience)
+            due = self._is_due(state, map, time)
+            if due:
+                state.revision, state.planned = map.revision, time
+            for agent in np.flatnonzero(observation.active[world] & (waited | due)):
+                if due or self.plans[int(row)][agent].solved:  # else the answer would be the same
+                    self._plan(int(row), int(agent), map, place[agent])
         return self.controller.steer(observation, self._tracker.guide(observation))
 
     def _is_due(self, state: "_Row", map: Map, time: float) -> bool:
         when = self.config.replan
-        if when == "never":
-            return False
         if map.revision != state.revision:
             return True
         return isinstance(when, Every) and time - state.planned >= when.every * (1.0 - 1e-9)
