@@ -197,7 +197,7 @@ def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
     return j >= 0 and _within(a.x - agents[j].x, a.y - agents[j].y, reach)
 
 
-@inlined
+@kernel
 def earliest(world: Any, agents: AnyArray) -> int:
     """The agent whose next touch comes first; -1 if there is none."""
     best, who = math.inf, -1
