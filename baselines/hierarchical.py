@@ -42,7 +42,8 @@ class GuidedConfig(PluginConfig):
         4.0,
         gt=0,
         description="[s] without getting a radius away, after which an agent that may"
-        " plan again does: others can push it round a corner that its path does not turn",
+        " plan again does (twice as long if that does not help, and so on): others can push it"
+        " round a corner that its path does not turn",
     )
     lookahead: float = Field(1.0, gt=0, description="[m] of path between agent and target, at most")
     cut: float = Field(0.03, gt=0, description="[m] by which corners of the path may be missed")
@@ -138,14 +139,17 @@ class _Row:
         self.revision = 0 if briefing.map is None else briefing.map.revision
         self.planned = 0.0  # [s]
         self._place = briefing.start.copy()  # (A, 2) [m] within a radius of which it has been
-        self._since = np.zeros(len(briefing))  # (A,) [s] when it came there
+        self._since = np.zeros(len(briefing))  # (A,) [s] when it came there, or last asked
+        self._tries = np.zeros(len(briefing), np.int64)  # (A,) how often it asked there
 
     def waited(self, position: FloatArray, time: float, patience: float) -> BoolArray:
-        """(A,) True where an agent has been in one place for so long [s]; it then waits anew."""
+        """(A,) True where an agent has been in one place for so long [s], then twice as long, …"""
         count = len(self._since)
         offset = position[:count] - self._place
         left = np.sum(offset * offset, axis=1) > self.briefing.radius**2
-        long: BoolArray = ~left & (time - self._since >= patience * (1.0 - 1e-9))
+        enough = patience * 2.0**self._tries * (1.0 - 1e-9)
+        long: BoolArray = ~left & (time - self._since >= enough)
+        self._tries = np.where(left, 0, self._tries + long)
         self._place[left] = position[:count][left]
         self._since[left | long] = time
         result = np.zeros(len(position), np.bool_)

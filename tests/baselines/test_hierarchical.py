@@ -127,16 +127,16 @@ def test_who_waits_too_long_plans_again(replan):
     )
     navigator.reset([told], seen.rows)
     planned = []
-    for k in range(9):
-        position = np.array([[(0.3 * k, 0.0), (2.0, 0.01 * k)]])
+    for k in range(24):
+        position = np.array([[(0.3 * k, 0.0), (2.0, 0.001 * k)]])
         before = len(navigator.planner.calls)
-        if k == 5:
+        if k == 9:
             navigator.planner.config = Detour.Config(fails=True)
         navigator.act(replace(seen, time=np.array([k * 0.2]), position=position))
         for call in navigator.planner.calls[before:]:
             planned.append(round(k * 0.2, 1))
             assert call[1] == tuple(position[0, 1])
-    assert planned == ([] if replan == "never" else [0.6, 1.2])
+    assert planned == ([] if replan == "never" else [0.6, 1.8])
 
 
 def test_a_failed_new_plan_leaves_the_old_path():
