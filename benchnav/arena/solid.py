@@ -62,7 +62,7 @@ class Solid:
     def bounding_radius(self) -> float:
         """Radius [m] of the smallest circle around the origin (bodies) that holds the shape."""
         c = self.capsules
-        reach = np.hypot(np.maximum(np.abs(c[:, 0]), 0), c[:, 1]) + c[:, 4]
+        reach = np.maximum(np.hypot(c[:, 0], c[:, 1]), np.hypot(c[:, 2], c[:, 3])) + c[:, 4]
         return float(reach.max())
 
     def moved(self, offset: FloatArray) -> "Solid":

@@ -73,7 +73,7 @@ class Episode:
     identity: Identity
     world: World
     position: FloatArray  # (T+1, A, 2) [m]
-    heading: FloatArray  # (T+1, A) [rad], in (-pi, pi]
+    heading: FloatArray  # (T+1, A) [rad], in [-pi, pi)
     status: ByteArray  # (T+1, A) of Status
     requested: FloatArray  # (T, A, 2) what the navigator answered, in its own kind of command
     executed: FloatArray  # (T, A, 2) within limits; a twist for unicycles and where one was asked

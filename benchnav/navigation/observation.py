@@ -5,11 +5,9 @@ navigator drives, padded; everybody else is a neighbour. World frame. Sensors
 that the navigator does not need are None.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
-import numpy as np
-
-from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
+from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation.map import Map
 from benchnav.sensors.readings import Edges, Neighbours, Rays, Rows
 
@@ -32,12 +30,3 @@ class Observation(Rows):
 
     def __len__(self) -> int:
         return len(self.rows)
-
-
-def arrays_of(part: object) -> dict[str, AnyArray]:
-    """Name → array of an observation part, for tests and for messages."""
-    return {
-        f.name: getattr(part, f.name)
-        for f in fields(part)  # type: ignore[arg-type]
-        if isinstance(getattr(part, f.name), np.ndarray)
-    }

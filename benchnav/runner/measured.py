@@ -14,11 +14,7 @@ from benchnav.store.results import RESULTS
 
 def measured(episodes: Iterable[Episode], metrics: Sequence[Metric]) -> pa.Table:
     """The table of `RESULTS` of these episodes."""
-    rows = [
-        {**row, "navigator_hash": episode.identity.navigator_hash}
-        for episode in episodes
-        for row in measure(episode, metrics)
-    ]
+    rows = [row for episode in episodes for row in measure(episode, metrics)]
     return pa.Table.from_pylist(rows, schema=RESULTS)
 
 

@@ -6,7 +6,7 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from benchnav.scenario.base import Coordinate, Length, Point, Spec
-from benchnav.scenario.sampler import NonNegativeScalar, PositiveScalar, Scalar, Uniform, support
+from benchnav.scenario.sampler import NonNegativeScalar, PositiveScalar, Scalar, Uniform
 from benchnav.scenario.validation import FieldError
 
 _ANY_PHASE = Uniform(uniform=(0.0, 1.0))
@@ -99,16 +99,3 @@ class RecordedTrack(Spec):
 Law = Annotated[
     BackAndForth | WaypointLoop | CircleLaw | RecordedTrack, Field(discriminator="type")
 ]
-
-
-def law_reach(law: "Law") -> float:
-    """Greatest distance [m] from where an obstacle is placed that the law takes it."""
-    match law:
-        case BackAndForth():
-            return 0.5 * support(law.length)[1]
-        case WaypointLoop():
-            return max(float((x * x + y * y) ** 0.5) for x, y in law.points)
-        case CircleLaw():
-            return support(law.radius)[1]
-        case _:
-            return 0.0
