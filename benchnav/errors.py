@@ -13,6 +13,7 @@ BenchnavError
 │   ├── BrokenPluginError    the plugin fails to import (its cause is given)
 │   └── ConfigError          parameters that its Config refuses
 ├── MissingExtraError        an optional dependency is not installed (the pip line is given)
+├── TrainingError            learning went wrong: a number that is no longer finite
 ├── NavigatorError           a navigator raised, answered garbage, or broke its contract
 └── StoreError               what lies on disk
     ├── RunConflictError     the folder holds another suite's run, or another process writes it
@@ -79,6 +80,10 @@ class MissingExtraError(BenchnavError):
 
     def __init__(self, what: str, extra: str) -> None:
         super().__init__(f"{what} needs an extra: pip install 'benchnav[{extra}]'")
+
+
+class TrainingError(BenchnavError):
+    """Learning went wrong; what was reached before is kept."""
 
 
 class NavigatorError(BenchnavError):

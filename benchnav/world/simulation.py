@@ -131,7 +131,7 @@ class Simulation:
         going_on["end"] = self.records["steps_done"][b] * self.records["dt"][b]
         rows = np.concatenate([*self._kept[b], going_on])
         rows = rows[np.lexsort((rows["code"], rows["start"], rows["agent"]))]
-        kind, partner = _partners(self.worlds[b], rows["code"])
+        kind, partner = partners(self.worlds[b], rows["code"])
         return Contacts(
             rows["agent"].copy(), kind, partner, rows["start"].copy(), rows["end"].copy(),
             rows["penetration"].copy(), rows["closing"].copy(), rows["charged"].copy(),
@@ -144,7 +144,7 @@ class Simulation:
             self.records["closed"][b] = 0
 
 
-def _partners(world: World, codes: IntArray) -> tuple[ByteArray, IntArray]:
+def partners(world: World, codes: IntArray) -> tuple[ByteArray, IntArray]:
     """(kind, partner) of recorded codes, as `Contacts` has them."""
     which, k = codes % 4, codes // 4
     kind = np.full(len(codes), int(Kind.AGENT), np.int8)

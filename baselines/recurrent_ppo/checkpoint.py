@@ -1,0 +1,73 @@
+"""Everything that training goes on from, as one safetensors file written atomically."""
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+from safetensors import safe_open
+from safetensors.torch import save_file
+
+from benchnav.errors import StoreError, UsageError
+
+from .learner import Learner
+
+FILE = "checkpoint.safetensors"
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far training is."""
+
+    recipe: str  # hash
+    seed: int
+    segment: int = 0  # checkpoints so far
+    stage: int = 0
+    decisions: int = 0  # of all stages
+    in_stage: int = 0  # of this stage
+    best: float = -1.0  # validation success in this stage
+    waited: int = 0  # checkpoints since
+    seconds: float = 0.0  # of training
+
+
+def save(folder: Path, learner: Learner, progress: Progress) -> None:
+    """Replace the checkpoint of ``folder``."""
+    tensors = {f"policy.{k}": v.contiguous() for k, v in learner.policy.state_dict().items()}
+    for index, state in learner.policy.optimizer.state_dict()["state"].items():
+        tensors |= {f"optimizer.{index}.{k}": v.contiguous() for k, v in state.items()}
+    part = folder / (FILE + ".part")
+    save_file(tensors, part, {"progress": json.dumps(asdict(progress))})
+    part.replace(folder / FILE)
+
+
+def load(folder: Path, learner: Learner, recipe: str, seed: int) -> Progress:
+    """Put the checkpoint of ``folder`` into ``learner``.
+
+    Raises:
+        UsageError: it was made with another recipe or seed.
+        StoreError: the file is not whole.
+    """
+    path = folder / FILE
+    try:
+        with safe_open(path, framework="pt") as file:
+            progress = Progress(**json.loads(file.metadata()["progress"]))
+            tensors: dict[str, torch.Tensor] = {k: file.get_tensor(k) for k in file.keys()}  # noqa: SIM118
+    except Exception as error:
+        raise StoreError(f"{path}: must be a whole checkpoint: {str(error)[:200]}.") from None
+    if (progress.recipe, progress.seed) != (recipe, seed):
+        raise UsageError(
+            f"{folder} holds the training of recipe {progress.recipe} with seed {progress.seed}."
+            f" --resume needs the same; got recipe {recipe} with seed {seed}."
+            " Choose another --out, or give the recipe and seed that it was begun with."
+        )
+    policy = {k[7:]: v for k, v in tensors.items() if k.startswith("policy.")}
+    learner.policy.load_state_dict(policy)
+    optimizer = learner.policy.optimizer.state_dict()
+    state: dict[int, dict[str, Any]] = {}
+    for key, value in tensors.items():
+        if key.startswith("optimizer."):
+            _, index, name = key.split(".")
+            state.setdefault(int(index), {})[name] = value
+    learner.policy.optimizer.load_state_dict({**optimizer, "state": state})
+    return progress

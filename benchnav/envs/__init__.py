@@ -1,0 +1,1 @@
+"""Learning environments over the benchmark's own worlds, sensors and contacts."""

@@ -1,0 +1,169 @@
+"""The decision process of every agent of a batch of worlds; all environments are views of it.
+
+A slot is one evaluated agent of one row. When its attempt is over (it arrived, touched
+something, or time ran out) the slot idles, unobserved and unrewarded, until the row's
+last attempt is over; then the row starts again with the next world of the pool.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from benchnav.arena.world import Afterwards, ContactRule, World
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.envs.collision import collision_probability
+from benchnav.envs.encoders.encoder import Bodies, Encoder, Float32Array
+from benchnav.envs.relay import Relay
+from benchnav.envs.reward import RewardTerms, RewardWeights, reward_terms
+from benchnav.episode.episode import Status
+from benchnav.errors import UsageError
+from benchnav.navigation.navigator import Need
+from benchnav.navigation.observation import Observation
+from benchnav.sensors.sense import sense
+
+
+@dataclass(frozen=True, eq=False)
+class Transition:
+    """What one decision led to, (B, A) each; entries of slots that idled say nothing."""
+
+    acted: BoolArray  # attempts that were going on before the decision
+    reward: FloatArray  # scaled
+    terms: RewardTerms  # unscaled
+    arrived: BoolArray  # the attempt ended at the goal, untouched
+    touched: BoolArray  # the attempt ended in a contact
+    timed_out: BoolArray  # the horizon came first
+    restarted: BoolArray  # the observation is the first of another world
+    observation: Float32Array  # (B, A, D) after restarts; zero where the slot idles
+    final: Float32Array  # (B, A, D) before restarts
+
+    @property
+    def over(self) -> BoolArray:
+        """(B, A) attempts that ended."""
+        return self.arrived | self.touched | self.timed_out
+
+
+class AgentBatch:
+    """B rows of worlds that share clock, rules and sensing, drawn from a pool in random order."""
+
+    def __init__(
+        self,
+        pool: Sequence[World],
+        rows: int,
+        encoder: Encoder,
+        weights: RewardWeights,
+        rng: np.random.Generator,
+    ) -> None:
+        """Raises UsageError where agents of the pool are driven by somebody else."""
+        if any((~world.agents.evaluated).any() for world in pool):
+            raise UsageError("Worlds to learn in must have evaluated agents only.")
+        self.encoder, self.weights = encoder, weights
+        self.simulation = Relay([_strict(world) for world in pool], rows)
+        self._rng = rng
+        self._queue = np.zeros(0, np.int64)
+        self._needs = frozenset(str(need) for need in {*encoder.needs, Need.NEIGHBOURS})
+        s = self.simulation
+        self._twist = np.ones((s.B, s.A), np.bool_)
+        self._limits = s.agents  # (B, A) records: max_speed, max_turn_rate, radius
+        self.active = np.zeros((s.B, s.A), np.bool_)
+
+    @property
+    def rows(self) -> int:
+        """B."""
+        return self.simulation.B
+
+    @property
+    def width(self) -> int:
+        """A, the slots of a row."""
+        return self.simulation.A
+
+    def reset(self, worlds: IntArray | None = None) -> Float32Array:
+        """Start every row, with the worlds (B,) of the pool or with the next ones."""
+        rows = np.arange(self.rows)
+        self._start(rows, self._next(len(rows)) if worlds is None else worlds)
+        return self._encoded(self._observe(self.active))
+
+    def step(self, action: FloatArray) -> Transition:
+        """Decide. ``action`` (B, A, 2) in [-1, 1]: speed from 0 to the limit, turn rate."""
+        s, acted = self.simulation, self.active.copy()
+        before = self._goal_distance()
+        command = self._commands(action)
+        command[~acted] = 0.0
+        executed = s.step(command, self._twist)
+        arrived = acted & (s.status == int(Status.ARRIVED))
+        touched = acted & (s.status == int(Status.ENDED))
+        timed_out = acted & ~arrived & ~touched & ~s.running[:, None]
+        self.active = acted & ~(arrived | touched | timed_out)
+        seen = self._observe(self.active | timed_out)
+        assert seen.neighbours is not None  # noqa: S101 - always asked for
+        terms = reward_terms(
+            self.weights,
+            arrived=arrived,
+            nearer=(before - self._goal_distance())
+            / np.maximum(self._limits["max_speed"] * s.records["dt"][:, None], 1e-9),
+            contacts=s.begun(),
+            probability=collision_probability(
+                seen.position, seen.velocity, self._limits["radius"], seen.neighbours
+            ),
+            turned=np.abs(executed[..., 1]) / np.maximum(self._limits["max_turn_rate"], 1e-9),
+        )
+        final = self._encoded(seen)
+        reward = np.where(acted, self.weights.scale * terms.total, 0.0)
+        done = np.flatnonzero(~self.active.any(1))
+        restarted = np.zeros_like(acted)
+        observation = final
+        if len(done):
+            self._start(done, self._next(len(done)))
+            restarted[done] = self.active[done]
+            fresh = self._encoded(self._observe(restarted))
+            observation = np.where(restarted[..., None], fresh, final)
+        observation[~self.active] = 0.0
+        return Transition(
+            acted, reward, terms, arrived, touched, timed_out, restarted, observation, final
+        )
+
+    def _commands(self, action: FloatArray) -> FloatArray:
+        command = np.clip(action.astype(np.float64), -1.0, 1.0)
+        command[..., 0] = 0.5 * (command[..., 0] + 1.0) * self._limits["max_speed"]
+        command[..., 1] *= self._limits["max_turn_rate"]
+        return command
+
+    def _goal_distance(self) -> FloatArray:
+        away = self.simulation.goal - self.simulation.position
+        return np.hypot(away[..., 0], away[..., 1])
+
+    def _start(self, rows: IntArray, worlds: IntArray) -> None:
+        self.simulation.restart(rows, worlds)
+        self.active[rows] = self.simulation.present[rows]
+
+    def _next(self, count: int) -> IntArray:
+        """The next worlds: every world once in random order, then again in another."""
+        while len(self._queue) < count:
+            again = self._rng.permutation(len(self.simulation.pool))
+            self._queue = np.concatenate([self._queue, again])
+        taken, self._queue = self._queue[:count], self._queue[count:]
+        return taken
+
+    def _observe(self, who: BoolArray) -> Observation:
+        s = self.simulation
+        chosen = np.where(who, np.arange(s.A), -1)
+        rays, neighbours, edges = sense(s, chosen, self._needs)
+        time = s.steps_done * s.records["dt"]
+        return Observation(
+            np.arange(s.B), time, who, s.position, s.heading, s.velocity, s.goal,
+            (None,) * s.B, rays, neighbours, edges,
+        )  # fmt: skip
+
+    def _encoded(self, seen: Observation) -> Float32Array:
+        limits = self._limits
+        bodies = Bodies(limits["radius"], limits["max_speed"], limits["max_turn_rate"])
+        return self.encoder.encode(seen, bodies)
+
+
+def _strict(world: World) -> World:
+    """Strict success allows no contact, so a contact ends the attempt also where it slides."""
+    rules = replace(
+        world.rules, contact=ContactRule.END, on_end=Afterwards.VANISH,
+        on_arrival=Afterwards.VANISH,
+    )  # fmt: skip
+    return replace(world, rules=rules)

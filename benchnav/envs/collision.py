@@ -1,0 +1,72 @@
+"""The probability of colliding with a mover (Eq. 22–24 of the paper), from velocity obstacles.
+
+The agent is shrunk to a point and the mover grown by its radius. Inside the collision
+cone p = min(1, 1/t), where t [s] is the time until the ray of the relative velocity
+meets the grown disc; outside p = 0. Overlap: p = 1. The line of Eq. 22 is read as a
+ray: what is left behind does not count.
+"""
+
+import math
+
+import numpy as np
+
+from benchnav.arena.solid import Kind
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.geometry.capsule import disc_time
+from benchnav.kernels import kernel
+from benchnav.sensors.readings import Neighbours
+
+
+@kernel
+def probability(x: float, y: float, vx: float, vy: float, reach: float) -> float:
+    """Of one mover at (x, y) [m] from the agent, approached at (vx, vy) [m/s] = v_A − v_B.
+
+    ``reach`` [m] is the sum of the radii.
+    """
+    if x * x + y * y <= reach * reach:
+        return 1.0
+    t = disc_time(-x, -y, vx, vy, reach)
+    return 1.0 if t <= 1.0 else 1.0 / t
+
+
+@kernel
+def _highest(
+    position: FloatArray, velocity: FloatArray, radius: FloatArray, other_position: FloatArray,
+    other_velocity: FloatArray, other_radius: FloatArray, counts: BoolArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """``out`` (N,): the highest over the K others that count."""
+    for i in range(len(position)):
+        out[i] = 0.0
+        for k in range(other_position.shape[1]):
+            if counts[i, k]:
+                p = probability(
+                    other_position[i, k, 0] - position[i, 0],
+                    other_position[i, k, 1] - position[i, 1],
+                    velocity[i, 0] - other_velocity[i, k, 0],
+                    velocity[i, 1] - other_velocity[i, k, 1],
+                    radius[i] + other_radius[i, k],
+                )
+                out[i] = max(out[i], p)
+
+
+def collision_probability(
+    position: FloatArray, velocity: FloatArray, radius: FloatArray, seen: Neighbours
+) -> FloatArray:
+    """(B, A) highest probability over the dynamic obstacles that each agent sees; 0 if none.
+
+    Args:
+        position: (B, A, 2) [m].
+        velocity: (B, A, 2) [m/s].
+        radius: (B, A) [m].
+        seen: what the agents sense; circumscribed radii stand for dynamic obstacles.
+    """
+    K = seen.position.shape[2]
+    movers = (seen.kind == int(Kind.DYNAMIC)) & (np.arange(K) < seen.count[..., None])
+    out = np.zeros(position.shape[:2])
+    if math.prod(out.shape) and movers.any():
+        _highest(
+            position.reshape(-1, 2), velocity.reshape(-1, 2), radius.reshape(-1),
+            seen.position.reshape(-1, K, 2), seen.velocity.reshape(-1, K, 2),
+            seen.radius.reshape(-1, K), movers.reshape(-1, K), out.reshape(-1),
+        )  # fmt: skip
+    return out

@@ -1,0 +1,24 @@
+"""Encoders by name."""
+
+from benchnav.envs.encoders.encoder import Encoder
+from benchnav.envs.encoders.paper import EgoEncoder, PaperEncoder
+from benchnav.envs.encoders.surround import SurroundEncoder
+from benchnav.errors import UsageError, did_you_mean
+
+ENCODERS = ("paper", "paper-static", "ego", "ego-static", "surround")
+
+
+def encoder(name: str) -> Encoder:
+    """The encoder called ``name``; the static ones leave out what tells of movers.
+
+    Raises UsageError where there is none.
+    """
+    if name not in ENCODERS:
+        raise UsageError(
+            f"An encoder must be one of {', '.join(ENCODERS)}. Got {name!r} instead."
+            f"{did_you_mean(name, ENCODERS)}"
+        )
+    if name == "surround":
+        return SurroundEncoder()
+    kind = PaperEncoder if name.startswith("paper") else EgoEncoder
+    return kind(movers=not name.endswith("-static"))

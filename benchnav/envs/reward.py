@@ -1,0 +1,99 @@
+"""The reward of the paper, Eq. 2–10, term by term.
+
+Weights are magnitudes; Eq. 2 subtracts the penalties. Approach, time, turning and the
+penalty for p > T_c are paid for every decision, the others for every event.
+"""
+
+from dataclasses import dataclass, fields
+from typing import Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from benchnav.arena.solid import Kind
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+
+
+class RewardWeights(BaseModel):
+    """Magnitudes. Readings of Table 1: docs/learning.md."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    goal: float = Field(100.0, ge=0, description="w_goal, on touching the goal disc (Eq. 3)")
+    approach: float = Field(1.0, ge=0, description="w_approach, per decision (Eq. 4)")
+    static: float = Field(20.0, ge=0, description="w_c_static, per new contact (Eq. 5)")
+    dynamic: float = Field(20.0, ge=0, description="w_c_dynamic, per new contact (Eq. 6)")
+    walls: float = Field(20.0, ge=0, description="w_c_walls, per new contact (Eq. 7)")
+    agents: float = Field(20.0, ge=0, description="w_c_agents, per new contact (Eq. 8)")
+    time: float = Field(1.0, ge=0, description="w_time, per decision (Eq. 9)")
+    p_dynamic: float = Field(4.0, ge=0, description="w_p_dynamic, per decision with p > T_c (Eq. 10)")
+    threshold: float = Field(0.6, ge=0, le=1, description="T_c")
+    moving: Literal["sign", "progress"] = Field(
+        "sign",
+        description="how the approach is paid: whole on any approach (Eq. 4 as printed), or by the"
+        " share of the way that full speed would have made (negative when it recedes)",
+    )
+    turning: float = Field(
+        0.0, ge=0, description="not in the paper: per decision at full turn rate, else its share"
+    )
+    scale: float = Field(0.01, gt=0, description="factor on the whole, for the learner's sake")
+
+
+@dataclass(frozen=True, eq=False)
+class RewardTerms:
+    """(B, A) each, signed as they enter Eq. 2, before scaling."""
+
+    goal: FloatArray
+    approach: FloatArray
+    static: FloatArray
+    dynamic: FloatArray
+    walls: FloatArray
+    agents: FloatArray
+    time: FloatArray
+    p_dynamic: FloatArray
+    turning: FloatArray
+
+    @property
+    def total(self) -> FloatArray:
+        """(B, A) Eq. 2."""
+        terms = [getattr(self, f.name) for f in fields(self)]
+        return np.sum(terms, axis=0)
+
+
+def reward_terms(
+    weights: RewardWeights,
+    *,
+    arrived: BoolArray,
+    nearer: FloatArray,
+    contacts: IntArray,
+    probability: FloatArray,
+    turned: FloatArray,
+) -> RewardTerms:
+    """Every term of one decision.
+
+    Args:
+        weights: magnitudes.
+        arrived: (B, A) touched the goal within this decision.
+        nearer: (B, A) decrease of the distance to the goal over what full speed allows, ≤ 1.
+        contacts: (B, A, kinds) new contacts by Kind.
+        probability: (B, A) Eq. 24 after the decision.
+        turned: (B, A) |turn rate| over its limit, 0 to 1.
+    """
+    w = weights
+    calm = probability <= w.threshold
+    toward = nearer if w.moving == "progress" else (nearer > 0.0).astype(float)
+
+    def hits(kind: Kind, weight: float) -> FloatArray:
+        return -weight * contacts[..., int(kind)].astype(float)
+
+    return RewardTerms(
+        goal=w.goal * (arrived & calm),
+        approach=np.where(calm, w.approach * toward, np.minimum(w.approach * toward, 0.0)),
+        static=hits(Kind.STATIC, w.static),
+        dynamic=hits(Kind.DYNAMIC, w.dynamic),
+        walls=hits(Kind.WALL, w.walls),
+        agents=hits(Kind.AGENT, w.agents),
+        time=np.full(arrived.shape, -w.time),
+        p_dynamic=-w.p_dynamic * (~calm).astype(float),
+        turning=-w.turning * turned,
+    )

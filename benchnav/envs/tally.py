@@ -1,0 +1,38 @@
+"""Counts of what became of attempts, and sums of the reward's terms."""
+
+from collections import Counter
+from dataclasses import fields
+
+import numpy as np
+
+from benchnav.envs.agent_batch import Transition
+from benchnav.envs.reward import RewardTerms
+
+
+class Tally:
+    """Adds up until it is taken."""
+
+    def __init__(self) -> None:
+        self.counts: Counter[str] = Counter()
+        self._terms: Counter[str] = Counter()
+
+    def add(self, step: Transition) -> None:
+        """One decision of a batch."""
+        self.counts["decisions"] += int(step.acted.sum())
+        for name in ("arrived", "touched", "timed_out"):
+            self.counts[name] += int(getattr(step, name).sum())
+        self._terms["reward"] += float(step.reward.sum())
+        for f in fields(RewardTerms):
+            self._terms[f.name] += float(np.sum(getattr(step.terms, f.name), where=step.acted))
+
+    def take(self) -> dict[str, float]:
+        """Attempts, their shares, and every term's mean per attempt; starts anew."""
+        counts, terms = self.counts, self._terms
+        attempts = counts["arrived"] + counts["touched"] + counts["timed_out"]
+        each = max(attempts, 1)
+        row: dict[str, float] = {"decisions": counts["decisions"], "attempts": attempts}
+        for name in ("arrived", "touched", "timed_out"):
+            row[name] = counts[name] / each
+        row |= {name: terms[name] / each for name in terms}
+        self.counts, self._terms = Counter(), Counter()
+        return row
