@@ -148,6 +148,7 @@ PLANNERS = Registry("benchnav.planners", "planner")
 CONTROLLERS = Registry("benchnav.controllers", "controller")
 METRICS = Registry("benchnav.metrics", "metric")
 SCENARIOS = Registry("benchnav.scenarios", "scenario")
+TRAINERS = Registry("benchnav.trainers", "trainer")
 
 register_navigator = NAVIGATORS.register
 register_planner = PLANNERS.register

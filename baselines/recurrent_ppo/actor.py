@@ -74,7 +74,7 @@ def _count(tensors: Mapping[str, Float32Array], kind: str) -> int:
 
 
 def affine(x: Float32Array, weight: Float32Array, bias: Float32Array) -> Float32Array:
-    """x (N, D) · weight (D, H) + bias (H,), each row summed over D in order."""
+    """Of x (N, D) · weight (D, H) + bias (H,): each row summed over D in order."""
     missing = -len(x) % _BLOCK
     padded = np.concatenate([x, np.zeros((missing, x.shape[1]), np.float32)])
     out = np.empty((len(padded), len(bias)), np.float32)

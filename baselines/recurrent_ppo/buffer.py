@@ -27,11 +27,11 @@ class SequenceBuffer(RecurrentRolloutBuffer):
     rng: np.random.Generator
 
     def reset(self) -> None:
-        super().reset()
+        super().reset()  # type: ignore[no-untyped-call]
         self.live: BoolArray = np.zeros((self.buffer_size, self.n_envs), np.bool_)
 
     def add(self, *args: Any, **kwargs: Any) -> None:
-        self.live[self.pos] = self.env.acted if self.env is not None else True
+        self.live[self.pos] = self.env.acted
         super().add(*args, **kwargs)
 
     def sequences(self) -> tuple[IntArray, IntArray, IntArray]:
@@ -50,7 +50,7 @@ class SequenceBuffer(RecurrentRolloutBuffer):
         cut = part * self.length
         return slot[which], first[which] + cut, np.minimum(size[which] - cut, self.length)
 
-    def get(
+    def get(  # type: ignore[override]
         self, batch_size: int | None = None
     ) -> Generator[RecurrentRolloutBufferSamples, None, None]:
         slot, first, size = self.sequences()

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import torch
 from sb3_contrib import RecurrentPPO
-from sb3_contrib.ppo_recurrent import ppo_recurrent
+from sb3_contrib.common.recurrent.type_aliases import RNNStates
 from stable_baselines3 import PPO
 
 from benchnav.envs.agent_vec_env import AgentVecEnv
@@ -21,9 +21,11 @@ Learner = RecurrentPPO | PPO
 class SequencePPO(RecurrentPPO):
     """RecurrentPPO whose rollouts are cut into short sequences without idle transitions."""
 
+    _last_lstm_states: Any
+
     def _setup_model(self) -> None:
         super()._setup_model()
-        stock = self.rollout_buffer
+        stock: Any = self.rollout_buffer
         self.rollout_buffer = SequenceBuffer(
             self.n_steps, self.observation_space, self.action_space, stock.hidden_state_shape,
             self.device, gamma=self.gamma, gae_lambda=self.gae_lambda, n_envs=self.n_envs,
@@ -31,9 +33,9 @@ class SequencePPO(RecurrentPPO):
 
     def forget(self) -> None:
         """Start with empty memories."""
-        shape = (self.policy.lstm_actor.num_layers, self.n_envs, self.policy.lstm_actor.hidden_size)
-        zeros = [torch.zeros(shape, device=self.device) for _ in range(4)]
-        self._last_lstm_states = ppo_recurrent.RNNStates((zeros[0], zeros[1]), (zeros[2], zeros[3]))
+        self._last_lstm_states = RNNStates(
+            *(tuple(torch.zeros_like(t) for t in pair) for pair in self._last_lstm_states)
+        )
 
 
 def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Learner:
@@ -47,13 +49,18 @@ def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Le
     if network.lstm_layers:
         policy |= {"lstm_hidden_size": network.lstm_size, "n_lstm_layers": network.lstm_layers}
         learner: Learner = SequencePPO(FusedPolicy, env, policy_kwargs=policy, **shared)
-        learner.rollout_buffer.length = recipe.sequence
+        buffer_of(learner).length = recipe.sequence
     else:
         learner = PPO(
             "MlpPolicy", env, policy_kwargs=policy, rollout_buffer_class=LiveBuffer, **shared
         )
-    learner.rollout_buffer.env = env
+    buffer_of(learner).env = env
     return learner
+
+
+def buffer_of(learner: Learner) -> Any:
+    """Its rollouts: a `SequenceBuffer` or a `LiveBuffer`."""
+    return learner.rollout_buffer
 
 
 def enter(learner: Learner, stage: Stage, progress: float) -> None:
@@ -68,7 +75,7 @@ def enter(learner: Learner, stage: Stage, progress: float) -> None:
 def reseed(learner: Learner, rng: np.random.Generator) -> None:
     """Every draw that follows depends on ``rng`` alone."""
     torch.manual_seed(int(rng.integers(2**63)))
-    learner.rollout_buffer.rng = rng
+    buffer_of(learner).rng = rng
 
 
 def actor_tensors(learner: Learner) -> dict[str, Float32Array]:

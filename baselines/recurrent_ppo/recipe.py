@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from benchnav.envs.encoders.catalogue import ENCODERS
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import did_you_mean
+from benchnav.scenario.validation import FieldError
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Rate = Annotated[float, Field(gt=0, le=1)]
@@ -92,15 +93,19 @@ class Recipe(_Part):
     @model_validator(mode="after")
     def _check(self) -> "Recipe":
         if self.encoder not in ENCODERS:
-            raise ValueError(
-                f"encoder must be one of {', '.join(ENCODERS)}; got {self.encoder!r}."
-                f"{did_you_mean(self.encoder, ENCODERS)}"
+            raise FieldError(
+                ("encoder",),
+                f"must be one of {', '.join(ENCODERS)}; got {self.encoder!r}."
+                f"{did_you_mean(self.encoder, ENCODERS)}",
             )
         if self.network.lstm_layers == 0 and not self.network.dense:
-            raise ValueError("network must have LSTM or dense layers; got neither")
+            raise FieldError(("network",), "must have LSTM or dense layers; got neither")
         names = [course.scenario for course in self.courses]
-        if len(set(names)) < len(names):
-            raise ValueError("courses must name a scenario once")
+        for i, name in enumerate(names):
+            if name in names[:i]:
+                raise FieldError(
+                    ("courses", i), f"must name a scenario once; {name!r} stands twice"
+                )
         return self
 
     def network_of(self) -> dict[str, Any]:

@@ -1,172 +1,44 @@
-"""Training from a recipe, in segments that each start from a checkpoint and a seed.
+"""The plugin behind `benchnav train`: what it ships, and where the work is done.
 
-A segment resets worlds, memories and every stream of randomness, so a training that was
-killed and resumed ends in the same bits as one that was not.
+Nothing heavy is imported before there is something to train.
 """
 
-import json
-import platform
-import sys
 from collections.abc import Callable
-from dataclasses import asdict, replace
-from importlib.metadata import version
 from pathlib import Path
-from time import perf_counter
-from typing import Any
+from typing import ClassVar
 
-import numpy as np
-import torch
-from stable_baselines3.common.callbacks import CallbackList
+from pydantic import BaseModel
 
-from benchnav.arena.world import World
-from benchnav.envs.encoders.catalogue import encoder
-from benchnav.errors import TrainingError, UsageError
-from benchnav.threads import core_count
+from benchnav.envs.trainer import Trainer, TrainingReport
+from benchnav.errors import MissingExtraError, UsageError
 
-from . import checkpoint
-from .actor import Actor
-from .checkpoint import Progress
-from .courses import make_env, training_worlds, validation_worlds
-from .evaluate import evaluate
-from .learner import actor_tensors, enter, make_learner, reseed
-from .log import Curve
-from .recipe import Recipe
-from .weights import write_weights
+from . import recipe
 
-WEIGHTS = "weights.safetensors"
-Report = Callable[[int, dict[str, float]], None]  # decisions, newest numbers
+DEVICES = ("cpu", "cuda", "auto")
 
 
-class Trainer:
-    """One run of one recipe with one seed in one folder."""
+class RecurrentPPOTrainer(Trainer[recipe.Recipe]):
+    """Proximal policy optimisation with an LSTM (sb3-contrib), or without one."""
 
-    def __init__(self, recipe: Recipe, seed: int, folder: Path, device: str = "cpu") -> None:
-        self.recipe, self.seed, self.folder = recipe, seed, folder
-        self._device = device
+    Recipe: ClassVar[type[BaseModel]] = recipe.Recipe
+    recipes: ClassVar[Path] = Path(__file__).parent / "recipes"
 
-    def run(self, resume: bool, report: Report) -> dict[str, float]:
-        """Train to the end; returns the last row of the curve.
-
-        Raises:
-            UsageError: the folder holds something else, or there is nothing to resume.
-            TrainingError: a number stopped being finite; the last checkpoint is kept.
-        """
-        self._claim(resume)
-        torch.set_num_threads(1)
-        self._pools = training_worlds(self.recipe)
-        self._validation = validation_worlds(self.recipe)
-        progress = Progress(self.recipe.hash, self.seed)
-        env = make_env(self.recipe, self._pools, self.recipe.stages[0].reward, self.seed)
-        self.learner = make_learner(self.recipe, env, self.seed, self._device)
-        if resume:
-            progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
-        else:
-            checkpoint.save(self.folder, self.learner, progress)
-        curve = Curve(self.folder, progress.decisions)
-        try:
-            while progress.stage < len(self.recipe.stages):
-                progress = self._segment(progress, curve, report)
-        finally:
-            curve.close()
-        return curve.rows[-1] if curve.rows else {}
-
-    def _claim(self, resume: bool) -> None:
-        there = (self.folder / checkpoint.FILE).exists()
-        if there and not resume:
+    def train(
+        self,
+        recipe: recipe.Recipe,
+        seed: int,
+        out: Path,
+        *,
+        resume: bool,
+        device: str,
+        report: Callable[[TrainingReport], None],
+    ) -> None:
+        if device.partition(":")[0] not in DEVICES:
             raise UsageError(
-                f"{self.folder} must be new or empty; it holds a training."
-                " Go on with --resume, or choose another --out."
+                f"--device must be one of {', '.join(DEVICES)}. Got {device!r} instead."
             )
-        if resume and not there:
-            raise UsageError(f"{self.folder} must hold a checkpoint to --resume. It does not.")
-        self.folder.mkdir(parents=True, exist_ok=True)
-        said = {
-            "recipe": self.recipe.model_dump(mode="json"), "hash": self.recipe.hash,
-            "seed": self.seed, "machine": _machine(), "versions": _versions(),
-        }  # fmt: skip
-        (self.folder / "training.json").write_text(json.dumps(said, indent=1) + "\n")
-
-    def _segment(self, progress: Progress, curve: Curve, report: Report) -> Progress:
-        """Train until the next checkpoint; returns the progress that it holds."""
-        began, learner = perf_counter(), self.learner
-        stage = self.recipe.stages[progress.stage]
-        rng = np.random.default_rng([self.seed, progress.segment])
-        env = make_env(self.recipe, self._pools, stage.reward, int(rng.integers(2**31)))
-        learner.set_env(env)
-        learner.rollout_buffer.env = env
-        reseed(learner, rng)
-        _, callback = learner._setup_learn(sys.maxsize, CallbackList([]))
-        if hasattr(learner, "forget"):
-            learner.forget()
-        here = 0
-        goal = min(self.recipe.checkpoint, stage.decisions - progress.in_stage)
-        while here < goal:
-            enter(learner, stage, (progress.in_stage + here) / stage.decisions)
-            learner.collect_rollouts(env, callback, learner.rollout_buffer, self.recipe.rollout)
-            learner.train()
-            self._check_finite(progress.decisions + here)
-            here = int(env.tally.counts["decisions"])
-            report(progress.decisions + here, {})
-        row = env.tally.take()
-        row["decisions"] = progress.decisions + here
-        success = self._validate()
-        reached = float(np.mean(list(success.values())))
-        progress = self._after(progress, here, reached)
-        progress = replace(progress, seconds=progress.seconds + perf_counter() - began)
-        row |= {"stage": progress.stage, "seconds": progress.seconds, **success}
-        curve.add(row)
-        checkpoint.save(self.folder, learner, progress)
-        write_weights(self.folder / WEIGHTS, actor_tensors(learner), self._about(progress, success))
-        report(progress.decisions, row)
-        return progress
-
-    def _after(self, progress: Progress, here: int, reached: float) -> Progress:
-        recipe = self.recipe
-        better = reached > progress.best
-        waited = 0 if better else progress.waited + 1
-        then = replace(
-            progress, segment=progress.segment + 1, decisions=progress.decisions + here,
-            in_stage=progress.in_stage + here, best=max(reached, progress.best), waited=waited,
-        )  # fmt: skip
-        ended = then.in_stage >= recipe.stages[then.stage].decisions
-        if ended or (recipe.patience and waited >= recipe.patience):
-            return replace(then, stage=then.stage + 1, in_stage=0, best=-1.0, waited=0)
-        return then
-
-    def _validate(self) -> dict[str, float]:
-        actor, encode = Actor(actor_tensors(self.learner)), encoder(self.recipe.encoder)
-        return {
-            f"validation {name}": _share(actor, encode, worlds)
-            for name, worlds in self._validation.items()
-        }
-
-    def _check_finite(self, decisions: int) -> None:
-        for name, parameter in self.learner.policy.named_parameters():
-            if not bool(torch.isfinite(parameter).all()):
-                raise TrainingError(
-                    f"{self.folder}: {name} must stay finite; it did not after {decisions}"
-                    f" decisions. The last checkpoint and {WEIGHTS} are from before."
-                )
-
-    def _about(self, progress: Progress, success: dict[str, float]) -> dict[str, Any]:
-        return {
-            "encoder": self.recipe.encoder, "network": self.recipe.network_of(),
-            "recipe": self.recipe.name, "recipe_hash": self.recipe.hash,
-            "courses": [course.model_dump() for course in self.recipe.courses],
-            "progress": asdict(progress), "success": success,
-            "machine": _machine(), "versions": _versions(),
-        }  # fmt: skip
-
-
-def _share(actor: Actor, encode: Any, worlds: list[World]) -> float:
-    agents = sum(len(world.agents) for world in worlds)
-    return float(evaluate(actor, encode, worlds).sum() / agents)
-
-
-def _machine() -> str:
-    return f"{platform.machine()}, {core_count()} cores, {platform.system()}"
-
-
-def _versions() -> dict[str, str]:
-    names = ("benchnav", "numpy", "numba", "torch", "stable_baselines3", "sb3_contrib")
-    return {"python": platform.python_version(), **{name: version(name) for name in names}}
+        try:
+            from .training import Training
+        except ImportError as error:
+            raise MissingExtraError(f"Training (it lacks {error.name})", "learn") from None
+        Training(recipe, seed, out, device).run(resume, report)

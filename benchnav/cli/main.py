@@ -17,6 +17,7 @@ from benchnav.cli.new import new_app
 from benchnav.cli.run import run
 from benchnav.cli.schema import schema
 from benchnav.cli.show import show
+from benchnav.cli.train import train
 from benchnav.cli.validate import validate
 from benchnav.errors import (
     BenchnavError,
@@ -43,6 +44,7 @@ app = typer.Typer(
 )
 app.command("run")(run)
 app.command("leaderboard")(leaderboard)
+app.command("train")(train)
 app.command("list")(list_)
 app.command("show")(show)
 app.command("validate")(validate)

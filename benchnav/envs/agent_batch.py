@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from benchnav.arena.world import Afterwards, ContactRule, World
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.envs.collision import collision_probability
 from benchnav.envs.encoders.encoder import Bodies, Encoder, Float32Array
 from benchnav.envs.relay import Relay
@@ -41,6 +41,15 @@ class Transition:
     def over(self) -> BoolArray:
         """(B, A) attempts that ended."""
         return self.arrived | self.touched | self.timed_out
+
+
+@dataclass(frozen=True, eq=False)
+class Instead:
+    """Commands of slots that somebody else than the learner drives, in the simulator's units."""
+
+    who: BoolArray  # (B, A)
+    command: FloatArray  # (B, A, 2) planar velocities [m/s] or twists [m/s, rad/s]
+    twist: bool  # which of the two
 
 
 class AgentBatch:
@@ -83,13 +92,23 @@ class AgentBatch:
         self._start(rows, self._next(len(rows)) if worlds is None else worlds)
         return self._encoded(self._observe(self.active))
 
-    def step(self, action: FloatArray) -> Transition:
-        """Decide. ``action`` (B, A, 2) in [-1, 1]: speed from 0 to the limit, turn rate."""
+    def reseed(self, rng: np.random.Generator) -> None:
+        """Draw the order of the worlds that are still to come from ``rng``."""
+        self._rng, self._queue = rng, np.zeros(0, np.int64)
+
+    def step(self, action: FloatArray, instead: Instead | None = None) -> Transition:
+        """Decide. ``action`` (B, A, 2) in [-1, 1]: speed from 0 to the limit, turn rate.
+
+        Slots in ``instead`` follow what stands there, whatever their action.
+        """
         s, acted = self.simulation, self.active.copy()
         before = self._goal_distance()
-        command = self._commands(action)
+        command, twist = self._commands(action), self._twist
+        if instead is not None:
+            command = np.where(instead.who[..., None], instead.command, command)
+            twist = np.where(instead.who, instead.twist, twist)
         command[~acted] = 0.0
-        executed = s.step(command, self._twist)
+        executed = s.step(command, twist)
         arrived = acted & (s.status == int(Status.ARRIVED))
         touched = acted & (s.status == int(Status.ENDED))
         timed_out = acted & ~arrived & ~touched & ~s.running[:, None]
@@ -122,7 +141,7 @@ class AgentBatch:
             acted, reward, terms, arrived, touched, timed_out, restarted, observation, final
         )
 
-    def _commands(self, action: FloatArray) -> FloatArray:
+    def _commands(self, action: AnyArray) -> FloatArray:
         command = np.clip(action.astype(np.float64), -1.0, 1.0)
         command[..., 0] = 0.5 * (command[..., 0] + 1.0) * self._limits["max_speed"]
         command[..., 1] *= self._limits["max_turn_rate"]

@@ -22,6 +22,8 @@ class AgentVecEnv(VecEnv):
     of the last step were real, so that a learner can leave the others out.
     """
 
+    render_mode: str | None = None
+
     def __init__(self, batches: Sequence[AgentBatch]) -> None:
         self.batches = tuple(batches)
         size = self.batches[0].encoder.size
@@ -76,7 +78,7 @@ class AgentVecEnv(VecEnv):
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
         return [False] * len(self._slots(indices))
 
-    def _slots(self, indices: None | int | Iterable[int]) -> list[int]:
+    def _slots(self, indices: int | Iterable[int] | None) -> list[int]:
         return list(self._get_indices(indices))
 
 

@@ -26,7 +26,7 @@ class RewardWeights(BaseModel):
     walls: float = Field(20.0, ge=0, description="w_c_walls, per new contact (Eq. 7)")
     agents: float = Field(20.0, ge=0, description="w_c_agents, per new contact (Eq. 8)")
     time: float = Field(1.0, ge=0, description="w_time, per decision (Eq. 9)")
-    p_dynamic: float = Field(4.0, ge=0, description="w_p_dynamic, per decision with p > T_c (Eq. 10)")
+    p_dynamic: float = Field(4.0, ge=0, description="w_p_dynamic, per decision, p > T_c (Eq. 10)")
     threshold: float = Field(0.6, ge=0, le=1, description="T_c")
     moving: Literal["sign", "progress"] = Field(
         "sign",
@@ -56,8 +56,10 @@ class RewardTerms:
     @property
     def total(self) -> FloatArray:
         """(B, A) Eq. 2."""
-        terms = [getattr(self, f.name) for f in fields(self)]
-        return np.sum(terms, axis=0)
+        total = np.zeros_like(self.goal)
+        for f in fields(self):
+            total += getattr(self, f.name)
+        return total
 
 
 def reward_terms(
@@ -87,7 +89,7 @@ def reward_terms(
         return -weight * contacts[..., int(kind)].astype(float)
 
     return RewardTerms(
-        goal=w.goal * (arrived & calm),
+        goal=w.goal * (arrived & calm).astype(np.float64),
         approach=np.where(calm, w.approach * toward, np.minimum(w.approach * toward, 0.0)),
         static=hits(Kind.STATIC, w.static),
         dynamic=hits(Kind.DYNAMIC, w.dynamic),

@@ -1,6 +1,6 @@
 """Counts of what became of attempts, and sums of the reward's terms."""
 
-from collections import Counter
+from collections import Counter, defaultdict
 from dataclasses import fields
 
 import numpy as np
@@ -14,7 +14,7 @@ class Tally:
 
     def __init__(self) -> None:
         self.counts: Counter[str] = Counter()
-        self._terms: Counter[str] = Counter()
+        self._terms: defaultdict[str, float] = defaultdict(float)
 
     def add(self, step: Transition) -> None:
         """One decision of a batch."""
@@ -34,5 +34,5 @@ class Tally:
         for name in ("arrived", "touched", "timed_out"):
             row[name] = counts[name] / each
         row |= {name: terms[name] / each for name in terms}
-        self.counts, self._terms = Counter(), Counter()
+        self.counts, self._terms = Counter(), defaultdict(float)
         return row

@@ -15,6 +15,7 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
+from benchnav.arena.sensing import Sensing
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.observation import Observation
@@ -57,6 +58,10 @@ class Navigator(ABC):
     def reproducible(self) -> bool:
         """False where a wall-clock budget decides what it answers."""
         return True
+
+    def unfit(self, sensing: Sensing) -> str:
+        """Why it cannot drive agents that sense so, beyond what it needs; "" where it can."""
+        return ""
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:  # noqa: B027 - optional
         """Start the worlds ``rows`` (N,), told ``briefings`` (N,)."""

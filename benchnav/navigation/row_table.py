@@ -34,6 +34,12 @@ class RowTable:
             taken = np.pad(taken, widths)
         return taken
 
+    def write(self, name: str, rows: IntArray, values: AnyArray) -> None:
+        """Replace what the rows (B,) hold under ``name`` by ``values`` (B, agents, …)."""
+        array = self._arrays[name]
+        kept = min(array.shape[1], values.shape[1])
+        array[rows, :kept] = values[:, :kept]
+
     def _grown(self, name: str, rows: int, value: AnyArray) -> AnyArray:
         old = self._arrays.get(name)
         if old is not None and old.shape[0] >= rows and old.shape[1] >= len(value):

@@ -10,7 +10,7 @@ from typing import Any
 
 from benchnav.errors import MissingExtraError, ScenarioError, UsageError, did_you_mean
 from benchnav.navigation.configure import Spec, configure, make, split
-from benchnav.navigation.navigator import Need
+from benchnav.navigation.navigator import Navigator, Need
 from benchnav.navigation.tracks import TRACKS
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.generators import check_salt
@@ -21,6 +21,7 @@ from benchnav.scenario.load import load_scenario
 from benchnav.scenario.sampler import support
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
+from benchnav.world.build import sensing_of
 
 
 @dataclass(frozen=True)
@@ -81,7 +82,10 @@ class Cell:
             return "needs a map"
         sensed = {need for need in Need if getattr(sensing, need, None) is not None}
         lacking = sorted(required - sensed - {Need.MAP})
-        return f"needs {' and '.join(lacking)}, which nobody senses there" if lacking else ""
+        if lacking:
+            return f"needs {' and '.join(lacking)}, which nobody senses there"
+        navigator: Navigator = make(NAVIGATORS, self.entry.spec)
+        return navigator.unfit(sensing_of(self.scenario))
 
     @property
     def effort(self) -> float:

@@ -116,7 +116,7 @@ def _mover_numbers(ray: int) -> list[Number]:
             f"ray{ray}.mover_speed", "m/s", -1.5, 1.5,
             f"speed towards the agent of the mover that it meets, over {SPEED:g} m/s",
         ),
-        Number(f"ray{ray}.mover_distance", "m", 0, 1, f"distance to it over {RANGE:g} m, 1 if none"),
+        Number(f"ray{ray}.mover_distance", "m", 0, 1, f"its distance over {RANGE:g} m, 1 if none"),
     ]  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from benchnav.arena.solid import Kind
-from benchnav.arrays import FloatArray, IntArray
+from benchnav.arrays import ByteArray, FloatArray, IntArray
 from benchnav.envs.collision import probability
 from benchnav.envs.encoders.encoder import Bodies, Encoder, Float32Array, Number, within
 from benchnav.envs.encoders.paper import SPEED, own_frame
@@ -27,6 +27,7 @@ OTHERS = 6
 RANGE = 8.0  # [m] of the scan
 FADE = 2.0  # [m] over which nearness falls by e
 _EACH = 8  # numbers per other
+_MOVER = int(Kind.DYNAMIC)
 
 
 class SurroundEncoder(Encoder):
@@ -50,7 +51,7 @@ class SurroundEncoder(Encoder):
         scan = tuple(
             Number(
                 f"scan{k}.near", "m", 0, 1,
-                f"exp(-way free for its disc / {FADE:g} m) at {k * 360 / DIRECTIONS:g}° to the left",
+                f"exp(-free way of its disc / {FADE:g} m), {k * 360 / DIRECTIONS:g}° to the left",
             )
             for k in range(DIRECTIONS)
         )  # fmt: skip
@@ -100,7 +101,9 @@ def _flat(edges: Edges, agents: int) -> tuple[FloatArray, FloatArray, IntArray]:
     )  # fmt: skip
 
 
-def _told(seen: Neighbours, agents: int) -> tuple[FloatArray, FloatArray, FloatArray, ...]:  # type: ignore[type-arg]
+def _told(
+    seen: Neighbours, agents: int
+) -> tuple[FloatArray, FloatArray, FloatArray, ByteArray, IntArray]:
     return (
         seen.position.reshape(agents, -1, 2), seen.velocity.reshape(agents, -1, 2),
         seen.radius.reshape(agents, -1), seen.kind.reshape(agents, -1), seen.count.reshape(agents),
@@ -131,7 +134,7 @@ def _scan(
 def _others(
     position: FloatArray, velocity: FloatArray, heading: FloatArray, radius: FloatArray,
     other_position: FloatArray, other_velocity: FloatArray, other_radius: FloatArray,
-    kind: IntArray, count: IntArray, out: FloatArray,
+    kind: ByteArray, count: IntArray, out: FloatArray,
 ) -> None:  # fmt: skip
     for i in range(len(position)):
         c, s = math.cos(heading[i]), math.sin(heading[i])
@@ -149,6 +152,3 @@ def _others(
             row[4], row[5] = (c * u + s * v) / SPEED, (c * v - s * u) / SPEED
             row[6] = probability(x, y, -u, -v, reach)
             row[7] = 1.0 if kind[i, k] == _MOVER else 0.0
-
-
-_MOVER = int(Kind.DYNAMIC)

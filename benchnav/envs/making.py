@@ -1,0 +1,96 @@
+"""A decision process from names and numbers, as environments are asked for."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from benchnav.arena.world import World
+from benchnav.envs.agent_batch import AgentBatch
+from benchnav.envs.encoders.catalogue import encoder as encoder_called
+from benchnav.envs.reward import RewardWeights
+from benchnav.errors import ConfigError, UsageError, did_you_mean
+from benchnav.scenario.catalogue import find
+from benchnav.world.build import build
+
+Reward = RewardWeights | Mapping[str, Any] | None
+SPLITS = ("train", "validation")
+
+
+def make_worlds(scenario: str, split: str, count: int) -> list[World]:
+    """The worlds 0 to ``count`` - 1 of a scenario's split.
+
+    Raises:
+        UsageError: no such split, no worlds, or agents that the scenario drives itself.
+        UnknownPluginError: no such scenario.
+    """
+    if split not in SPLITS:
+        raise UsageError(
+            f"The split of an environment must be {' or '.join(SPLITS)}: worlds of the split test"
+            f" are for `benchnav run`. Got {split!r} instead.{did_you_mean(split, SPLITS)}"
+        )
+    if count < 1:
+        raise UsageError(f"An environment must have at least 1 world. Got {count} instead.")
+    found = find(scenario)
+    if found.drivers:
+        raise UsageError(
+            f"The scenario of an environment must leave all of its agents to be driven."
+            f" {found.identity} has a team with a driver."
+        )
+    return [build(found, split, seed) for seed in range(count)]
+
+
+def weights_of(reward: Reward) -> RewardWeights:
+    """The weights that ``reward`` says; None: the defaults.
+
+    Raises ConfigError where it says what is none.
+    """
+    if isinstance(reward, RewardWeights):
+        return reward
+    try:
+        return RewardWeights(**(reward or {}))
+    except ValidationError as error:
+        raise ConfigError("\n".join(map(_mistake, error.errors()))) from None
+
+
+def make_batch(
+    scenario: str, encoder: str, split: str, worlds: int, reward: Reward, slots: int | None = None
+) -> AgentBatch:
+    """As many rows as have ``slots`` agents, or one, over a pool of ``worlds`` worlds.
+
+    `AgentBatch.reseed` decides the order of worlds. Raises UsageError where ``slots`` is no
+    multiple of a world's agents, and what `make_worlds`, `weights_of` and the catalogue of
+    encoders raise.
+    """
+    chosen, weights = encoder_called(encoder), weights_of(reward)
+    pool = make_worlds(scenario, split, worlds)
+    rows, A = 1, max(len(world.agents) for world in pool)
+    if slots is not None:
+        rows = max(slots // A, 1)
+        if slots != rows * A:
+            raise UsageError(
+                f"num_envs must be a multiple of {A}, the agents of a world of {scenario}."
+                f" Got {slots} instead; the nearest below is {rows * A}."
+                if slots > A
+                else f"num_envs must be at least {A}, the agents of a world of {scenario}."
+                f" Got {slots} instead."
+            )
+    return AgentBatch(pool, rows, chosen, weights, np.random.default_rng(0))
+
+
+def refuse_rendering(render_mode: str | None) -> None:
+    """Raise UsageError where somebody wants to watch."""
+    if render_mode is not None:
+        raise UsageError(
+            f"The render_mode must be None: environments draw nothing. Got {render_mode!r} instead."
+        )
+
+
+def _mistake(detail: ErrorDetails) -> str:
+    key = ".".join(map(str, detail["loc"]))
+    if detail["type"] == "extra_forbidden":
+        return f"The reward has no weight {key!r}.{did_you_mean(key, RewardWeights.model_fields)}"
+    rule = detail["msg"].removeprefix("Input should be ")
+    return f"The weight {key!r} of the reward must be {rule}. Got {detail['input']!r} instead."
