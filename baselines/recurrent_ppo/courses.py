@@ -33,17 +33,15 @@ def training_worlds(recipe: Recipe) -> list[list[World]]:
     return list(pools.values())
 
 
-def make_env(
-    recipe: Recipe, pools: Sequence[Sequence[World]], weights: RewardWeights, seed: int
-) -> AgentVecEnv:
+def make_env(recipe: Recipe, pools: Sequence[Sequence[World]]) -> AgentVecEnv:
     """Rows are shared between the pools by their numbers of worlds, at least one each."""
     total = sum(len(pool) for pool in pools)
     batches = [
         AgentBatch(
-            pool, max(1, round(recipe.rows * len(pool) / total)), encoder(recipe.encoder), weights,
-            np.random.default_rng([seed, k]),
+            pool, max(1, round(recipe.rows * len(pool) / total)), encoder(recipe.encoder),
+            RewardWeights(), np.random.default_rng(0),
         )
-        for k, pool in enumerate(pools)
+        for pool in pools
     ]  # fmt: skip
     return AgentVecEnv(batches)
 

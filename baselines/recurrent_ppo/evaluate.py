@@ -13,10 +13,14 @@ from benchnav.envs.reward import RewardWeights
 from .actor import Actor, Float32Array
 
 
-def evaluate(actor: Actor, encoder: Encoder, worlds: Sequence[World]) -> BoolArray:
+def evaluation(encoder: Encoder, worlds: Sequence[World]) -> AgentBatch:
+    """A batch in which every world has a row of its own."""
+    return AgentBatch(worlds, len(worlds), encoder, RewardWeights(), np.random.default_rng(0))
+
+
+def evaluate(actor: Actor, batch: AgentBatch) -> BoolArray:
     """(B, A) which agents arrived untouched in each world once; False for padding."""
-    batch = AgentBatch(worlds, len(worlds), encoder, RewardWeights(), np.random.default_rng(0))
-    x = batch.reset(np.arange(len(worlds)))
+    x = batch.reset(np.arange(batch.rows))
     pending, arrived = batch.active.copy(), np.zeros_like(batch.active)
     shape = pending.shape
     state: Float32Array = np.zeros((pending.size, actor.state_size), np.float32)

@@ -18,7 +18,7 @@ import numpy as np
 import torch
 from stable_baselines3.common.callbacks import CallbackList
 
-from benchnav.arena.world import World
+from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.trainer import TrainingReport
 from benchnav.errors import TrainingError, UsageError
@@ -28,8 +28,8 @@ from . import checkpoint
 from .actor import Actor
 from .checkpoint import Progress
 from .courses import make_env, training_worlds, validation_worlds
-from .evaluate import evaluate
-from .learner import actor_tensors, buffer_of, enter, make_learner, reseed
+from .evaluate import evaluate, evaluation
+from .learner import actor_tensors, enter, make_learner, reseed
 from .log import Curve
 from .recipe import Recipe
 from .weights import write_weights
@@ -54,11 +54,13 @@ class Training:
         """
         self._claim(resume)
         torch.set_num_threads(1)
-        self._pools = training_worlds(self.recipe)
-        self._validation = validation_worlds(self.recipe)
+        self._env = make_env(self.recipe, training_worlds(self.recipe))
+        self._validation = {
+            name: evaluation(encoder(self.recipe.encoder), worlds)
+            for name, worlds in validation_worlds(self.recipe).items()
+        }
         progress = Progress(self.recipe.hash, self.seed)
-        env = make_env(self.recipe, self._pools, self.recipe.stages[0].reward, self.seed)
-        self.learner = make_learner(self.recipe, env, self.seed, self._device)
+        self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
         if resume:
             progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
         else:
@@ -92,10 +94,10 @@ class Training:
         began, learner = perf_counter(), self.learner
         stage = self.recipe.stages[progress.stage]
         rng = np.random.default_rng([self.seed, progress.segment])
-        env = make_env(self.recipe, self._pools, stage.reward, int(rng.integers(2**31)))
-        learner.set_env(env)
-        buffer_of(learner).env = env
+        env = self._env
+        env.enter(stage.reward, int(rng.integers(2**31)))
         reseed(learner, rng)
+        learner._last_obs = None  # so that the worlds start anew
         _, callback = learner._setup_learn(sys.maxsize, CallbackList([]))
         if hasattr(learner, "forget"):
             learner.forget()
@@ -135,10 +137,9 @@ class Training:
         return then
 
     def _validate(self) -> dict[str, float]:
-        actor, encode = Actor(actor_tensors(self.learner)), encoder(self.recipe.encoder)
+        actor = Actor(actor_tensors(self.learner))
         return {
-            f"validation {name}": _share(actor, encode, worlds)
-            for name, worlds in self._validation.items()
+            f"validation {name}": _share(actor, batch) for name, batch in self._validation.items()
         }
 
     def _check_finite(self, decisions: int) -> None:
@@ -159,9 +160,9 @@ class Training:
         }  # fmt: skip
 
 
-def _share(actor: Actor, encode: Any, worlds: list[World]) -> float:
-    agents = sum(len(world.agents) for world in worlds)
-    return float(evaluate(actor, encode, worlds).sum() / agents)
+def _share(actor: Actor, batch: AgentBatch) -> float:
+    agents = sum(len(world.agents) for world in batch.simulation.pool)
+    return float(evaluate(actor, batch).sum() / agents)
 
 
 def _machine() -> str:

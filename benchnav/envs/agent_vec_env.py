@@ -10,7 +10,7 @@ from stable_baselines3.common.vec_env import VecEnv
 
 from benchnav.arrays import BoolArray
 from benchnav.envs.agent_batch import AgentBatch, Transition
-from benchnav.envs.reward import RewardTerms
+from benchnav.envs.reward import RewardTerms, RewardWeights
 from benchnav.envs.tally import Tally
 
 
@@ -36,6 +36,13 @@ class AgentVecEnv(VecEnv):
         self.acted: BoolArray = np.zeros(slots, np.bool_)
         self._action: Any = None
         super().__init__(slots, observation, spaces.Box(-1.0, 1.0, (2,), np.float32))
+
+    def enter(self, weights: RewardWeights, seed: int) -> None:
+        """From the next reset on, pay by ``weights`` and draw worlds in the order of ``seed``."""
+        self.tally = Tally()
+        for k, batch in enumerate(self.batches):
+            batch.weights = weights
+            batch.reseed(np.random.default_rng([seed, k]))
 
     def reset(self) -> Any:
         return np.concatenate([_flat(batch.reset()) for batch in self.batches])
