@@ -20,6 +20,7 @@ from benchnav.navigation.observation import Observation
 from benchnav.navigation.row_table import RowTable
 
 from .actor import Actor
+from .foresight import foresee
 from .weights import read_weights
 
 SHIPPED = Path(__file__).parent / "weights"
@@ -68,6 +69,7 @@ class RecurrentPPO(Navigator):
         for row, briefing in zip(rows, briefings, strict=True):
             memory = np.zeros((len(briefing), self._actor.state_size), np.float32)
             limits = {name: getattr(briefing, name) for name in _LIMITS}
+            limits["tolerance"] = np.full(len(briefing), briefing.goal_tolerance)
             self._kept.put(int(row), memory=memory, **limits)
 
     def act(self, observation: Observation) -> FloatArray:
@@ -84,13 +86,28 @@ class RecurrentPPO(Navigator):
         command[active] = action
         command[..., 0] = 0.5 * (command[..., 0] + 1.0) * speed
         command[..., 1] *= turn
+        return self.corrected(observation, Bodies(radius, speed, turn), command)
+
+    def corrected(self, seen: Observation, bodies: Bodies, command: FloatArray) -> FloatArray:
+        """What becomes of the learned twists; here, nothing."""
         return command
 
 
 class RecurrentPPOPlus(RecurrentPPO):
     """RecurrentPPO that sees all round, told its neighbours' velocities, and steers smoothly."""
 
+    class Config(RecurrentPPO.Config):
+        """Which weights, and whether to look ahead."""
+
+        foresight: bool = Field(True, description="correct twists that would collide")
+
     shipped: ClassVar[str] = "recurrent-ppo-plus.safetensors"
+
+    def corrected(self, seen: Observation, bodies: Bodies, command: FloatArray) -> FloatArray:
+        if not self.config.foresight:
+            return command
+        tolerance = self._kept.take("tolerance", seen.rows, seen.active.shape[1])
+        return foresee(seen, bodies, command, tolerance)
 
 
 @lru_cache(maxsize=8)
