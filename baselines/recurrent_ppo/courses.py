@@ -13,13 +13,13 @@ from benchnav.errors import UsageError
 from benchnav.scenario.catalogue import find
 from benchnav.world.build import build
 
-from .recipe import Recipe
+from .recipe import Recipe, Stage
 
 
-def training_worlds(recipe: Recipe) -> list[list[World]]:
-    """Pools, one for each set of terms (clock, sensing, goal tolerance) that occurs."""
+def training_worlds(recipe: Recipe, stage: Stage) -> list[list[World]]:
+    """Pools of a stage, one for each set of terms (clock, sensing, goal tolerance) that occurs."""
     pools: dict[str, list[World]] = {}
-    for course in recipe.courses:
+    for course in recipe.courses_of(stage):
         scenario = find(course.scenario)
         if scenario.drivers:
             raise UsageError(

@@ -2,13 +2,14 @@
 
 import hashlib
 import json
-from typing import Annotated, Any, Literal
+from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from benchnav.envs.encoders.catalogue import ENCODERS
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import did_you_mean
+from benchnav.scenario.document import PathKey
 from benchnav.scenario.validation import FieldError
 
 Share = Annotated[float, Field(ge=0, le=1)]
@@ -53,6 +54,9 @@ class Stage(_Part):
     epochs: int = Field(4, ge=1, le=100)
     entropy: float = Field(0.0, ge=0, le=1, description="weight of the entropy bonus")
     reward: RewardWeights = RewardWeights()
+    courses: tuple[Course, ...] | None = Field(
+        None, min_length=1, max_length=100, description="the recipe's, if not given"
+    )
 
 
 class Recipe(_Part):
@@ -82,7 +86,7 @@ class Recipe(_Part):
     @property
     def hash(self) -> str:
         """16 hex digits of all that decides the weights, but the seed."""
-        said = self.model_dump(mode="json", exclude={"description"})
+        said = self.model_dump(mode="json", exclude={"description"}, exclude_none=True)
         return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:16]
 
     @property
@@ -100,14 +104,18 @@ class Recipe(_Part):
             )
         if self.network.lstm_layers == 0 and not self.network.dense:
             raise FieldError(("network",), "must have LSTM or dense layers; got neither")
-        names = [course.scenario for course in self.courses]
-        for i, name in enumerate(names):
-            if name in names[:i]:
-                raise FieldError(
-                    ("courses", i), f"must name a scenario once; {name!r} stands twice"
-                )
+        _refuse_twice(self.courses, ("courses",))
+        for i, stage in enumerate(self.stages):
+            _refuse_twice(stage.courses or (), ("stages", i, "courses"))
         return self
 
-    def network_of(self) -> dict[str, Any]:
-        """The network as plain data."""
-        return self.network.model_dump(mode="json")
+    def courses_of(self, stage: Stage) -> tuple[Course, ...]:
+        """Where a stage learns."""
+        return stage.courses or self.courses
+
+
+def _refuse_twice(courses: tuple[Course, ...], where: tuple[PathKey, ...]) -> None:
+    names = [course.scenario for course in courses]
+    for i, name in enumerate(names):
+        if name in names[:i]:
+            raise FieldError((*where, i), f"must not name a scenario twice; got {name!r}")

@@ -19,6 +19,7 @@ import torch
 from stable_baselines3.common.callbacks import CallbackList
 
 from benchnav.envs.agent_batch import AgentBatch
+from benchnav.envs.agent_vec_env import AgentVecEnv
 from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.trainer import TrainingReport
 from benchnav.errors import TrainingError, UsageError
@@ -29,9 +30,9 @@ from .actor import Actor
 from .checkpoint import Progress
 from .courses import make_env, training_worlds, validation_worlds
 from .evaluate import evaluate, evaluation
-from .learner import actor_tensors, enter, make_learner, reseed
+from .learner import actor_tensors, buffer_of, enter, make_learner, reseed
 from .log import Curve
-from .recipe import Recipe
+from .recipe import Recipe, Stage
 from .weights import write_weights
 
 WEIGHTS = "weights.safetensors"
@@ -54,7 +55,7 @@ class Training:
         """
         self._claim(resume)
         torch.set_num_threads(1)
-        self._env = make_env(self.recipe, training_worlds(self.recipe))
+        self._lay_out(self.recipe.stages[0])
         self._validation = {
             name: evaluation(encoder(self.recipe.encoder), worlds)
             for name, worlds in validation_worlds(self.recipe).items()
@@ -89,13 +90,26 @@ class Training:
         }  # fmt: skip
         (self.folder / "training.json").write_text(json.dumps(said, indent=1) + "\n")
 
+    def _lay_out(self, stage: Stage) -> None:
+        """Draw the worlds of a stage."""
+        self._courses = self.recipe.courses_of(stage)
+        self._env = make_env(self.recipe, training_worlds(self.recipe, stage))
+
+    def _enter(self, stage: Stage, seed: int) -> AgentVecEnv:
+        """The worlds of a stage, about to start anew."""
+        if self.recipe.courses_of(stage) != self._courses:
+            self._lay_out(stage)
+            self.learner.set_env(self._env)
+            buffer_of(self.learner).env = self._env
+        self._env.enter(stage.reward, seed)
+        return self._env
+
     def _segment(self, progress: Progress, curve: Curve, report: Report) -> Progress:
         """Train until the next checkpoint; returns the progress that it holds."""
         began, learner = perf_counter(), self.learner
         stage = self.recipe.stages[progress.stage]
         rng = np.random.default_rng([self.seed, progress.segment])
-        env = self._env
-        env.enter(stage.reward, int(rng.integers(2**31)))
+        env = self._enter(stage, int(rng.integers(2**31)))
         reseed(learner, rng)
         learner._last_obs = None  # so that the worlds start anew
         _, callback = learner._setup_learn(sys.maxsize, CallbackList([]))
@@ -152,7 +166,7 @@ class Training:
 
     def _about(self, progress: Progress, success: dict[str, float]) -> dict[str, Any]:
         return {
-            "encoder": self.recipe.encoder, "network": self.recipe.network_of(),
+            "encoder": self.recipe.encoder, "network": self.recipe.network.model_dump(mode="json"),
             "recipe": self.recipe.name, "recipe_hash": self.recipe.hash,
             "courses": [course.model_dump() for course in self.recipe.courses],
             "progress": asdict(progress), "success": success,
