@@ -15,7 +15,7 @@ from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.encoders.encoder import Bodies
 from benchnav.envs.encoders.paper import RANGE, RAYS
 from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.navigator import CommandKind, Navigator, Need, PluginConfig
+from benchnav.navigation.navigator import CommandKind, Navigator, Need, PluginConfig, Training
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.row_table import RowTable
 
@@ -44,13 +44,22 @@ class RecurrentPPO(Navigator):
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
         path = Path(self.config.weights) if self.config.weights else SHIPPED / self.shipped
-        self._actor, about = _loaded(path)
-        self._encoder = encoder(about["encoder"])
+        self._actor, self._about = _loaded(path)
+        self._encoder = encoder(self._about["encoder"])
         self._kept = RowTable()
 
     @property
     def required(self) -> frozenset[Need]:
         return self._encoder.needs
+
+    @property
+    def training(self) -> Training:
+        progress = self._about["progress"]
+        return Training(int(progress["decisions"]), float(progress["seconds"]))
+
+    @property
+    def fingerprint(self) -> str:
+        return str(self._about["sha256"])
 
     def unfit(self, sensing: Sensing) -> str:
         rays = sensing.rays

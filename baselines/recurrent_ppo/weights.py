@@ -1,5 +1,6 @@
 """Weights on disk: safetensors with what is needed to use and to judge them; no pickle."""
 
+import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
@@ -30,13 +31,13 @@ def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
 
     Raises PluginError where the file is missing, cut short, foreign, or not of one piece.
     """
-    tensors, metadata = _read(path)
+    tensors, metadata, data = _read(path)
     if metadata.get("format") != FORMAT:
         raise PluginError(
             f"{path}: must be weights written by `benchnav train` (format {FORMAT!r})."
             f" Got the format {metadata.get('format')!r} instead."
         )
-    about = json.loads(metadata["about"])
+    about = json.loads(metadata["about"]) | {"sha256": hashlib.sha256(data).hexdigest()}
     name = about.get("encoder")
     if name not in ENCODERS:
         raise PluginError(f"{path}: made for the encoder {name!r}, which does not exist.")
@@ -73,7 +74,7 @@ def _demand(path: Path, what: str, got: tuple[int, ...], want: tuple[int, ...], 
         )
 
 
-def _read(path: Path) -> tuple[dict[str, Float32Array], dict[str, str]]:
+def _read(path: Path) -> tuple[dict[str, Float32Array], dict[str, str], bytes]:
     library = _safetensors()
     try:
         data = path.read_bytes()
@@ -87,7 +88,7 @@ def _read(path: Path) -> tuple[dict[str, Float32Array], dict[str, str]]:
             f"{path}: must be a whole safetensors file. It is cut short or something else:"
             f" {str(error)[:200]}."
         ) from None
-    return tensors, metadata
+    return tensors, metadata, data
 
 
 def _safetensors() -> Any:

@@ -31,7 +31,8 @@ def table(
     shown = choose(held, ["all"] if metric is None and format in TIDY else metric)
     results = results.filter(pc.is_in(results["metric"], pa.array(shown)))
     missing = [gap for folder in folders for gap in _not_applicable(folder)]
-    return render(leaderboard(results, metrics, missing), format, shown)
+    learned = {label: cost for folder in folders for label, cost in _training(folder)}
+    return render(leaderboard(results, metrics, missing, learned), format, shown)
 
 
 def comparison(
@@ -80,6 +81,13 @@ def _held(results: pa.Table, metrics: dict[str, Metric]) -> list[str]:
     """The metrics of some results, in the order of their definitions."""
     held = set(results["metric"].unique().to_pylist())
     return [*(name for name in metrics if name in held), *sorted(held - set(metrics))]
+
+
+def _training(folder: RunFolder) -> Iterator[tuple[str, tuple[float, float]]]:
+    """(label, (decisions, seconds)) of the navigators that learned."""
+    for entry in folder.manifest.suite.get("navigators", ()):
+        if "training" in entry:
+            yield entry["label"], (entry["training"]["decisions"], entry["training"]["seconds"])
 
 
 def _not_applicable(folder: RunFolder) -> Iterator[NotApplicable]:

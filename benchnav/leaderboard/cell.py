@@ -54,6 +54,16 @@ def rank(r: Record | None) -> Cell:
     return Cell(f"{r.rank_low}–{r.rank_high}" if tie else f"{r.rank_low}")
 
 
+def training(r: Record) -> Cell:
+    """What it learned from and how long, ``6.5 M, 38 min``; empty if it did not learn."""
+    if math.isnan(r.training_decisions):
+        return Cell("")
+    seconds = r.training_seconds
+    time = f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
+    millions = r.training_decisions / 1e6
+    return Cell(f"{millions:.1f} M, {time}" if millions >= 0.1 else f"{millions:.2g} M, {time}")
+
+
 def heading(r: Record) -> Cell:
     """A metric and its direction."""
     return Cell(r.metric + {"higher": " ↑", "lower": " ↓", None: ""}[r.better])

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from benchnav.errors import UsageError, did_you_mean
-from benchnav.leaderboard.cell import Cell, cell, entrant, heading, rank
+from benchnav.leaderboard.cell import Cell, cell, entrant, heading, rank, training
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Leaderboard, Record
 
 DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
@@ -103,6 +103,7 @@ class _Table:
         self.navigators.sort(key=lambda name: _merit(self.at[name, self.leading]))
         # bold says something only where somebody is significantly worse
         self.decided = {r.metric for r in records if (r.rank_low or 0) > 1}
+        self.learned = any(not math.isnan(r.training_decisions) for r in records)
 
     def sections(self, title: str) -> Iterator[Section]:
         """A row for each navigator, or for each metric where those are many."""
@@ -114,9 +115,12 @@ class _Table:
             block = self.navigators[start : start + ABREAST]
             names = tuple(entrant(self.at[name, self.leading]) for name in block)
             ranks = tuple(rank(self.at[name, self.leading]) for name in block)
-            rows = tuple(self._metric(metric, block) for metric in self.metrics)
-            first = (Cell(f"rank ({self.leading})"), *ranks)
-            yield Section(title, (Cell("metric"), *names), (first, *rows), self._notes(block))
+            rows = [tuple(self._metric(metric, block)) for metric in self.metrics]
+            if self.learned:
+                costs = (training(self.at[name, self.leading]) for name in block)
+                rows.insert(0, (Cell("training"), *costs))
+            rows.insert(0, (Cell(f"rank ({self.leading})"), *ranks))
+            yield Section(title, (Cell("metric"), *names), tuple(rows), self._notes(block))
 
     def _headings(self) -> Iterator[Cell]:
         yield from (Cell("navigator"), Cell("rank"))
@@ -124,12 +128,14 @@ class _Table:
             yield heading(self._any(metric))
             if self.middle and metric == self.leading:
                 yield Cell("middle half")  # interquartile mean over scenarios
+            if self.learned and metric == self.leading:
+                yield Cell("training")  # decisions and time
 
     def _navigator(self, name: str) -> tuple[Cell, ...]:
         leader = self.at[name, self.leading]
         row = [entrant(leader), rank(leader)]
         if not leader.episodes:
-            blank = [Cell("")] * (len(self.metrics) - 1 + bool(self.middle))
+            blank = [Cell("")] * (len(self.metrics) - 1 + bool(self.middle) + self.learned)
             return (*row, Cell(leader.note), *blank)
         wide = len(self.metrics) > NARROW
         limit = INTERVALS - bool(self.middle) if wide else len(self.metrics)
@@ -138,6 +144,8 @@ class _Table:
             if self.middle and metric == self.leading:
                 inner = self.middle.get((name, metric))
                 row.append(cell(inner, interval=False, decided=False))
+            if self.learned and metric == self.leading:
+                row.append(training(leader))
         return tuple(row)
 
     def _metric(self, metric: str, block: list[str]) -> tuple[Cell, ...]:

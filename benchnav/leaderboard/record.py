@@ -1,5 +1,6 @@
 """One number of a leaderboard, with everything that is needed to judge it."""
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
@@ -44,6 +45,8 @@ class Record:
     scenario_hash: str  # "" for aggregates over scenarios
     horizon: float  # [s]; NaN for aggregates
     dt: float  # [s]; NaN for aggregates
+    training_decisions: float = math.nan  # that the navigator learned from; NaN if it did not
+    training_seconds: float = math.nan  # that this took
 
 
 @dataclass(frozen=True)

@@ -41,13 +41,15 @@ def leaderboard(
     results: pa.Table,
     metrics: Mapping[str, Metric],
     not_applicable: Sequence[NotApplicable] = (),
+    training: Mapping[str, tuple[float, float]] = {},
 ) -> Leaderboard:
     """Every navigator × scenario × track × role × metric, with interval and rank.
 
     ``results`` has the schema `benchnav.store.results.RESULTS` and may join several
     runs; the order of its rows changes nothing. ``metrics`` maps names to definitions;
     a metric that it lacks is shown and not ranked. ``not_applicable`` are cells that
-    were not run. Raises UsageError where one label stands for two navigators, or has two
+    were not run. ``training`` maps labels to the decisions and seconds of their training.
+    Raises UsageError where one label stands for two navigators, or has two
     values in one world.
     """
     require_one_navigator_per_label({"the results": results})
@@ -57,11 +59,19 @@ def leaderboard(
         aligned = _align(list(group))
         records += _group(aligned, metrics)
         records += _missing(aligned, not_applicable, metrics)
+    records = [_with_training(record, training) for record in records]
     order = {name: place for place, name in enumerate(metrics)}
     names = sorted(
         {r.metric for r in records}, key=lambda name: (order.get(name, len(order)), name)
     )
     return Leaderboard(tuple(sorted(records, key=_place(names))), tuple(names))
+
+
+def _with_training(record: Record, training: Mapping[str, tuple[float, float]]) -> Record:
+    if record.navigator not in training:
+        return record
+    decisions, seconds = training[record.navigator]
+    return replace(record, training_decisions=decisions, training_seconds=seconds)
 
 
 def _align(group: list[Stratum]) -> list[Stratum]:

@@ -39,6 +39,14 @@ class PluginConfig(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
+@dataclass(frozen=True)
+class Training:
+    """What a navigator's training cost."""
+
+    decisions: int  # of agents, in all attempts
+    seconds: float  # on the machine that its card names
+
+
 class Navigator(ABC):
     """Observation → command. A twist is (forward speed [m/s], turn rate [rad/s])."""
 
@@ -58,6 +66,16 @@ class Navigator(ABC):
     def reproducible(self) -> bool:
         """False where a wall-clock budget decides what it answers."""
         return True
+
+    @property
+    def training(self) -> Training | None:
+        """What it cost to train; None for what does not learn."""
+        return None
+
+    @property
+    def fingerprint(self) -> str:
+        """Of what it reads from files, weights say, beyond its Config and version."""
+        return ""
 
     def unfit(self, sensing: Sensing) -> str:
         """Why it cannot drive agents that sense so, beyond what it needs; "" where it can."""

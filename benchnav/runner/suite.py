@@ -4,13 +4,13 @@ import hashlib
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from benchnav.errors import MissingExtraError, ScenarioError, UsageError, did_you_mean
 from benchnav.navigation.configure import Spec, configure, make, split
-from benchnav.navigation.navigator import Navigator, Need
+from benchnav.navigation.navigator import Navigator, Need, Training
 from benchnav.navigation.tracks import TRACKS
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.generators import check_salt
@@ -33,11 +33,14 @@ class Entry:
     source: str  # distribution and version that it comes from
     required: frozenset[Need]
     lacks: str = ""  # what is not installed that it needs to be made; "" if it can be
+    training: Training | None = None
+    fingerprint: str = ""  # of the files that it reads
 
     @property
     def hash(self) -> str:
-        """Of all that the label stands for: type, every parameter, source and its version."""
-        said = json.dumps([dict(self.spec), self.source], sort_keys=True)
+        """Of all that the label stands for: type, every parameter, source, version, files."""
+        files = [self.fingerprint] if self.fingerprint else []
+        said = json.dumps([dict(self.spec), self.source, *files], sort_keys=True)
         return hashlib.sha256(said.encode()).hexdigest()[:16]
 
 
@@ -138,9 +141,7 @@ class Suite:
                 for s in self.scenarios
             ],
             "tracks": list(self.tracks),
-            "navigators": [
-                {"label": e.label, "says": dict(e.spec), "source": e.source} for e in self.entries
-            ],
+            "navigators": [_resolved(entry) for entry in self.entries],
         }
 
 
@@ -207,9 +208,22 @@ def _entry(spec: Spec, where: str) -> Entry:
     full = {"type": name, **config.model_dump(mode="json")}
     source = NAVIGATORS.source(name).distribution
     try:
-        return Entry(label, full, source, make(NAVIGATORS, spec, where=where).required)
+        navigator: Navigator = make(NAVIGATORS, spec, where=where)
+        return Entry(
+            label, full, source, navigator.required, training=navigator.training,
+            fingerprint=navigator.fingerprint,
+        )  # fmt: skip
     except MissingExtraError as error:
         return Entry(label, full, source, frozenset(), str(error))
+
+
+def _resolved(entry: Entry) -> dict[str, Any]:
+    said = {"label": entry.label, "says": dict(entry.spec), "source": entry.source}
+    if entry.training:
+        said["training"] = asdict(entry.training)
+    if entry.fingerprint:
+        said["fingerprint"] = entry.fingerprint
+    return said
 
 
 def _scenario(name: str, folder: Path) -> Scenario:
