@@ -1,0 +1,185 @@
+"""``python -m benchmarks.model_card recurrent-ppo --training DIR``: measure a learned navigator.
+
+Writes its model card: where it learned, what that cost, what each stage gained, and strict
+success per agent in worlds of the test split, with the interval clustered by world, beside
+what full knowledge reached in the same worlds.
+"""
+
+import argparse
+import json
+import os
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchnav.arena.solid import Kind
+from benchnav.arrays import FloatArray
+from benchnav.episode.episode import Episode
+from benchnav.leaderboard.interval import effective_size, wilson
+from benchnav.metrics.smoothness import turning
+from benchnav.metrics.success import success, timeout
+from benchnav.navigation.configure import make
+from benchnav.plugins import NAVIGATORS
+from benchnav.runner.rollout import Assignment, rollout
+from benchnav.scenario.catalogue import find
+from benchnav.world.build import build
+
+SCENARIOS = (
+    "leaders/static", "leaders/static-corner", "leaders/moved", "leaders/dynamic",
+    "leaders/dynamic-corner", "corridor/bidirectional", "crowd/circle-crossing", "office/rooms",
+)  # fmt: skip
+CHUNK = 50  # worlds of a task
+KINDS = (Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.DYNAMIC)
+KNOWLEDGE = Path("docs/learning/full_knowledge.json")
+
+
+@dataclass(frozen=True)
+class Row:
+    """One scenario, over all evaluated agents."""
+
+    scenario: str
+    worlds: int
+    agents: int
+    success: float
+    low: float
+    high: float
+    timeout: float
+    hits: dict[str, float]  # share of agents whose first contact was with that kind
+    turning: float  # [rad/m]
+
+
+def measure(navigator: str, scenario: str, worlds: int) -> Row:
+    """Run ``navigator`` in the first ``worlds`` test worlds, without a map."""
+    tasks = [
+        (navigator, scenario, first, min(first + CHUNK, worlds))
+        for first in range(0, worlds, CHUNK)
+    ]
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
+        parts = [part for task in pool.map(_run, tasks) for part in task]
+    rates = np.array([[part[0].mean()] for part in parts])
+    agents = np.array([[float(len(part[0]))] for part in parts])
+    every = [np.concatenate(column) for column in zip(*(part[:3] for part in parts), strict=True)]
+    rate = np.array([every[0].mean()])
+    low, high = wilson(rate, effective_size(rates, agents))
+    first = [kind for part in parts for kind in part[3]]
+    return Row(
+        scenario, len(parts), len(every[0]), float(rate[0]), float(low[0]), float(high[0]),
+        float(every[1].mean()),
+        {kind.name.lower(): first.count(int(kind)) / len(every[0]) for kind in KINDS},
+        float(np.nanmean(every[2])),
+    )  # fmt: skip
+
+
+def _run(task: tuple[str, str, int, int]) -> list[tuple[FloatArray, FloatArray, FloatArray, list]]:
+    navigator, name, first, stop = task
+    scenario = find(name)
+    background = tuple({"type": d.type, **d.params} for d in scenario.drivers)
+    about = Assignment(
+        scenario.identity, scenario.hash, "test", "unknown", navigator, navigator, background,
+        salt="00",
+    )  # fmt: skip
+    worlds = [(seed, build(scenario, "test", seed)) for seed in range(first, stop)]
+    return [_measured(episode) for batch in rollout(about, worlds) for episode in batch]
+
+
+def _measured(episode: Episode) -> tuple[FloatArray, FloatArray, FloatArray, list[int]]:
+    if episode.failure:
+        raise RuntimeError(episode.failure)
+    mine = episode.world.agents.evaluated
+    arrived = success(episode)
+    return (
+        arrived[mine], timeout(episode)[mine], turning(episode)[mine],
+        list(_first_hits(episode, mine & (arrived == 0.0))),
+    )  # fmt: skip
+
+
+def _first_hits(episode: Episode, who: Any) -> Iterator[int]:
+    contacts = episode.contacts
+    for agent in np.flatnonzero(who):
+        rows = np.flatnonzero((contacts.agent == agent) & contacts.charged)
+        if len(rows):
+            yield int(contacts.kind[rows[0]])
+
+
+def card(navigator: str, rows: list[Row], training: Path | None) -> str:
+    """The card as Markdown."""
+    about = make(NAVIGATORS, navigator).about
+    progress = about["progress"]
+    known = {k["scenario"]: k for k in json.loads(KNOWLEDGE.read_text())}
+    lines = [
+        f"# {navigator}",
+        "",
+        f"Encoder `{about['encoder']}`, network {json.dumps(about['network'])}.",
+        f"Learned from {progress['decisions']:,} decisions in {progress['seconds']:,.0f} s, seed"
+        f" {progress['seed']}, recipe `{about['recipe']}` ({about['recipe_hash']}), on"
+        f" {about['machine']}, one thread.",
+        "Worlds of the split `train`: "
+        + ", ".join(f"{c['worlds']} of {c['scenario']}" for c in about["courses"])
+        + ".",
+        "",
+        "Strict success (goal touched, nothing else before) per agent, deterministic, no map,"
+        " test worlds 0, 1, …; 95 % interval clustered by world. *Full knowledge* is a space-time"
+        " planner that knows the map and the laws of the movers (the first 500 worlds).",
+        "",
+        "| scenario | agents | success % | full knowledge % | hit by agent, wall, static, mover % |"
+        " timeout % | turning rad/m |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    lines += [_line(row, known.get(row.scenario)) for row in rows]
+    if training is not None:
+        lines += ["", *_stages(training)]
+    return "\n".join([*lines, ""])
+
+
+def _line(row: Row, known: dict[str, Any] | None) -> str:
+    hits = ", ".join(f"{100 * row.hits[kind.name.lower()]:.2f}" for kind in KINDS)
+    full = "" if known is None else f"{100 * known['success']:.2f}"
+    return (
+        f"| {row.scenario} | {row.agents:,} | **{100 * row.success:.2f}** [{100 * row.low:.2f},"
+        f" {100 * row.high:.2f}] | {full} | {hits} | {100 * row.timeout:.2f} | {row.turning:.2f} |"
+    )
+
+
+def _stages(training: Path) -> Iterator[str]:
+    """What each stage gained, on the validation split."""
+    from benchnav_baselines.recurrent_ppo.log import read_curve
+
+    curve = read_curve(training)
+    said = json.loads((training / "training.json").read_text())["recipe"]
+    names = [name for name in curve[0] if name.startswith("validation ")]
+    yield "Success on the validation split at the end of each stage, without correction:"
+    yield ""
+    yield "| stage | decisions | " + " | ".join(n.removeprefix("validation ") for n in names) + " |"
+    yield "|---|---|" + "---|" * len(names)
+    for stage in range(len(said["stages"])):
+        last = next((row for row in curve if row["stage"] > stage), curve[-1])
+        cells = " | ".join(f"{100 * last[name]:.1f}" for name in names)
+        yield f"| {stage + 1} | {last['decisions']:,.0f} | {cells} |"
+
+
+def main() -> None:
+    """Measure, print, and write the card."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("navigator")
+    parser.add_argument("--worlds", type=int, default=2500)
+    parser.add_argument("--scenario", action="append", help="instead of all; may be given again")
+    parser.add_argument("--training", type=Path, help="folder of the training, for its stages")
+    parser.add_argument("--out", type=Path, help="the card; and the numbers as JSON beside it")
+    asked = parser.parse_args()
+    rows = []
+    for scenario in asked.scenario or SCENARIOS:
+        rows.append(measure(asked.navigator, scenario, asked.worlds))
+        print(rows[-1], flush=True)
+    text = card(asked.navigator, rows, asked.training)
+    if asked.out:
+        asked.out.write_text(text)
+    else:
+        print(text)
+
+
+if __name__ == "__main__":
+    main()
