@@ -44,8 +44,8 @@ class RecurrentPPO(Navigator):
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
         path = Path(self.config.weights) if self.config.weights else SHIPPED / self.shipped
-        self._actor, self._about = _loaded(path)
-        self._encoder = encoder(self._about["encoder"])
+        self._actor, self.about = _loaded(path)
+        self._encoder = encoder(self.about["encoder"])
         self._kept = RowTable()
 
     @property
@@ -54,12 +54,12 @@ class RecurrentPPO(Navigator):
 
     @property
     def training(self) -> Training:
-        progress = self._about["progress"]
+        progress = self.about["progress"]
         return Training(int(progress["decisions"]), float(progress["seconds"]))
 
     @property
     def fingerprint(self) -> str:
-        return str(self._about["sha256"])
+        return str(self.about["sha256"])
 
     def unfit(self, sensing: Sensing) -> str:
         rays = sensing.rays

@@ -2,15 +2,15 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import fields
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
-from gymnasium import spaces
 from stable_baselines3.common.vec_env import VecEnv
 
 from benchnav.arrays import BoolArray
 from benchnav.envs.agent_batch import AgentBatch, Transition
 from benchnav.envs.reward import RewardTerms, RewardWeights
+from benchnav.envs.spaces import action_space, observation_space
 from benchnav.envs.tally import Tally
 
 
@@ -26,16 +26,12 @@ class AgentVecEnv(VecEnv):
 
     def __init__(self, batches: Sequence[AgentBatch]) -> None:
         self.batches = tuple(batches)
-        size = self.batches[0].encoder.size
-        numbers = self.batches[0].encoder.numbers
-        low = np.array([n.low for n in numbers], np.float32)
-        high = np.array([n.high for n in numbers], np.float32)
-        observation = spaces.Box(np.minimum(low, 0.0), np.maximum(high, 0.0), (size,), np.float32)
         slots = sum(batch.rows * batch.width for batch in self.batches)
         self.tally = Tally()
         self.acted: BoolArray = np.zeros(slots, np.bool_)
         self._action: Any = None
-        super().__init__(slots, observation, spaces.Box(-1.0, 1.0, (2,), np.float32))
+        space: Any = observation_space(self.batches[0].encoder)
+        super().__init__(slots, space, cast(Any, action_space()))
 
     def enter(self, weights: RewardWeights, seed: int) -> None:
         """From the next reset on, pay by ``weights`` and draw worlds in the order of ``seed``."""

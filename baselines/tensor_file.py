@@ -1,0 +1,45 @@
+"""Arrays that were learned, on disk: safetensors and plain text about them, never pickle."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from safetensors.numpy import load, save
+
+from benchnav.arrays import AnyArray
+from benchnav.errors import PluginError
+
+
+@dataclass(frozen=True, eq=False)
+class TensorFile:
+    """What a file holds."""
+
+    tensors: Mapping[str, AnyArray]
+    metadata: Mapping[str, str]
+    sha256: str  # of its bytes
+
+
+def write_tensors(path: Path, tensors: Mapping[str, AnyArray], metadata: Mapping[str, str]) -> None:
+    """Atomically: a reader sees the old file or the new one."""
+    part = path.with_name(path.name + ".part")
+    part.write_bytes(save(dict(tensors), dict(metadata)))
+    part.replace(path)
+
+
+def read_tensors(path: Path) -> TensorFile:
+    """Raises PluginError where the file is missing, cut short, or something else."""
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise PluginError(f"{path}: cannot be read: {error.strerror}.") from None
+    try:
+        tensors = load(data)
+        header = json.loads(data[8 : 8 + int.from_bytes(data[:8], "little")])
+    except Exception as error:
+        raise PluginError(
+            f"{path}: must be a whole safetensors file. It is cut short or something else:"
+            f" {str(error)[:200]}."
+        ) from None
+    return TensorFile(tensors, header.get("__metadata__", {}), hashlib.sha256(data).hexdigest())

@@ -1,0 +1,288 @@
+"""Worlds that start again in a row, and the decision process of their agents."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from benchnav_baselines.recurrent_ppo.actor import Actor
+from benchnav_baselines.recurrent_ppo.evaluate import evaluate
+from benchnav_baselines.recurrent_ppo.weights import write_weights
+
+from benchnav.arena.solid import Kind
+from benchnav.arena.world import ContactRule
+from benchnav.envs.agent_batch import AgentBatch, Instead
+from benchnav.envs.encoders.catalogue import encoder
+from benchnav.envs.relay import KINDS, Relay
+from benchnav.envs.reward import RewardWeights
+from benchnav.episode.episode import Status
+from benchnav.errors import UsageError
+from benchnav.runner.rollout import Assignment, rollout
+from benchnav.scenario.catalogue import find
+from benchnav.sensors.sense import sense
+from benchnav.world.build import build
+from benchnav.world.simulation import Simulation
+from tests.worlds import agents, random_world, walls, world
+
+SENSORS = frozenset({"rays", "neighbours", "edges"})
+
+
+@cache
+def drawn(scenario, count, split="train"):
+    return [build(find(scenario), split, seed) for seed in range(count)]
+
+
+def mixed_pool():
+    """Worlds of different numbers of obstacles and movers, under one clock and one set of rules."""
+    names = ("leaders/dynamic", "leaders/static", "leaders/moving-furniture")
+    return [world for name in names for world in drawn(name, 4)]
+
+
+def steering(position, goal, heading, rng):
+    """(A, 2) twists roughly at the goal."""
+    way = goal - position
+    error = np.arctan2(way[..., 1], way[..., 0]) - heading
+    error = np.remainder(error + np.pi, 2 * np.pi) - np.pi
+    noise = rng.normal(size=(*error.shape, 2)) * 0.5
+    return np.stack([np.full_like(error, 1.5), 3 * error], axis=-1) + noise
+
+
+def state(simulation, b, world):
+    A, M = len(world.agents), len(world.bodies)
+    names = ("position", "velocity", "heading", "status", "present", "arrival")
+    bodies = ("body_position", "body_velocity")
+    return (
+        [getattr(simulation, name)[b, :A].copy() for name in names]
+        + [getattr(simulation, name)[b, :M].copy() for name in bodies]
+        + [simulation.steps_done[b], simulation.running[b], simulation.revision[b]]
+    )
+
+
+def arrays(readings):
+    return [array for part in readings for name, array in vars(part).items() if name != "angle"]
+
+
+@pytest.mark.parametrize("contact", ["as drawn", *ContactRule])
+def test_a_row_that_starts_again_is_a_fresh_simulation(contact):
+    pool = mixed_pool()
+    if contact != "as drawn":
+        counts = [2, 4, 3]
+        pool = [random_world(k, counts[k % 3], contact, steps=40) for k in range(6)]
+    rng = np.random.default_rng(0)
+    relay = Relay(pool, 3)
+    A = relay.A
+    alone = [Simulation([pool[b]]) for b in range(3)]
+    twist, restarts = np.ones((3, A), bool), 0
+    for _ in range(120):
+        again = np.flatnonzero(~relay.running | (rng.random(3) < 0.04))
+        worlds = rng.integers(len(pool), size=len(again))
+        relay.restart(again, worlds)
+        for b, w in zip(again, worlds, strict=True):
+            alone[b] = Simulation([pool[w]])
+        restarts += len(again)
+        readings = sense(relay, np.where(relay.present, np.arange(A), -1), SENSORS)
+        command = steering(relay.position, relay.goal, relay.heading, rng)
+        executed = relay.step(command, twist)
+        for b, one in enumerate(alone):
+            n = one.A
+            who = np.where(one.present, np.arange(n), -1)
+            for here, there in zip(arrays(readings), arrays(sense(one, who, SENSORS)), strict=True):
+                np.testing.assert_array_equal(here[b, :n], there[0])
+            np.testing.assert_array_equal(one.step(command[b, None, :n], twist[:1, :n])[0],
+                                          executed[b, :n])  # fmt: skip
+            for here, there in zip(
+                state(relay, b, one.worlds[0]), state(one, 0, one.worlds[0]), strict=True
+            ):
+                np.testing.assert_array_equal(here, there)
+    assert restarts > 6
+    for b, one in enumerate(alone):
+        for name, values in vars(one.contacts(0)).items():
+            np.testing.assert_array_equal(getattr(relay.contacts(b), name), values)
+
+
+def charged(contacts, width):
+    """(A, KINDS) collision events."""
+    counts = np.zeros((width, KINDS), int)
+    for agent, kind, told in zip(contacts.agent, contacts.kind, contacts.charged, strict=True):
+        counts[agent, kind] += bool(told)
+    return counts
+
+
+@pytest.mark.parametrize("contact", list(ContactRule))
+def test_what_begun_counts_adds_up_to_the_contacts(contact):
+    rng = np.random.default_rng(1)
+    pool = [random_world(seed, 6, contact, steps=150) for seed in range(10)]
+    relay = Relay(pool, 10)
+    counts = np.zeros((10, relay.A, KINDS), int)
+    for _ in range(150):
+        running = relay.running.copy()
+        relay.step(steering(relay.position, relay.goal, relay.heading, rng), relay.present | True)
+        counts[running] += relay.begun()[running]
+    for b in range(10):
+        np.testing.assert_array_equal(counts[b], charged(relay.contacts(b), relay.A))
+    kinds = set(np.flatnonzero(counts.sum((0, 1))))
+    assert kinds == {Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.DYNAMIC}
+
+
+def batch_of(pool, rows, name="ego", weights=None, seed=0):
+    return AgentBatch(
+        pool, rows, encoder(name), weights or RewardWeights(), np.random.default_rng(seed)
+    )
+
+
+def decide(batch, rng):
+    """(B, A, 2) actions roughly at the goal."""
+    s = batch.simulation
+    return np.clip(steering(s.position, s.goal, s.heading, rng) * [0.6, 0.4], -1, 1)
+
+
+@pytest.mark.parametrize("scenario", ["leaders/dynamic", "corridor/bidirectional"])
+def test_an_attempt_ends_and_its_slot_idles_until_the_row_starts_again(scenario):
+    batch, rng = batch_of(drawn(scenario, 6), 4), np.random.default_rng(2)
+    x = batch.reset()
+    before, ends = batch.active.copy(), 0
+    for _ in range(300):
+        step = batch.step(decide(batch, rng))
+        assert (step.acted == before).all()
+        np.testing.assert_array_equal(step.over & ~step.acted, False)
+        assert (step.arrived.astype(int) + step.touched + step.timed_out <= 1).all()
+        left = step.acted & ~step.over
+        fresh = ~left.any(1)
+        assert (step.restarted.any(1) == fresh).all()
+        np.testing.assert_array_equal(batch.active, np.where(fresh[:, None], step.restarted, left))
+        assert (step.reward[~step.acted] == 0).all()
+        assert (step.observation[~batch.active] == 0).all()
+        assert step.observation[batch.active].any(axis=-1).all()
+        same = left | (step.timed_out & ~fresh[:, None])
+        np.testing.assert_array_equal(step.observation[left], step.final[left])
+        assert same.any() or fresh.all()
+        before, ends, x = batch.active.copy(), ends + int(step.over.sum()), step.observation
+    assert ends > 40
+    assert np.isfinite(x).all()
+
+
+def test_every_world_of_the_pool_comes_once_a_pass():
+    pool = drawn("leaders/dynamic", 7)
+    batch, rng = batch_of(pool, 3), np.random.default_rng(3)
+    batch.reset()
+    number = {id(world): k for k, world in enumerate(batch.simulation.pool)}
+    order = [number[id(world)] for world in batch.simulation.worlds]
+    while len(order) < 28:
+        step = batch.step(decide(batch, rng))
+        rows = np.flatnonzero(step.restarted.any(1))
+        order += [number[id(batch.simulation.worlds[b])] for b in rows]
+    passes = [tuple(order[k : k + 7]) for k in range(0, 28, 7)]
+    assert all(sorted(one) == list(range(7)) for one in passes)
+    assert len(set(passes)) > 1
+
+
+def test_the_order_of_worlds_depends_on_the_generator_alone():
+    pool = drawn("leaders/dynamic", 7)
+
+    def first(seed):
+        batch = batch_of(pool, 5, seed=seed)
+        batch.reset()
+        return [batch.simulation.pool.index(world) for world in batch.simulation.worlds]
+
+    assert first(1) == first(1) != first(2)
+    batch = batch_of(pool, 5, seed=3)
+    batch.reset()
+    batch.reseed(np.random.default_rng(1))
+    batch.reset()
+    assert [batch.simulation.pool.index(w) for w in batch.simulation.worlds] == first(1)
+
+
+def test_no_row_learns_of_the_others():
+    pool = drawn("leaders/dynamic", 4)
+    together, alone = batch_of(pool, 4), batch_of(pool, 1)
+    x, one = together.reset(np.arange(4)), alone.reset(np.array([2]))
+    rng = np.random.default_rng(4)
+    for _ in range(25):
+        np.testing.assert_array_equal(x[2], one[0])
+        action = decide(together, rng)
+        a, b = together.step(action), alone.step(action[2:3])
+        np.testing.assert_array_equal(a.reward[2], b.reward[0])
+        x, one = a.observation, b.observation
+        if a.restarted[2].any():
+            return
+
+
+def test_actions_span_what_the_body_can_do():
+    crew = agents([[4.0, 4.0], [12.0, 12.0]], [[18.0, 4.0], [18.0, 12.0]], unicycle=True)
+    for v, w, expected in [(-1, 0, (0, 0)), (1, 0, (2, 0)), (0, 1, (1, 2.5)), (9, -9, (2, -2.5))]:
+        batch = batch_of([world(crew)], 1)
+        batch.reset()
+        batch.step(np.broadcast_to(np.array([v, w], float), (1, 2, 2)))
+        s = batch.simulation
+        np.testing.assert_allclose(np.hypot(*s.velocity[0].T), expected[0], atol=1e-12)
+        np.testing.assert_allclose(s.heading[0], 0.2 * expected[1], atol=1e-12)
+
+
+def test_the_reward_of_a_decision_by_hand():
+    """One drives at full speed at its goal, one away from its own, one against a wall."""
+    crew = agents(
+        [[4.0, 4.0], [12.0, 12.0], [19.4, 8.0]], [[18.0, 4.0], [2.0, 12.0], [2.0, 8.0]],
+        unicycle=True,
+    )  # fmt: skip
+    weights = RewardWeights(approach=2, walls=30, time=1, turning=3, moving="progress", scale=0.5)
+    batch = batch_of([world(crew, [walls(20.0)])], 1, weights=weights)
+    batch.reset()
+    step = batch.step(np.array([[[1.0, 0.0], [0.0, 0.0], [1.0, 0.0]]]))
+    np.testing.assert_allclose(step.terms.approach[0, :2], [2, -1])
+    np.testing.assert_allclose(step.terms.walls[0], [0, 0, -30])
+    np.testing.assert_allclose(step.reward[0, :2], [0.5 * (2 - 1), 0.5 * (-1 - 1)])
+    assert step.touched[0].tolist() == [False, False, True]
+
+
+def test_somebody_else_may_drive_a_slot():
+    crew = agents([[4.0, 4.0], [12.0, 12.0]], [[18.0, 4.0], [18.0, 12.0]])
+    batch = batch_of([world(crew)], 1)
+    batch.reset()
+    instead = Instead(np.array([[False, True]]), np.array([[[0.0, 0.0], [0.0, -1.5]]]), twist=False)
+    batch.step(np.zeros((1, 2, 2)), instead)
+    np.testing.assert_allclose(batch.simulation.velocity[0], [[1, 0], [0, -1.5]], atol=1e-12)
+
+
+def test_agents_that_are_driven_already_are_refused():
+    crew = agents([[4.0, 4.0], [12.0, 12.0]], [[18.0, 4.0], [18.0, 12.0]], driver=[0, 1])
+    with pytest.raises(UsageError, match="evaluated agents only"):
+        batch_of([world(crew)], 1)
+
+
+def at_the_goal(noise=0.0):
+    """Weights that steer at the goal, with random ones beside them and an LSTM before."""
+    rng = np.random.default_rng(0)
+    names = [number.name for number in encoder("ego").numbers]
+    output = noise * rng.normal(size=(62, 2)).astype(np.float32)
+    output[names.index("goal.sin"), 1] += 1.5
+    return {"output.weight": output, "output.bias": np.array([0.5, 0.0], np.float32)}
+
+
+def remembering():
+    rng = np.random.default_rng(0)
+
+    def draw(*shape):
+        return (0.4 * rng.normal(size=shape)).astype(np.float32)
+
+    return {
+        "lstm0.weight": draw(70, 32), "lstm0.bias": draw(32),
+        "output.weight": draw(8, 2), "output.bias": np.array([0.3, 0.0], np.float32),
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("tensors", [at_the_goal(), at_the_goal(0.1), remembering()])
+@pytest.mark.parametrize("scenario", ["leaders/dynamic", "leaders/static-corner"])
+def test_strict_success_is_what_the_runner_records(tensors, scenario, tmp_path):
+    path, worlds = tmp_path / "w.safetensors", drawn(scenario, 12, "validation")
+    write_weights(path, tensors, {"encoder": "ego"})
+    arrived = evaluate(Actor(tensors), encoder("ego"), worlds)
+    spec = {"type": "recurrent-ppo", "weights": str(path)}
+    run = Assignment(scenario, "hash", "validation", "unknown", "own", spec)
+    episodes = [e for batch in rollout(run, list(enumerate(worlds))) for e in batch]
+    assert sorted(episode.identity.seed for episode in episodes) == list(range(12))
+    for episode in episodes:
+        assert not episode.failure
+        there = episode.status[-1] == Status.ARRIVED
+        np.testing.assert_array_equal(arrived[episode.identity.seed], there)
+        assert not np.isin(episode.contacts.agent, np.flatnonzero(there)).any()
+    if "lstm0.bias" not in tensors:
+        assert 0.1 < arrived.mean() < 0.95

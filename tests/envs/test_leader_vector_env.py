@@ -1,0 +1,124 @@
+from itertools import pairwise
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.vector import AutoresetMode
+from gymnasium.wrappers.vector import RecordEpisodeStatistics
+
+from benchnav.envs.leader_vector_env import LeaderVectorEnv
+from benchnav.envs.making import make_batch
+from benchnav.envs.registration import LEADER
+from benchnav.errors import BenchnavError
+
+STEPS = 260  # longer than an episode of the scenario
+
+
+@pytest.fixture(scope="module")
+def env():
+    return LeaderVectorEnv(8, "leaders/static", "ego", worlds=3)
+
+
+def actions(steps=STEPS, slots=8):
+    rng = np.random.default_rng(1)
+    drawn = rng.uniform(-1, 1, (steps, slots, 2)).astype(np.float32)
+    drawn[:, ::2] = -1, 0  # every other agent stands until time runs out
+    return drawn
+
+
+@pytest.fixture(scope="module")
+def steps(env):
+    """(observation, reward, terminated, truncated, info) of every step, the first from reset."""
+    none = np.zeros(env.num_envs)
+    first, info = env.reset(seed=0)
+    return [(first, none, none > 0, none > 0, info), *(env.step(a) for a in actions())]
+
+
+def test_it_is_what_gymnasium_expects(env, steps):
+    assert env.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
+    made = gymnasium.make_vec(LEADER, num_envs=4, worlds=1)
+    assert isinstance(made, LeaderVectorEnv)
+    for seen, reward, terminated, truncated, info in steps:
+        assert env.observation_space.contains(seen)
+        assert [part.shape for part in (reward, terminated, truncated)] == [(8,)] * 3
+        assert terminated.dtype == truncated.dtype == bool
+        assert not (terminated & truncated).any()
+        done = terminated | truncated
+        assert done.any() == ("final_obs" in info)
+        if done.any():
+            assert np.array_equal(info["_final_obs"], done)
+            assert all(env.single_observation_space.contains(x) for x in info["final_obs"][done])
+
+
+def test_it_agrees_with_the_batch_bit_for_bit(env):
+    batch = make_batch("leaders/static", "ego", "train", 3, None, 8)
+    env.reset(seed=4)
+    batch.reseed(np.random.Generator(np.random.PCG64(np.random.SeedSequence(4))).spawn(1)[0])
+    assert np.array_equal(env.reset(seed=4)[0].reshape(2, 4, -1), batch.reset())
+    for action in actions():
+        seen, reward, terminated, truncated, info = env.step(action)
+        step = batch.step(action.reshape(2, 4, 2))
+        assert np.array_equal(seen, step.observation.reshape(8, -1))
+        assert np.array_equal(reward, step.reward.reshape(-1))
+        assert np.array_equal(info["acted"], step.acted.reshape(-1))
+        assert np.array_equal(truncated, step.timed_out.reshape(-1))
+        assert np.array_equal(terminated & info["acted"], (step.arrived | step.touched).reshape(-1))
+
+
+def test_who_idles_sees_and_gets_nothing_until_the_row_restarts(steps):
+    idled = 0
+    for before, (seen, reward, terminated, truncated, info) in pairwise(steps):
+        assert np.array_equal(info["acted"], ~before[4]["idle"])
+        assert not seen[info["idle"]].any()
+        assert not reward[~info["acted"]].any()
+        woke = before[4]["idle"] & ~info["idle"]
+        assert np.array_equal(woke, ~info["acted"] & terminated)
+        assert not (truncated & ~info["acted"]).any()
+        idled += int(info["idle"].sum())
+        rows = woke.reshape(2, 4).any(1)
+        assert not info["idle"].reshape(2, 4)[rows].any()
+    assert idled > 0
+
+
+def test_time_leaves_something_to_value_and_an_end_does_not(steps):
+    cut = ended = 0
+    for _, _, terminated, truncated, info in steps:
+        for slot in np.flatnonzero(truncated):
+            assert info["final_obs"][slot].any()
+            cut += 1
+        for slot in np.flatnonzero(terminated):
+            assert not info["final_obs"][slot].any()
+            ended += 1
+    assert cut > 0
+    assert ended > 0
+
+
+def test_a_seed_decides_the_worlds(env):
+    first = env.reset(seed=2)[0]
+    assert any(not np.array_equal(env.reset(seed=other)[0], first) for other in range(3, 9))
+    assert np.array_equal(env.reset(seed=2)[0], first)
+    assert not np.array_equal(env.reset()[0], first)  # goes on in the order that 2 gave
+
+
+def test_gymnasium_s_statistics_wrap_it():
+    wrapped = RecordEpisodeStatistics(LeaderVectorEnv(4, worlds=1))
+    wrapped.reset(seed=0)
+    lengths = []
+    for action in actions(260, 4):
+        info = wrapped.step(action)[4]
+        if "episode" in info:
+            lengths += info["episode"]["l"][info["_episode"]].tolist()
+    assert 250 in lengths
+
+
+@pytest.mark.parametrize(
+    ("wrong", "says"),
+    [
+        ({"num_envs": 1}, "at least 4, the agents of a world of leaders/static. Got 1 instead"),
+        ({"num_envs": 6}, "multiple of 4, .* Got 6 instead; the nearest below is 4"),
+        ({"others": "orca"}, "Every agent learns here"),
+    ],
+)
+def test_mistakes_are_explained(wrong, says):
+    with pytest.raises(BenchnavError, match=says):
+        LeaderVectorEnv(**{"worlds": 1, **wrong})

@@ -1,0 +1,132 @@
+"""Encoders agent by agent and ray by ray: plain lists of numbers."""
+
+import math
+
+import numpy as np
+
+from benchnav.arena.solid import Kind
+from tests.reference import collision
+
+STEPS = np.linspace(0, 8, 801)  # [m]
+
+
+def in_frame(heading, vector):
+    """Ahead and to the left, as parts along two unit vectors."""
+    ahead = np.array([math.cos(heading), math.sin(heading)])
+    left = np.array([-math.sin(heading), math.cos(heading)])
+    return [float(ahead @ vector), float(left @ vector)]
+
+
+def ray(kind, distance, goal):
+    if np.isfinite(goal):
+        return [0, 0, 0, 1, 0, goal / 8]
+    if kind in (Kind.DYNAMIC, Kind.NOTHING):
+        return [0, 0, 0, 0, 1, 1.0 if kind == Kind.DYNAMIC else distance / 8]
+    place = [Kind.AGENT, Kind.WALL, Kind.STATIC].index(kind)
+    return [int(k == place) for k in range(4)] + [0, distance / 8]
+
+
+def mover(kind, distance, approach):
+    return [approach / 2, distance / 8] if kind == Kind.DYNAMIC else [0, 1]
+
+
+def absolute(seen, at):
+    return [*seen.position[at] / 10, *seen.velocity[at] / 2, *seen.goal[at] / 10]
+
+
+def relative(seen, at):
+    goal = np.array(in_frame(seen.heading[at], seen.goal[at] - seen.position[at]))
+    distance = max(math.hypot(*goal), 1e-9)
+    velocity = np.array(in_frame(seen.heading[at], seen.velocity[at]))
+    return [*goal / 10, *velocity / 2, *goal / distance]
+
+
+def paper(seen, at, own, movers):
+    rays, numbers = seen.rays, []
+    for r in range(7):
+        numbers += ray(rays.kind[at][r], rays.distance[at][r], rays.goal[at][r])
+    numbers += own(seen, at)
+    for r in range(7 if movers else 0):
+        numbers += mover(rays.kind[at][r], rays.distance[at][r], rays.approach[at][r])
+    return numbers
+
+
+def distance_to_edges(points, start, end):
+    """(N, E) of points (N, 2)."""
+    along, offset = end - start, points[:, None] - start
+    t = np.clip((offset * along).sum(2) / np.maximum((along**2).sum(1), 1e-18), 0, 1)
+    away = offset - t[..., None] * along
+    return np.hypot(away[..., 0], away[..., 1])
+
+
+def free_way(position, direction, radius, start, end):
+    """[m] until the disc meets an edge: a march of 1 cm steps, then halving.
+
+    An edge within reach stops who approaches it and lets go who leaves.
+    """
+
+    def distance(t):
+        return distance_to_edges(position + np.atleast_1d(t)[:, None] * direction, start, end)
+
+    near = distance(0.0)[0] <= radius
+    if (near & (distance(1e-6)[0] < distance(0.0)[0])).any():
+        return 0.0
+    start, end = start[~near], end[~near]
+    met = (distance(STEPS) <= radius).any(1)
+    if not met.any():
+        return np.inf
+    high = STEPS[met.argmax()]
+    low = high - STEPS[1]
+    for _ in range(20):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if (distance(middle) <= radius).any() else (middle, high)
+    return high
+
+
+def scan(seen, at, radius):
+    numbers = []
+    count = seen.edges.count[at]
+    for k in range(24):
+        angle = seen.heading[at] + math.radians(15 * k)
+        direction = np.array([math.cos(angle), math.sin(angle)])
+        way = free_way(
+            seen.position[at], direction, radius, seen.edges.start[at][:count],
+            seen.edges.end[at][:count],
+        )  # fmt: skip
+        numbers.append(math.exp(-way / 2) if way < 8 else 0)
+    return numbers
+
+
+def other(seen, at, radius, k):
+    near = seen.neighbours
+    if k >= near.count[at]:
+        return [0] * 8
+    offset = near.position[at][k] - seen.position[at]
+    velocity = near.velocity[at][k] - seen.velocity[at]
+    distance, reach = max(math.hypot(*offset), 1e-9), radius + near.radius[at][k]
+    gap = max(distance - reach, 0)
+    return [
+        *np.array(in_frame(seen.heading[at], offset)) / distance,
+        max(1 - gap / 10, 0), math.exp(-gap),
+        *np.array(in_frame(seen.heading[at], velocity)) / 2,
+        collision.probability(offset, -velocity, reach),
+        int(near.kind[at][k] == Kind.DYNAMIC),
+    ]  # fmt: skip
+
+
+def surround(seen, at, bodies):
+    numbers = relative(seen, at)
+    numbers.append(math.exp(-math.hypot(*(seen.goal[at] - seen.position[at])) / 2))
+    numbers.append(bodies.max_speed[at] / 2)
+    numbers += scan(seen, at, bodies.radius[at])
+    for k in range(6):
+        numbers += other(seen, at, bodies.radius[at], k)
+    return numbers
+
+
+def encode(name, seen, at, bodies):
+    """What the encoder ``name`` says of the agent ``at`` (row, column), before clipping."""
+    if name == "surround":
+        return surround(seen, at, bodies)
+    own = absolute if name.startswith("paper") else relative
+    return paper(seen, at, own, not name.endswith("-static"))
