@@ -52,8 +52,10 @@ class Row:
     turning: float  # [rad/m]
 
 
-def measure(navigator: str, scenario: str, worlds: int) -> Row:
-    """Run ``navigator`` in the first ``worlds`` test worlds, without a map."""
+def measure(navigator: str, scenario: str, agents: int) -> Row:
+    """Run ``navigator`` for ``agents`` or more in the first test worlds, without a map."""
+    each = int(build(find(scenario), "test", 0).agents.evaluated.sum())
+    worlds = -(-agents // each)
     tasks = [
         (navigator, scenario, first, min(first + CHUNK, worlds))
         for first in range(0, worlds, CHUNK)
@@ -61,10 +63,10 @@ def measure(navigator: str, scenario: str, worlds: int) -> Row:
     with ProcessPoolExecutor(os.cpu_count()) as pool:
         parts = [part for task in pool.map(_run, tasks) for part in task]
     rates = np.array([[part[0].mean()] for part in parts])
-    agents = np.array([[float(len(part[0]))] for part in parts])
+    sizes = np.array([[float(len(part[0]))] for part in parts])
     every = [np.concatenate(column) for column in zip(*(part[:3] for part in parts), strict=True)]
     rate = np.array([every[0].mean()])
-    low, high = wilson(rate, effective_size(rates, agents))
+    low, high = wilson(rate, effective_size(rates, sizes))
     first = [kind for part in parts for kind in part[3]]
     return Row(
         scenario, len(parts), len(every[0]), float(rate[0]), float(low[0]), float(high[0]),
@@ -165,14 +167,14 @@ def main() -> None:
     """Measure, print, and write the card."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("navigator")
-    parser.add_argument("--worlds", type=int, default=2500)
+    parser.add_argument("--agents", type=int, default=10_000, help="at least so many a scenario")
     parser.add_argument("--scenario", action="append", help="instead of all; may be given again")
     parser.add_argument("--training", type=Path, help="folder of the training, for its stages")
     parser.add_argument("--out", type=Path, help="the card; and the numbers as JSON beside it")
     asked = parser.parse_args()
     rows = []
     for scenario in asked.scenario or SCENARIOS:
-        rows.append(measure(asked.navigator, scenario, asked.worlds))
+        rows.append(measure(asked.navigator, scenario, asked.agents))
         print(rows[-1], flush=True)
     text = card(asked.navigator, rows, asked.training)
     if asked.out:

@@ -133,9 +133,17 @@ class Training:
         row |= {"stage": progress.stage, "seconds": progress.seconds, **success}
         curve.add(row)
         checkpoint.save(self.folder, learner, progress)
-        write_weights(self.folder / WEIGHTS, actor_tensors(learner), self._about(progress, success))
+        self._write_weights(progress, success)
         report(TrainingReport(progress.decisions, self.recipe.decisions, reached))
         return progress
+
+    def _write_weights(self, progress: Progress, success: dict[str, float]) -> None:
+        """The newest, and every checkpoint's by its decisions."""
+        history = self.folder / "checkpoints"
+        history.mkdir(exist_ok=True)
+        tensors, about = actor_tensors(self.learner), self._about(progress, success)
+        for path in (self.folder / WEIGHTS, history / f"{progress.decisions:09d}.safetensors"):
+            write_weights(path, tensors, about)
 
     def _after(self, progress: Progress, here: int, reached: float) -> Progress:
         recipe = self.recipe
