@@ -58,11 +58,11 @@ def load(path: Path) -> Table:
         PluginError: there is none, it is cut short, or it is of another kind.
     """
     file = read_tensors(path)
-    _check_facts(path, file.metadata)
+    _check_facts(path, file.about)
     situation = _array(path, file, "situation", np.int32).astype(np.int64)
     values = _array(path, file, "values", np.float32).astype(np.float64)
     _check(path, situation, values)
-    return Table(situation, values, {**file.metadata, "sha256": file.sha256})
+    return Table(situation, values, {**file.about, "sha256": file.sha256})
 
 
 def _moves() -> str:

@@ -49,6 +49,11 @@ class Actor:
         self.output = Dense(tensors["output.weight"], tensors["output.bias"])
 
     @property
+    def layers(self) -> list[Lstm | Dense]:
+        """All of them, from the observation to the action."""
+        return [*self.lstm, *self.dense, self.output]
+
+    @property
     def state_size(self) -> int:
         """Numbers of memory per agent: hidden and cell of every layer."""
         return sum(2 * (len(layer.bias) // 4) for layer in self.lstm)

@@ -20,7 +20,7 @@ from benchnav.navigation.observation import Observation
 
 HORIZON = 2.0  # [s] looked ahead at agents and dynamic obstacles
 FIXED = 1.5  # [s] at what stands, and at obstacles that turn back
-HELD = 0.6  # [s] that a twist is held before the course is kept
+HELD = 0.3  # [s] that a twist is held before the course is kept
 TICK = 0.1  # [s] between positions that are tested
 MARGIN = 0.05  # [m] kept beyond touching; twice as much from dynamic obstacles
 HIT = 4.0  # danger of touching something at the end of the horizon,

@@ -52,8 +52,9 @@ def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Le
         buffer_of(learner).length = recipe.sequence
     else:
         learner = PPO(
-            "MlpPolicy", env, policy_kwargs=policy, rollout_buffer_class=LiveBuffer, **shared
-        )
+            "MlpPolicy", env, policy_kwargs=policy, rollout_buffer_class=LiveBuffer,
+            batch_size=recipe.rollout * env.num_envs, **shared,
+        )  # fmt: skip
     buffer_of(learner).env = env
     return learner
 

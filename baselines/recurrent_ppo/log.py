@@ -51,10 +51,13 @@ class Curve:
 
 
 def read_curve(folder: Path) -> list[dict[str, float]]:
-    """Every whole row of a stored curve."""
+    """The stored curve of a training; empty where there is none."""
     path = folder / CURVE
-    if not path.exists():
-        return []
+    return read_rows(path) if path.exists() else []
+
+
+def read_rows(path: Path) -> list[dict[str, float]]:
+    """Every whole row of a curve's file."""
     with path.open(newline="") as file:
         rows = csv.DictReader(file)
         return [

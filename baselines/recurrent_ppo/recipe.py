@@ -106,6 +106,11 @@ class Recipe(_Part):
             raise FieldError(("network",), "must have LSTM or dense layers; got neither")
         _refuse_twice(self.courses, ("courses",))
         for i, stage in enumerate(self.stages):
+            if stage.batch <= self.sequence:
+                raise FieldError(
+                    ("stages", i, "batch"),
+                    f"must be > sequence, which is {self.sequence}; got {stage.batch}",
+                )
             _refuse_twice(stage.courses or (), ("stages", i, "courses"))
         return self
 

@@ -66,6 +66,7 @@ class Training:
             progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
         else:
             checkpoint.save(self.folder, self.learner, progress)
+        self._tell()
         curve = Curve(self.folder, progress.decisions)
         try:
             while progress.stage < len(self.recipe.stages):
@@ -84,6 +85,9 @@ class Training:
         if resume and not there:
             raise UsageError(f"{self.folder} must hold a checkpoint to --resume. It does not.")
         self.folder.mkdir(parents=True, exist_ok=True)
+
+    def _tell(self) -> None:
+        """Everything that is needed to repeat the training."""
         said = {
             "recipe": self.recipe.model_dump(mode="json"), "hash": self.recipe.hash,
             "seed": self.seed, "machine": _machine(), "versions": _versions(),
@@ -98,7 +102,13 @@ class Training:
     def _enter(self, stage: Stage, seed: int) -> AgentVecEnv:
         """The worlds of a stage, about to start anew."""
         if self.recipe.courses_of(stage) != self._courses:
+            slots = self._env.num_envs
             self._lay_out(stage)
+            if self._env.num_envs != slots:
+                raise UsageError(
+                    f"The courses of every stage of {self.recipe.name!r} must have as many agents"
+                    f" side by side. Got {slots} and {self._env.num_envs}."
+                )
             self.learner.set_env(self._env)
             buffer_of(self.learner).env = self._env
         self._env.enter(stage.reward, seed)
@@ -119,9 +129,7 @@ class Training:
         goal = min(self.recipe.checkpoint, stage.decisions - progress.in_stage)
         while here < goal:
             enter(learner, stage, (progress.in_stage + here) / stage.decisions)
-            learner.collect_rollouts(env, callback, learner.rollout_buffer, self.recipe.rollout)
-            learner.train()
-            self._check_finite(progress.decisions + here)
+            self._update(callback, progress.decisions + here)
             here = int(env.tally.counts["decisions"])
             report(TrainingReport(progress.decisions + here, self.recipe.decisions))
         row = env.tally.take()
@@ -136,6 +144,19 @@ class Training:
         self._write_weights(progress, success)
         report(TrainingReport(progress.decisions, self.recipe.decisions, reached))
         return progress
+
+    def _update(self, callback: Any, decisions: int) -> None:
+        """One rollout, and learning from it."""
+        learner = self.learner
+        try:
+            learner.collect_rollouts(
+                self._env, callback, learner.rollout_buffer, self.recipe.rollout
+            )
+            learner.train()
+        except ValueError:  # torch refuses a Gaussian that is not finite
+            self._check_finite(decisions)
+            raise
+        self._check_finite(decisions)
 
     def _write_weights(self, progress: Progress, success: dict[str, float]) -> None:
         """The newest, and every checkpoint's by its decisions."""

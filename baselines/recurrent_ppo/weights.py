@@ -1,6 +1,5 @@
 """Weights on disk: safetensors with what is needed to use and to judge them; no pickle."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -18,8 +17,8 @@ FORMAT = "benchnav-actor-1"
 
 def write_weights(path: Path, tensors: Mapping[str, Float32Array], about: dict[str, Any]) -> None:
     """Atomically. ``about`` holds plain data and must name the encoder."""
-    said = {"format": FORMAT, "about": json.dumps(about, sort_keys=True)}
-    write_tensors(path, {name: np.ascontiguousarray(t) for name, t in tensors.items()}, said)
+    arrays = {name: np.ascontiguousarray(tensor) for name, tensor in tensors.items()}
+    write_tensors(path, arrays, {"format": FORMAT, **about})
 
 
 def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
@@ -28,12 +27,12 @@ def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
     Raises PluginError where the file is missing, cut short, foreign, or not of one piece.
     """
     file = read_tensors(path)
-    if file.metadata.get("format") != FORMAT:
+    about = {**file.about, "sha256": file.sha256}
+    if about.get("format") != FORMAT or "progress" not in about:
         raise PluginError(
             f"{path}: must be weights written by `benchnav train` (format {FORMAT!r})."
-            f" Got the format {file.metadata.get('format')!r} instead."
+            f" Got the format {about.get('format')!r} instead."
         )
-    about = json.loads(file.metadata["about"]) | {"sha256": file.sha256}
     name = about.get("encoder")
     if name not in ENCODERS:
         raise PluginError(f"{path}: made for the encoder {name!r}, which does not exist.")
@@ -46,10 +45,13 @@ def _fitting(path: Path, tensors: Mapping[str, Float32Array], size: int, name: s
         actor = Actor(tensors)
     except KeyError as error:
         raise PluginError(f"{path}: the tensor {error} must be there. It is not.") from None
+    if any(layer.weight.ndim != 2 or layer.bias.ndim != 1 for layer in actor.layers):
+        raise PluginError(f"{path}: weights must have two axes and biases one. They do not.")
     width = size
     for k, layer in enumerate(actor.lstm):
         hidden = len(layer.bias) // 4
-        _demand(path, f"lstm{k}", layer.weight.shape, (width + hidden, 4 * hidden), name)
+        _demand(path, f"lstm{k}", layer.weight.shape, (width + hidden, len(layer.bias)), name)
+        _demand(path, f"lstm{k}", layer.bias.shape, (4 * hidden,), name)
         width = hidden
     for what, dense in [*((f"dense{k}", d) for k, d in enumerate(actor.dense)),
                         ("output", actor.output)]:  # fmt: skip
@@ -57,8 +59,10 @@ def _fitting(path: Path, tensors: Mapping[str, Float32Array], size: int, name: s
         width = len(dense.bias)
     _demand(path, "output", (width,), (2,), name)
     for key, tensor in tensors.items():
-        if tensor.dtype != np.float32 or not np.isfinite(tensor).all():
-            raise PluginError(f"{path}: {key} must be finite float32. Got {tensor.dtype} instead.")
+        if tensor.dtype != np.float32:
+            raise PluginError(f"{path}: {key} must be float32. Got {tensor.dtype} instead.")
+        if not np.isfinite(tensor).all():
+            raise PluginError(f"{path}: {key} must be finite. It holds NaN or infinity.")
     return actor
 
 

@@ -96,7 +96,7 @@ class AgentBatch:
         """Draw the order of the worlds that are still to come from ``rng``."""
         self._rng, self._queue = rng, np.zeros(0, np.int64)
 
-    def step(self, action: FloatArray, instead: Instead | None = None) -> Transition:
+    def step(self, action: AnyArray, instead: Instead | None = None) -> Transition:
         """Decide. ``action`` (B, A, 2) in [-1, 1]: speed from 0 to the limit, turn rate.
 
         Slots in ``instead`` follow what stands there, whatever their action.
@@ -130,7 +130,7 @@ class AgentBatch:
         reward = np.where(acted, self.weights.scale * terms.total, 0.0)
         done = np.flatnonzero(~self.active.any(1))
         restarted = np.zeros_like(acted)
-        observation = final
+        observation = final.copy()
         if len(done):
             self._start(done, self._next(len(done)))
             restarted[done] = self.active[done]

@@ -108,8 +108,8 @@ class _Table:
     def sections(self, title: str) -> Iterator[Section]:
         """A row for each navigator, or for each metric where those are many."""
         if len(self.metrics) <= WIDE:
-            rows = tuple(self._navigator(name) for name in self.navigators)
-            yield Section(title, tuple(self._headings()), rows, self._notes(self.navigators))
+            wide = tuple(self._navigator(name) for name in self.navigators)
+            yield Section(title, tuple(self._headings()), wide, self._notes(self.navigators))
             return
         for start in range(0, len(self.navigators), ABREAST):
             block = self.navigators[start : start + ABREAST]

@@ -38,7 +38,7 @@ def recipe_of(**network):
             "name": "tiny",
             "courses": [{"scenario": "leaders/static-corner", "worlds": 3}],
             "rows": 3,
-            "rollout": 60,
+            "rollout": 64,
             "sequence": 8,
             "network": network,
             "stages": [{"decisions": 100, "batch": 64, "epochs": 1}],
@@ -47,10 +47,11 @@ def recipe_of(**network):
 
 
 @cache
-def rolled_out(layers=1, size=8, dense=(), rollouts=2):
+def rolled_out(layers=1, size=8, dense=(), rollouts=3):
     """A learner that collected rollouts in which slots arrive, collide, idle and start again."""
     recipe = recipe_of(lstm_layers=layers, lstm_size=size, dense=list(dense), log_std=0.5)
-    env = make_env(recipe, training_worlds(recipe), recipe.stages[0].reward, 0)
+    env = make_env(recipe, training_worlds(recipe, recipe.stages[0]))
+    env.enter(recipe.stages[0].reward, 0)
     learner = make_learner(recipe, env, 0, "cpu")
     reseed(learner, np.random.default_rng(0))
     _, callback = learner._setup_learn(10**9, CallbackList([]))
@@ -301,8 +302,8 @@ NETWORKS = [
 def policy_of(network):
     """A learner with weights far from their small first values."""
     recipe = recipe_of(**network.model_dump())
-    worlds = training_worlds(recipe)
-    learner = make_learner(recipe, make_env(recipe, worlds, recipe.stages[0].reward, 0), 3, "cpu")
+    env = make_env(recipe, training_worlds(recipe, recipe.stages[0]))
+    learner = make_learner(recipe, env, 3, "cpu")
     torch.manual_seed(0)
     with torch.no_grad():
         for parameter in learner.policy.parameters():

@@ -9,6 +9,8 @@ import tomllib
 from dataclasses import dataclass
 from pathlib import Path
 
+import yaml
+
 ROOT = Path(__file__).parents[2]
 FENCE = re.compile(r"^```(?P<language>\S*)\n(?P<text>.*?)^```$", re.MULTILINE | re.DOTALL)
 NAMED = re.compile(r"# file: (?P<name>\S+)\n")
@@ -70,7 +72,14 @@ class Reader:
                 return
             case ["benchnav", "run", suite, *_]:
                 fewer = FEWER if "--seeds" not in words else FEWER[2:]
-                self.benchnav([*words[1:], *fewer, *(QUICKER if suite == "quick" else [])])
+                self.benchnav(
+                    [*words[1:], *fewer, *(QUICKER if suite in ("quick", "learning") else [])]
+                )
+            case ["benchnav", "train", recipe, *rest] if not recipe.endswith(".yaml"):
+                self.benchnav(["train", self.shortened(recipe), *rest])
+            case ["pip", "install", package] if package.startswith("benchnav["):
+                extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+                assert package[9:-1] in extras["project"]["optional-dependencies"], package
             case ["benchnav", *rest]:
                 self.benchnav(rest)
             case ["make", target]:
@@ -82,6 +91,17 @@ class Reader:
                 return
             case _:
                 raise AssertionError(f"{shlex.join(words)}: nobody checks this command")
+
+    def shortened(self, name):
+        """A shipped recipe that ends after a few decisions."""
+        path = ROOT / "baselines" / "recurrent_ppo" / "recipes" / f"{name}.yaml"
+        recipe = yaml.safe_load(path.read_text(encoding="utf-8"))
+        recipe |= {"rows": 4, "checkpoint": 300, "validation": {"worlds": 2}}
+        recipe["courses"] = [{**recipe["courses"][0], "worlds": 5}]
+        recipe["stages"] = [{**recipe["stages"][0], "decisions": 300}]
+        short = self.folder / f"{name}.yaml"
+        short.write_text(yaml.safe_dump(recipe), encoding="utf-8")
+        return str(short)
 
     def benchnav(self, arguments):
         code = "from benchnav.cli.main import main; main()"

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from benchnav_baselines.recurrent_ppo.actor import Actor
 from benchnav_baselines.recurrent_ppo.courses import make_env, training_worlds
-from benchnav_baselines.recurrent_ppo.evaluate import evaluate
+from benchnav_baselines.recurrent_ppo.evaluate import evaluate, evaluation
 from benchnav_baselines.recurrent_ppo.learner import actor_tensors, make_learner
-from benchnav_baselines.recurrent_ppo.recipe import Recipe
+from benchnav_baselines.recurrent_ppo.recipe import Course, Recipe
 from benchnav_baselines.recurrent_ppo.training import WEIGHTS, Training
 from benchnav_baselines.recurrent_ppo.weights import read_weights
 from scipy.stats import ttest_rel
@@ -39,13 +39,14 @@ RECIPE = Recipe.model_validate(
 
 def success(actor, worlds):
     """(B,) share of each world's agents that arrived untouched."""
-    arrived = evaluate(actor, encoder(RECIPE.encoder), worlds)
+    arrived = evaluate(actor, evaluation(encoder(RECIPE.encoder), worlds))
     return arrived.sum(1) / [len(world.agents) for world in worlds]
 
 
 def untrained(seed):
-    env = make_env(RECIPE, training_worlds(RECIPE)[:1], RECIPE.stages[0].reward, seed)
-    return Actor(actor_tensors(make_learner(RECIPE, env, seed, "cpu")))
+    one = RECIPE.model_copy(update={"courses": (Course(scenario="leaders/static", worlds=1),)})
+    env = make_env(one, training_worlds(one, one.stages[0]))
+    return Actor(actor_tensors(make_learner(one, env, seed, "cpu")))
 
 
 @pytest.mark.slow

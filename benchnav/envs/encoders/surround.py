@@ -31,7 +31,7 @@ _MOVER = int(Kind.DYNAMIC)
 
 
 class SurroundEncoder(Encoder):
-    """6 numbers of the goal and oneself, 24 of what stands, 8 for each of 6 others."""
+    """8 numbers of the goal and oneself, 24 of what stands, 8 for each of 6 others."""
 
     name: ClassVar[str] = "surround"
     needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
