@@ -28,11 +28,13 @@ def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
     """
     file = read_tensors(path)
     about = {**file.about, "sha256": file.sha256}
-    if about.get("format") != FORMAT or "progress" not in about:
+    if about.get("format") != FORMAT:
         raise PluginError(
             f"{path}: must be weights written by `benchnav train` (format {FORMAT!r})."
             f" Got the format {about.get('format')!r} instead."
         )
+    if not isinstance(about.get("progress"), dict):
+        raise PluginError(f"{path}: must say what it learned from (`progress`). It does not.")
     name = about.get("encoder")
     if name not in ENCODERS:
         raise PluginError(f"{path}: made for the encoder {name!r}, which does not exist.")

@@ -15,7 +15,12 @@ from safetensors.numpy import save
 
 from benchnav.errors import PluginError, StoreError, UsageError
 
-ABOUT = {"encoder": "ego", "recipe": "tiny", "success": {"leaders/static": 0.5}}
+ABOUT = {
+    "format": "benchnav-actor-1",
+    "encoder": "ego",
+    "progress": {"decisions": 5, "seconds": 1.0},
+    "success": {"leaders/static": 0.5},
+}
 
 
 def tensors_of(inputs=62, size=4, dense=5):
@@ -98,14 +103,14 @@ def test_somebody_else_s_safetensors_are_refused(path, metadata):
 
 
 def test_an_unknown_encoder_is_refused(path):
-    write_weights(path, tensors_of(), {"encoder": "sonar"})
+    write_weights(path, tensors_of(), {**ABOUT, "encoder": "sonar"})
     assert "the encoder 'sonar', which does not exist" in refused(path)
-    write_weights(path, tensors_of(), {})
-    refused(path)
+    write_weights(path, tensors_of(), {"encoder": "ego"})
+    assert "must say what it learned from" in refused(path)
 
 
 def test_another_encoder_s_weights_are_refused(path):
-    write_weights(path, tensors_of(), {"encoder": "ego-static"})
+    write_weights(path, tensors_of(), {**ABOUT, "encoder": "ego-static"})
     said = refused(path)
     assert "lstm0 must have the shape (52, 16) for the encoder 'ego-static'" in said
     assert "(66, 16)" in said
@@ -145,7 +150,7 @@ def test_what_is_not_finite_is_refused(path, value):
 
 def test_another_precision_is_refused(path):
     write_weights(path, changed(output_bias=np.zeros(2)), ABOUT)
-    assert "output.bias must be finite float32. Got float64" in refused(path)
+    assert "output.bias must be float32. Got float64" in refused(path)
 
 
 def learner_of(seed):
