@@ -123,7 +123,7 @@ def test_another_encoder_s_weights_are_refused(path):
         ("lstm1.weight", (9, 16)),
         ("dense0.weight", (5, 4)),
         ("output.weight", (5, 3)),
-        ("output.weight", (10,)),
+        ("output.weight", (10, 1)),
         ("output.bias", (3,)),
     ],
 )
@@ -223,3 +223,8 @@ def test_what_is_no_checkpoint_is_refused(tmp_path, metadata):
     (tmp_path / checkpoint.FILE).write_bytes(save(tensors_of(), metadata))
     with pytest.raises(StoreError, match="must be a whole checkpoint"):
         checkpoint.load(tmp_path, learner_of(1), "abc", 3)
+
+
+def test_a_weight_without_two_axes_is_refused(path):
+    write_weights(path, {**tensors_of(), "output.weight": np.zeros(10, np.float32)}, ABOUT)
+    assert "weights must have two axes" in refused(path)
