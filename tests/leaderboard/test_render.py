@@ -217,3 +217,15 @@ def test_seconds_and_bytes_take_a_prefix(values, unit, text):
     assert text in re.sub(r" \[.*?\]", "", shown)
     assert {r.unit for r in board.records} == {unit}
     assert "µ" not in render(board, "latex")
+
+
+def test_what_training_cost_stands_beside_success():
+    rows = scores({"learner": [1.0, 0.0], "plain": [0.0, 1.0]})
+    board = leaderboard(table(rows), METRICS, training={"learner": (6.5e6, 2300.0)})
+    text = render(board, "markdown")
+    assert re.search(r"\| learner .*\| 6\.5 M, 38 min ", text)
+    assert re.search(r"success ↑ +\| training", text)
+    assert "6.5 M, 38 min" in render(board, "markdown", ["all"])
+    kept = {r["navigator"]: r["training_decisions"] for r in json.loads(render(board, "json"))}
+    assert kept == {"learner": 6.5e6, "plain": None}
+    assert "training" not in render(leaderboard(table(rows), METRICS), "markdown")

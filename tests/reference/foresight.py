@@ -1,0 +1,58 @@
+"""The slow, obvious twin of `benchnav_baselines.recurrent_ppo.foresight`."""
+
+import math
+
+import numpy as np
+from benchnav_baselines.recurrent_ppo import foresight as f
+from shapely import LineString, Point
+
+from benchnav.arena.solid import Kind
+
+
+def danger(twist, seen, bodies, tolerance, b, a):
+    """Of one twist of agent (b, a): 0 where it touches nothing before horizon or goal."""
+    v, w = twist
+    near, edges = seen.neighbours, seen.edges
+    radius = bodies.radius[b, a]
+    spot, heading = seen.position[b, a].copy(), seen.heading[b, a]
+    walls = [
+        LineString([edges.start[b, a, e], edges.end[b, a, e]]) for e in range(edges.count[b, a])
+    ]
+    back = 0.0
+    for k in range(round(f.HORIZON / f.TICK)):
+        time = (k + 1) * f.TICK
+        turn = w if time <= f.HELD + 1e-9 else 0.0
+        way = heading + turn * f.TICK / 2
+        spot = spot + v * f.TICK * np.array([math.cos(way), math.sin(way)])
+        heading += turn * f.TICK
+        for n in range(near.count[b, a]):
+            mover = near.kind[b, a, n] == Kind.DYNAMIC
+            reach = radius + near.radius[b, a, n] + f.MARGIN * (2 if mover else 1)
+            travelled = time * near.velocity[b, a, n]
+            turned = math.dist(near.position[b, a, n] - travelled, spot) < reach
+            if mover and time <= f.FIXED and back == 0.0 and turned:
+                back = f.BACK * (1 - k * f.TICK / f.FIXED)
+            if math.dist(near.position[b, a, n] + travelled, spot) < reach:
+                return f.HIT + f.SOONER * (1 - k * f.TICK / f.HORIZON) + back
+        touched = any(wall.distance(Point(spot)) < radius + f.MARGIN for wall in walls)
+        if time <= f.FIXED and touched:
+            return f.HIT + f.SOONER * (1 - k * f.TICK / f.FIXED) + back
+        if math.dist(spot, seen.goal[b, a]) < tolerance[b, a]:
+            return back
+    return back
+
+
+def corrected(twist, seen, bodies, tolerance, b, a):
+    """The twist that is best by danger and likeness; the learned one where both are zero."""
+    top, rate = bodies.max_speed[b, a], bodies.max_turn_rate[b, a]
+    choices = [tuple(twist)]
+    if danger(twist, seen, bodies, tolerance, b, a) > 0:
+        choices += [
+            (v, w) for v in np.linspace(0, top, f.SPEEDS) for w in np.linspace(-rate, rate, f.TURNS)
+        ]
+
+    def cost(choice):
+        apart = abs(choice[0] - twist[0]) / top + abs(choice[1] - twist[1]) / rate / 2
+        return danger(choice, seen, bodies, tolerance, b, a) + apart
+
+    return min(choices, key=cost)
