@@ -3,13 +3,15 @@
     python docs/make_learning_pictures.py
 
 Curves are those in docs/learning/curves, NAME-SEED.csv, as `benchnav train` wrote them;
-weights of early, middle and late checkpoints stand in docs/learning/checkpoints.
+docs/learning/checkpoints holds an early and a middle checkpoint, the late one ships.
 """
 
 from pathlib import Path
 
 import numpy as np
 from benchnav_baselines.recurrent_ppo.log import read_rows
+from benchnav_baselines.recurrent_ppo.navigator import SHIPPED
+from benchnav_baselines.recurrent_ppo.weights import read_weights
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
@@ -86,12 +88,12 @@ def learning() -> Figure:
 
 def phases() -> Figure:
     """Figs. 5 and 7: the same worlds, driven by early, middle and late checkpoints."""
-    stages = sorted(CHECKPOINTS.glob("*.safetensors"))
+    stages = [*sorted(CHECKPOINTS.glob("*.safetensors")), SHIPPED / "recurrent-ppo.safetensors"]
     figure = Figure(figsize=(4 * len(stages), 8.4), layout="constrained")
     grid = figure.subplots(2, len(stages), squeeze=False)
     for row, (scenario, seed) in enumerate((("leaders/static", 3), ("leaders/dynamic", 5))):
         for column, path in enumerate(stages):
-            decisions = int(path.stem)
+            decisions = read_weights(path)[1]["progress"]["decisions"]
             episode = _episode(scenario, seed, path)
             _draw(grid[row, column], episode)
             grid[row, column].set_title(f"{scenario}, {decisions:,} decisions", fontsize=10)
