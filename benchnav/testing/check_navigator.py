@@ -5,11 +5,13 @@ sentence that says what is wrong. How well a navigator does is not asked.
 """
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import World
 from benchnav.navigation.navigator import Navigator, Need
 from benchnav.plugins import NAVIGATORS
@@ -28,7 +30,7 @@ from benchnav.testing.requirement import (
     require_config,
     require_same,
 )
-from benchnav.testing.scenes import renumbered, scene
+from benchnav.testing.scenes import SENSING, USUAL, renumbered, scene
 
 Make = Callable[[], Navigator]
 
@@ -67,12 +69,12 @@ def check_answer(make: Make) -> None:
     """Finite commands of the right shape, with nothing but what it needs; nothing is changed."""
     navigator = make()
     name, needs = type(navigator).__name__, navigator.required
-    told = briefings_of(_scenes(), needs)
+    told = briefings_of(_scenes(make), needs)
     before = [contents(briefing) for briefing in told]
     with global_generators_untouched(name):
         _call(name, "reset", needs, navigator.reset, told, np.arange(len(told)))
     _unchanged(name, "briefing", before, [contents(briefing) for briefing in told])
-    for observation in observations_of(_scenes(), needs):
+    for observation in observations_of(_scenes(make), needs):
         copy, shape = contents(observation), (*observation.active.shape, 2)
         with global_generators_untouched(name):
             answer = _call(name, "act", needs, navigator.act, observation)
@@ -88,17 +90,17 @@ def check_repeatable(make: Make) -> None:
     """The same briefing and observations give the same commands: of another instance too."""
     navigator = make()
     if navigator.reproducible:
-        first, name = answers_of(navigator, _scenes()), type(navigator).__name__
-        again = answers_of(navigator, _scenes())
+        first, name = answers_of(navigator, _scenes(make)), type(navigator).__name__
+        again = answers_of(navigator, _scenes(make))
         require_same(first, again, name, "after a second reset with the same briefings")
-        require_same(first, answers_of(make(), _scenes()), name, "in another instance")
+        require_same(first, answers_of(make(), _scenes(make)), name, "in another instance")
 
 
 def check_batch(make: Make) -> None:
     """A world's commands do not depend on which others share the call, or on where it stands."""
     if not make().reproducible:
         return
-    worlds, together, name = _scenes(), answers_of(make(), _scenes()), type(make()).__name__
+    worlds, together, name = _scenes(make), answers_of(make(), _scenes(make)), type(make()).__name__
     alone = [answers_of(make(), [world], np.array([7]))[0] for world in worlds]
     require_same(together, alone, name, "for a world alone as in a batch")
     turned = answers_of(make(), worlds[::-1], np.array([4, 9, 2]))[::-1]
@@ -111,7 +113,7 @@ def check_order_of_agents(make: Make) -> None:
     """Numbering the agents otherwise renumbers the commands, and does nothing else."""
     if not make().reproducible:
         return
-    worlds = _scenes()
+    worlds = _scenes(make)
     orders = [np.roll(np.arange(len(world.agents))[::-1], 1) for world in worlds]
     other = [renumbered(world, order) for world, order in zip(worlds, orders, strict=True)]
     expected = [a[:, order] for a, order in zip(answers_of(make(), worlds), orders, strict=True)]
@@ -124,7 +126,7 @@ def check_rows(make: Make) -> None:
     navigator = make()
     if not navigator.reproducible:
         return
-    kept, disturbing, _ = _scenes()
+    kept, disturbing, _ = _scenes(make)
     needs, row, other = navigator.required, np.array([0]), np.array([1])
     expected = answers_of(make(), [kept], row)
     navigator.reset(briefings_of([kept, disturbing], needs), np.array([0, 1]))
@@ -145,9 +147,22 @@ CHECKS: tuple[Callable[[Make], None], ...] = (
 )  # fmt: skip
 
 
+def _scenes(make: Make) -> tuple[World, ...]:
+    """Worlds with unusual sensors, or with those of scenarios where it can drive no others."""
+    navigator = make()
+    for sensing in (SENSING, USUAL):
+        if not navigator.unfit(sensing):
+            return _drawn(sensing)
+    raise AssertionError(
+        f"{type(navigator).__name__} must be able to drive agents with the sensors that scenarios"
+        f" give unless they say otherwise. It cannot: {navigator.unfit(USUAL)}."
+    )
+
+
 @lru_cache
-def _scenes() -> tuple[World, ...]:
-    return scene(1, 3), scene(2, 5), scene(3, 1)
+def _drawn(sensing: Sensing) -> tuple[World, ...]:
+    drawn = scene(1, 3), scene(2, 5), scene(3, 1)
+    return tuple(replace(world, sensing=sensing) for world in drawn)
 
 
 def _call(

@@ -15,6 +15,9 @@ from benchnav.arrays import FloatArray, IntArray
 SENSING = Sensing(
     RaySensor(9, math.pi, 6.0, thick=False), NeighbourSensor(4, 6.0), EdgeSensor(8, 6.0)
 )
+USUAL = Sensing(
+    RaySensor(7, math.pi, 8.0, thick=True), NeighbourSensor(10, 10.0), EdgeSensor(16, 8.0)
+)  # of a scenario that does not say
 CLOCK = Clock(dt=0.25, substeps=2, steps=200, decision_budget=1.0)
 RULES = Rules(0.3, ContactRule.SLIDE, Afterwards.VANISH, Afterwards.VANISH, Charge.HITTER)
 _CELL, _CELLS = 2.4, 5  # [m]; nothing in a cell reaches the next one

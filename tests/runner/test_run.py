@@ -259,7 +259,7 @@ def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file,
     out, whole = tmp_path / "run", tmp_path / "whole"
     command = [
         sys.executable, "-c", "from benchnav.cli.main import main; main()",
-        "run", str(suite_file), "--seeds", "160", "--navigator", "orca", "--workers", "1",
+        "run", str(suite_file), "--seeds", "480", "--navigator", "orca", "--workers", "1",
     ]  # fmt: skip
     process = subprocess.Popen(
         [*command, "--out", str(out)], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
@@ -276,9 +276,9 @@ def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file,
     assert f"--out {out} goes on from there" in stderr
     assert "Traceback" not in stderr
     stored = len(list(read_episodes(out)))
-    assert 0 < stored < 160
+    assert 0 < stored < 480
     assert not list(out.glob("parts/*/.writing*"))
-    chosen = Selection(seeds="160", navigators=("orca",), salt=load_manifest(out).salt)
+    chosen = Selection(seeds="480", navigators=("orca",), salt=load_manifest(out).salt)
     resumed = run_suite(load_suite(str(suite_file), chosen), out, workers=1)
     assert resumed.found == stored
     run_suite(load_suite(str(suite_file), chosen), whole, workers=1)
