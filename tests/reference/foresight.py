@@ -11,15 +11,6 @@ from benchnav.arena.solid import Kind
 
 def danger(twist, seen, bodies, tolerance, b, a):
     """Of one twist of agent (b, a): 0 where it touches nothing before horizon or goal."""
-    kinds = seen.neighbours.kind[b, a, : seen.neighbours.count[b, a]]
-    later = [twist[0]]
-    if (kinds == Kind.DYNAMIC).any():
-        later += [0.0, bodies.max_speed[b, a]]
-    return min(course(twist, speed, seen, bodies, tolerance, b, a) for speed in later)
-
-
-def course(twist, later, seen, bodies, tolerance, b, a):
-    """Danger of a twist that is held, and of going straight on at another speed."""
     v, w = twist
     near, edges = seen.neighbours, seen.edges
     radius = bodies.radius[b, a]
@@ -28,11 +19,11 @@ def course(twist, later, seen, bodies, tolerance, b, a):
         LineString([edges.start[b, a, e], edges.end[b, a, e]]) for e in range(edges.count[b, a])
     ]
     back = 0.0
-    for k in range(round(f.LONGER / f.TICK)):
+    for k in range(round(f.HORIZON / f.TICK)):
         time = (k + 1) * f.TICK
-        speed, turn = (v, w) if time <= f.HELD + 1e-9 else (later, 0.0)
+        turn = w if time <= f.HELD + 1e-9 else 0.0
         way = heading + turn * f.TICK / 2
-        spot = spot + speed * f.TICK * np.array([math.cos(way), math.sin(way)])
+        spot = spot + v * f.TICK * np.array([math.cos(way), math.sin(way)])
         heading += turn * f.TICK
         for n in range(near.count[b, a]):
             mover = near.kind[b, a, n] == Kind.DYNAMIC
@@ -41,9 +32,8 @@ def course(twist, later, seen, bodies, tolerance, b, a):
             turned = math.dist(near.position[b, a, n] - travelled, spot) < reach
             if mover and time <= f.FIXED and back == 0.0 and turned:
                 back = f.BACK * (1 - k * f.TICK / f.FIXED)
-            horizon = f.LONGER if mover else f.HORIZON
-            if time <= horizon and math.dist(near.position[b, a, n] + travelled, spot) < reach:
-                return f.HIT + f.SOONER * (1 - k * f.TICK / horizon) + back
+            if math.dist(near.position[b, a, n] + travelled, spot) < reach:
+                return f.HIT + f.SOONER * (1 - k * f.TICK / f.HORIZON) + back
         touched = any(wall.distance(Point(spot)) < radius + f.MARGIN for wall in walls)
         if time <= f.FIXED and touched:
             return f.HIT + f.SOONER * (1 - k * f.TICK / f.FIXED) + back
