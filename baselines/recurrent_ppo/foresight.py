@@ -4,7 +4,7 @@ What stands is predicted to stand and everybody to keep their velocity (the assu
 velocity obstacles, Eq. 22); a dynamic obstacle may also turn back at once, which is
 weighed less. A twist is held for a while and its course then kept. A twist of a small
 lattice replaces the learned one where the sum of its danger and of its difference is less.
-The constants were tuned by hand: some 35 settings, each on 20 to 200 validation worlds of
+The constants were tuned by hand: some 60 settings, each on 20 to 1,500 validation worlds of
 `leaders/…`, `corridor/bidirectional` and `crowd/circle-crossing`.
 """
 

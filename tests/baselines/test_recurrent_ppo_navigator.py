@@ -17,14 +17,14 @@ from tests.reference.foresight import corrected
 
 @pytest.mark.parametrize("scenario", ["leaders/dynamic", "corridor/bidirectional"])
 def test_foresight_agrees_with_its_twin(scenario):
-    worlds = [build(find(scenario), "validation", seed) for seed in range(3)]
+    worlds = [build(find(scenario), "validation", seed) for seed in range(9)]
     rng = np.random.default_rng(0)
-    batch = AgentBatch(worlds, 3, encoder("surround"), RewardWeights(), rng)
+    batch = AgentBatch(worlds, 9, encoder("surround"), RewardWeights(), rng)
     batch.reset()
     changed = 0
     for _ in range(4):
         for _ in range(6):
-            batch.step(rng.uniform(-0.5, 1.0, (3, batch.width, 2)))
+            batch.step(rng.uniform(-0.5, 1.0, (9, batch.width, 2)))
         seen = batch._observe(batch.active)
         limits = batch.simulation.agents
         bodies = Bodies(limits["radius"], limits["max_speed"], limits["max_turn_rate"])
