@@ -140,8 +140,8 @@ class Training:
         progress = replace(progress, seconds=progress.seconds + perf_counter() - began)
         row |= {"stage": progress.stage, "seconds": progress.seconds, **success}
         curve.add(row)
-        checkpoint.save(self.folder, learner, progress)
         self._write_weights(progress, success)
+        checkpoint.save(self.folder, learner, progress)  # last: what it counts is on disk
         report(TrainingReport(progress.decisions, self.recipe.decisions, reached))
         return progress
 

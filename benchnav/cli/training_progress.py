@@ -64,7 +64,7 @@ def _lines() -> Report:
         said = time
         rate = (now.decisions - first) / max(time - began, 1e-9)
         text = f"{now.decisions:,} of {now.total:,} decisions"
-        if rate > 0:
+        if rate > 0 and now.decisions < now.total:
             text += f", {(now.total - now.decisions) / rate / 60:.0f} min left"
         if now.success is not None:
             text += f", validation success {100 * now.success:.1f} %"
