@@ -65,6 +65,7 @@ class Training:
         if resume:
             progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
         else:
+            self.folder.mkdir(parents=True, exist_ok=True)
             checkpoint.save(self.folder, self.learner, progress)
         self._tell()
         curve = Curve(self.folder, progress.decisions)
@@ -84,7 +85,6 @@ class Training:
             )
         if resume and not there:
             raise UsageError(f"{self.folder} must hold a checkpoint to --resume. It does not.")
-        self.folder.mkdir(parents=True, exist_ok=True)
 
     def _tell(self) -> None:
         """Everything that is needed to repeat the training."""
