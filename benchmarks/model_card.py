@@ -118,7 +118,8 @@ def card(navigator: str, rows: list[Row], training: Path | None) -> str:
         f"Encoder `{about['encoder']}`, network {json.dumps(about['network'])}.",
         f"Learned from {progress['decisions']:,} decisions in {progress['seconds']:,.0f} s, seed"
         f" {progress['seed']}, recipe `{about['recipe']}` ({about['recipe_hash']}), on"
-        f" {about['machine']}, one thread.",
+        f" {about['machine']}, one thread. The log of the training stands in"
+        f" docs/learning/curves/{about['recipe']}-{progress['seed']}.csv.",
         "Worlds of the split `train`: "
         + ", ".join(f"{c['worlds']} of {c['scenario']}" for c in about["courses"])
         + ".",
