@@ -1,6 +1,7 @@
 """The worlds that a recipe learns and validates in."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -8,49 +9,61 @@ from benchnav.arena.world import World
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.agent_vec_env import AgentVecEnv
 from benchnav.envs.encoders.catalogue import encoder
+from benchnav.envs.making import driver_specs
 from benchnav.envs.reward import RewardWeights
-from benchnav.errors import UsageError
+from benchnav.navigation.configure import Spec
 from benchnav.scenario.catalogue import find
 from benchnav.world.build import build
 
 from .recipe import Recipe, Stage
 
 
-def training_worlds(recipe: Recipe, stage: Stage) -> list[list[World]]:
-    """Pools of a stage, one for each set of terms (clock, sensing, goal tolerance) that occurs."""
-    pools: dict[str, list[World]] = {}
+@dataclass(frozen=True, eq=False)
+class Pool:
+    """Worlds that share clock, sensing, goal tolerance and drivers."""
+
+    worlds: Sequence[World]
+    drivers: tuple[Spec, ...]
+
+
+def training_pools(recipe: Recipe, stage: Stage) -> list[Pool]:
+    """The worlds of a stage."""
+    pools: dict[str, Pool] = {}
     for course in recipe.courses_of(stage):
-        scenario = find(course.scenario)
-        if scenario.drivers:
-            raise UsageError(
-                f"The recipe {recipe.name!r} must name scenarios whose agents are all evaluated."
-                f" {scenario.identity} has a team with a driver."
-            )
-        worlds = [build(scenario, "train", seed) for seed in range(course.worlds)]
-        first = worlds[0]
-        key = repr((first.clock, first.sensing, first.rules.goal_tolerance))
-        pools.setdefault(key, []).extend(worlds)
+        new = _pool(course.scenario, "train", course.worlds)
+        first = new.worlds[0]
+        key = repr((first.clock, first.sensing, first.rules.goal_tolerance, new.drivers))
+        held = pools.get(key, Pool((), new.drivers))
+        pools[key] = Pool((*held.worlds, *new.worlds), new.drivers)
     return list(pools.values())
 
 
-def make_env(recipe: Recipe, pools: Sequence[Sequence[World]]) -> AgentVecEnv:
+def make_env(recipe: Recipe, pools: Sequence[Pool]) -> AgentVecEnv:
     """Rows are shared between the pools by their numbers of worlds, at least one each."""
-    total = sum(len(pool) for pool in pools)
-    batches = [
-        AgentBatch(
-            pool, max(1, round(recipe.rows * len(pool) / total)), encoder(recipe.encoder),
-            RewardWeights(), np.random.default_rng(0),
-        )
-        for pool in pools
-    ]  # fmt: skip
-    return AgentVecEnv(batches)
+    total = sum(len(pool.worlds) for pool in pools)
+    return AgentVecEnv(
+        [
+            _batch(recipe, pool, max(1, round(recipe.rows * len(pool.worlds) / total)))
+            for pool in pools
+        ]
+    )
 
 
-def validation_worlds(recipe: Recipe) -> dict[str, list[World]]:
-    """Worlds of the split `validation`, by scenario."""
+def validation_batches(recipe: Recipe) -> dict[str, AgentBatch]:
+    """Worlds of the split `validation`, by scenario; every world has a row of its own."""
     wanted = recipe.validation
     names = wanted.scenarios or tuple(course.scenario for course in recipe.courses)
-    return {
-        name: [build(find(name), "validation", seed) for seed in range(wanted.worlds)]
-        for name in names
-    }
+    pools = {name: _pool(name, "validation", wanted.worlds) for name in names}
+    return {name: _batch(recipe, pool, len(pool.worlds)) for name, pool in pools.items()}
+
+
+def _pool(name: str, split: str, count: int) -> Pool:
+    scenario = find(name)
+    return Pool([build(scenario, split, seed) for seed in range(count)], driver_specs(scenario))
+
+
+def _batch(recipe: Recipe, pool: Pool, rows: int) -> AgentBatch:
+    return AgentBatch(
+        pool.worlds, rows, encoder(recipe.encoder), RewardWeights(), np.random.default_rng(0),
+        drivers=pool.drivers,
+    )  # fmt: skip

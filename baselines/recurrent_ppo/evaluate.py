@@ -1,21 +1,11 @@
 """Strict success of a policy, deterministic, over whole worlds."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from benchnav.arena.world import World
 from benchnav.arrays import BoolArray
 from benchnav.envs.agent_batch import AgentBatch
-from benchnav.envs.encoders.encoder import Encoder
-from benchnav.envs.reward import RewardWeights
 
 from .actor import Actor, Float32Array
-
-
-def evaluation(encoder: Encoder, worlds: Sequence[World]) -> AgentBatch:
-    """A batch in which every world has a row of its own."""
-    return AgentBatch(worlds, len(worlds), encoder, RewardWeights(), np.random.default_rng(0))
 
 
 def evaluate(actor: Actor, batch: AgentBatch) -> BoolArray:

@@ -6,9 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from benchnav.envs.encoders.catalogue import ENCODERS
+from benchnav.envs.encoders.catalogue import ENCODERS, encoder
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import did_you_mean
+from benchnav.navigation.navigator import Need
 from benchnav.scenario.document import PathKey
 from benchnav.scenario.validation import FieldError
 
@@ -54,6 +55,9 @@ class Stage(_Part):
     epochs: int = Field(4, ge=1, le=100)
     entropy: float = Field(0.0, ge=0, le=1, description="weight of the entropy bonus")
     reward: RewardWeights = RewardWeights()
+    foresight: bool = Field(
+        False, description="correct commands that would collide, as `recurrent-ppo-plus` does"
+    )
     courses: tuple[Course, ...] | None = Field(
         None, min_length=1, max_length=100, description="the recipe's, if not given"
     )
@@ -110,6 +114,11 @@ class Recipe(_Part):
                 raise FieldError(
                     ("stages", i, "batch"),
                     f"must be > sequence, which is {self.sequence}; got {stage.batch}",
+                )
+            if stage.foresight and Need.EDGES not in encoder(self.encoder).needs:
+                raise FieldError(
+                    ("stages", i, "foresight"),
+                    f"must be false with the encoder {self.encoder!r}, which senses no edges",
                 )
             _refuse_twice(stage.courses or (), ("stages", i, "courses"))
         return self

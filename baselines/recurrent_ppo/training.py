@@ -20,7 +20,6 @@ from stable_baselines3.common.callbacks import CallbackList
 
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.agent_vec_env import AgentVecEnv
-from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.trainer import TrainingReport
 from benchnav.errors import TrainingError, UsageError
 from benchnav.threads import core_count
@@ -28,8 +27,9 @@ from benchnav.threads import core_count
 from . import checkpoint
 from .actor import Actor
 from .checkpoint import Progress
-from .courses import make_env, training_worlds, validation_worlds
-from .evaluate import evaluate, evaluation
+from .courses import make_env, training_pools, validation_batches
+from .evaluate import evaluate
+from .foresight import foresee
 from .learner import actor_tensors, buffer_of, enter, make_learner, reseed
 from .log import Curve
 from .recipe import Recipe, Stage
@@ -56,10 +56,7 @@ class Training:
         self._claim(resume)
         torch.set_num_threads(1)
         self._lay_out(self.recipe.stages[0])
-        self._validation = {
-            name: evaluation(encoder(self.recipe.encoder), worlds)
-            for name, worlds in validation_worlds(self.recipe).items()
-        }
+        self._validation = validation_batches(self.recipe)
         progress = Progress(self.recipe.hash, self.seed)
         self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
         if resume:
@@ -97,7 +94,7 @@ class Training:
     def _lay_out(self, stage: Stage) -> None:
         """Draw the worlds of a stage."""
         self._courses = self.recipe.courses_of(stage)
-        self._env = make_env(self.recipe, training_worlds(self.recipe, stage))
+        self._env = make_env(self.recipe, training_pools(self.recipe, stage))
 
     def _enter(self, stage: Stage, seed: int) -> AgentVecEnv:
         """The worlds of a stage, about to start anew."""
@@ -111,7 +108,10 @@ class Training:
                 )
             self.learner.set_env(self._env)
             buffer_of(self.learner).env = self._env
-        self._env.enter(stage.reward, seed)
+        correct = foresee if stage.foresight else None
+        self._env.enter(stage.reward, seed, correct)
+        for batch in self._validation.values():
+            batch.correct = correct
         return self._env
 
     def _segment(self, progress: Progress, curve: Curve, report: Report) -> Progress:
@@ -204,7 +204,7 @@ class Training:
 
 
 def _share(actor: Actor, batch: AgentBatch) -> float:
-    agents = sum(len(world.agents) for world in batch.simulation.pool)
+    agents = sum(int(world.agents.evaluated.sum()) for world in batch.simulation.pool)
     return float(evaluate(actor, batch).sum() / agents)
 
 

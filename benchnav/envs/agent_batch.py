@@ -1,11 +1,12 @@
 """The decision process of every agent of a batch of worlds; all environments are views of it.
 
-A slot is one evaluated agent of one row. When its attempt is over (it arrived, touched
-something, or time ran out) the slot idles, unobserved and unrewarded, until the row's
-last attempt is over; then the row starts again with the next world of the pool.
+A slot is one agent of one row; agents of the scenario's own drivers attempt nothing. When
+its attempt is over (it arrived, touched something, or time ran out) the slot idles,
+unobserved and unrewarded, until the row's last attempt is over; then the row starts again
+with the next world of the pool.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,10 +15,11 @@ from benchnav.arena.world import Afterwards, ContactRule, World
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.envs.collision import collision_probability
 from benchnav.envs.encoders.encoder import Bodies, Encoder, Float32Array
+from benchnav.envs.others import Instead, Others
 from benchnav.envs.relay import Relay
 from benchnav.envs.reward import RewardTerms, RewardWeights, reward_terms
 from benchnav.episode.episode import Status
-from benchnav.errors import UsageError
+from benchnav.navigation.configure import Spec
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.observation import Observation
 from benchnav.sensors.sense import sense
@@ -43,13 +45,8 @@ class Transition:
         return self.arrived | self.touched | self.timed_out
 
 
-@dataclass(frozen=True, eq=False)
-class Instead:
-    """Commands of slots that somebody else than the learner drives, in the simulator's units."""
-
-    who: BoolArray  # (B, A)
-    command: FloatArray  # (B, A, 2) planar velocities [m/s] or twists [m/s, rad/s]
-    twist: bool  # which of the two
+Correction = Callable[[Observation, Bodies, FloatArray, FloatArray], FloatArray]
+"""(what is seen, bodies, twists (B, A, 2), goal tolerance (B, A) [m]) → twists."""
 
 
 class AgentBatch:
@@ -62,17 +59,32 @@ class AgentBatch:
         encoder: Encoder,
         weights: RewardWeights,
         rng: np.random.Generator,
+        correct: Correction | None = None,
+        drivers: Sequence[Spec] = (),
     ) -> None:
-        """Raises UsageError where agents of the pool are driven by somebody else."""
-        if any((~world.agents.evaluated).any() for world in pool):
-            raise UsageError("Worlds to learn in must have evaluated agents only.")
-        self.encoder, self.weights = encoder, weights
+        """Nothing is drawn before `reset`.
+
+        Args:
+            pool: worlds that share clock, rules and sensing.
+            rows: B.
+            encoder: of what learners observe.
+            weights: of the reward.
+            rng: of the order of worlds, and for the drivers.
+            correct: executes what it makes of the learners' commands; it sees what the
+                encoder needs, and neighbours.
+            drivers: navigators of the teams that are not evaluated.
+        """
+        self.encoder, self.weights, self.correct = encoder, weights, correct
         self.simulation = Relay([_strict(world) for world in pool], rows)
         self._rng = rng
         self._queue = np.zeros(0, np.int64)
         self._needs = frozenset(str(need) for need in {*encoder.needs, Need.NEIGHBOURS})
         s = self.simulation
         self._twist = np.ones((s.B, s.A), np.bool_)
+        self._drivers = [
+            Others(spec, s, max(int((w.agents.driver == k).sum()) for w in pool), "driver")
+            for k, spec in enumerate(drivers, 1)
+        ]
         self._limits = s.agents  # (B, A) records: max_speed, max_turn_rate, radius
         self.active = np.zeros((s.B, s.A), np.bool_)
 
@@ -99,15 +111,18 @@ class AgentBatch:
     def step(self, action: AnyArray, instead: Instead | None = None) -> Transition:
         """Decide. ``action`` (B, A, 2) in [-1, 1]: speed from 0 to the limit, turn rate.
 
-        Slots in ``instead`` follow what stands there, whatever their action.
+        Slots in ``instead`` that are active follow what stands there, whatever their action.
         """
         s, acted = self.simulation, self.active.copy()
         before = self._goal_distance()
         command, twist = self._commands(action), self._twist
-        if instead is not None:
-            command = np.where(instead.who[..., None], instead.command, command)
-            twist = np.where(instead.who, instead.twist, twist)
+        if self.correct is not None:
+            tolerance = np.repeat(s.records["tolerance"][:, None], s.A, axis=1)
+            command = self.correct(self._observe(acted), self._bodies, command, tolerance)
         command[~acted] = 0.0
+        for told in (*([] if instead is None else [instead]), *self._driven()):
+            command = np.where(told.who[..., None], told.command, command)
+            twist = np.where(told.who, told.twist, twist)
         executed = s.step(command, twist)
         arrived = acted & (s.status == int(Status.ARRIVED))
         touched = acted & (s.status == int(Status.ENDED))
@@ -153,7 +168,16 @@ class AgentBatch:
 
     def _start(self, rows: IntArray, worlds: IntArray) -> None:
         self.simulation.restart(rows, worlds)
-        self.active[rows] = self.simulation.present[rows]
+        s = self.simulation
+        self.active[rows] = s.present[rows] & s.agents["evaluated"][rows]
+        for k, driver in enumerate(self._drivers, 1):
+            mine = [np.flatnonzero(s.pool[w].agents.driver == k) for w in worlds]
+            driver.start(rows, mine, self._rng.spawn(len(rows)))
+
+    def _driven(self) -> list[Instead]:
+        s = self.simulation
+        acting = s.present & (s.status == int(Status.ACTIVE)) & ~s.agents["evaluated"]
+        return [driver.decide(acting) for driver in self._drivers]
 
     def _next(self, count: int) -> IntArray:
         """The next worlds: every world once in random order, then again in another."""
@@ -173,16 +197,16 @@ class AgentBatch:
             (None,) * s.B, rays, neighbours, edges,
         )  # fmt: skip
 
-    def _encoded(self, seen: Observation) -> Float32Array:
+    @property
+    def _bodies(self) -> Bodies:
         limits = self._limits
-        bodies = Bodies(limits["radius"], limits["max_speed"], limits["max_turn_rate"])
-        return self.encoder.encode(seen, bodies)
+        return Bodies(limits["radius"], limits["max_speed"], limits["max_turn_rate"])
+
+    def _encoded(self, seen: Observation) -> Float32Array:
+        return self.encoder.encode(seen, self._bodies)
 
 
 def _strict(world: World) -> World:
     """Strict success allows no contact, so a contact ends the attempt also where it slides."""
-    rules = replace(
-        world.rules, contact=ContactRule.END, on_end=Afterwards.VANISH,
-        on_arrival=Afterwards.VANISH,
-    )  # fmt: skip
+    rules = replace(world.rules, contact=ContactRule.END, on_end=Afterwards.VANISH)
     return replace(world, rules=rules)

@@ -8,7 +8,7 @@ import numpy as np
 from stable_baselines3.common.vec_env import VecEnv
 
 from benchnav.arrays import BoolArray
-from benchnav.envs.agent_batch import AgentBatch, Transition
+from benchnav.envs.agent_batch import AgentBatch, Correction, Transition
 from benchnav.envs.reward import RewardTerms, RewardWeights
 from benchnav.envs.spaces import action_space, observation_space
 from benchnav.envs.tally import Tally
@@ -33,11 +33,13 @@ class AgentVecEnv(VecEnv):
         space: Any = observation_space(self.batches[0].encoder)
         super().__init__(slots, space, cast(Any, action_space()))
 
-    def enter(self, weights: RewardWeights, seed: int) -> None:
-        """From the next reset on, pay by ``weights`` and draw worlds in the order of ``seed``."""
+    def enter(self, weights: RewardWeights, seed: int, correct: Correction | None = None) -> None:
+        """From the next reset on, pay by ``weights``, draw worlds in the order of ``seed``, and
+        execute what ``correct`` makes of commands.
+        """
         self.tally = Tally()
         for k, batch in enumerate(self.batches):
-            batch.weights = weights
+            batch.weights, batch.correct = weights, correct
             batch.reseed(np.random.default_rng([seed, k]))
 
     def reset(self) -> Any:

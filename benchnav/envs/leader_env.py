@@ -51,7 +51,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         self.observation_space = observation_space(self.batch.encoder)
         self.action_space = action_space()
         self.agent = 0
-        self._others = Others(others, self.batch)
+        self._others = Others(others, self.batch.simulation, self.batch.width - 1, "others")
         self._going = False
 
     def reset(
@@ -70,9 +70,11 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         super().reset(seed=seed)
         pool, given = self.batch.simulation.pool, options or {}
         world = self._choice(given, "world", len(pool))
-        self.agent = self._choice(given, "agent", len(pool[world].agents))
+        mine = np.flatnonzero(pool[world].agents.evaluated)
+        self.agent = int(mine[self._choice(given, "agent", len(mine))])
         seen = self.batch.reset(np.array([world]))
-        self._others.start(self.agent, self.np_random.spawn(1)[0])
+        others = mine[mine != self.agent]
+        self._others.start(np.zeros(1, np.int64), [others], self.np_random.spawn(1))
         self._going = True
         return seen[0, self.agent].copy(), {"world": world, "agent": self.agent}
 
@@ -87,7 +89,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         at = (0, self.agent)
         everybody = np.zeros((1, self.batch.width, 2))
         everybody[at] = action
-        step = self.batch.step(everybody, self._others.decide())
+        step = self.batch.step(everybody, self._others.decide(self.batch.active))
         terminated, truncated = bool((step.arrived | step.touched)[at]), bool(step.timed_out[at])
         self._going = not (terminated or truncated)
         info = {

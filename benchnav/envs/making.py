@@ -12,7 +12,9 @@ from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder as encoder_called
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import ConfigError, UsageError, did_you_mean
+from benchnav.navigation.configure import Spec
 from benchnav.scenario.catalogue import find
+from benchnav.scenario.scenario import Scenario
 from benchnav.world.build import build
 
 Reward = RewardWeights | Mapping[str, Any] | None
@@ -23,7 +25,7 @@ def make_worlds(scenario: str, split: str, count: int) -> list[World]:
     """The worlds 0 to ``count`` - 1 of a scenario's split.
 
     Raises:
-        UsageError: no such split, no worlds, or agents that the scenario drives itself.
+        UsageError: no such split, or no worlds.
         UnknownPluginError: no such scenario.
     """
     if split not in SPLITS:
@@ -34,12 +36,12 @@ def make_worlds(scenario: str, split: str, count: int) -> list[World]:
     if count < 1:
         raise UsageError(f"An environment must have at least 1 world. Got {count} instead.")
     found = find(scenario)
-    if found.drivers:
-        raise UsageError(
-            f"The scenario of an environment must leave all of its agents to be driven."
-            f" {found.identity} has a team with a driver."
-        )
     return [build(found, split, seed) for seed in range(count)]
+
+
+def driver_specs(scenario: Scenario) -> tuple[Spec, ...]:
+    """The navigators of the scenario's teams that are not evaluated."""
+    return tuple({"type": d.type, **d.params} for d in scenario.drivers)
 
 
 def weights_of(reward: Reward) -> RewardWeights:
@@ -65,7 +67,7 @@ def make_batch(
     encoders raise.
     """
     chosen, weights = encoder_called(encoder), weights_of(reward)
-    pool = make_worlds(scenario, split, worlds)
+    pool, drivers = make_worlds(scenario, split, worlds), driver_specs(find(scenario))
     rows, A = 1, max(len(world.agents) for world in pool)
     if slots is not None:
         rows = max(slots // A, 1)
@@ -77,7 +79,7 @@ def make_batch(
                 else f"num_envs must be at least {A}, the agents of a world of {scenario}."
                 f" Got {slots} instead."
             )
-    return AgentBatch(pool, rows, chosen, weights, np.random.default_rng(0))
+    return AgentBatch(pool, rows, chosen, weights, np.random.default_rng(0), drivers=drivers)
 
 
 def refuse_rendering(render_mode: str | None) -> None:

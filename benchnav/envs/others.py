@@ -1,9 +1,12 @@
-"""Who drives the agents that do not learn: any navigator, in the first row of a batch."""
+"""Who drives the agents that do not learn: a navigator, told anew whenever a row restarts."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from benchnav.arrays import FloatArray, IntArray
-from benchnav.envs.agent_batch import AgentBatch, Instead
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.envs.relay import Relay
 from benchnav.errors import NavigatorError
 from benchnav.navigation.briefing import brief
 from benchnav.navigation.configure import Spec, make, split
@@ -16,67 +19,91 @@ from benchnav.runner.answer import CallFailed, checked
 from benchnav.sensors.sense import sense
 
 
+@dataclass(frozen=True, eq=False)
+class Instead:
+    """Commands of slots that somebody else than the learner drives, in the simulator's units."""
+
+    who: BoolArray  # (B, A)
+    command: FloatArray  # (B, A, 2) planar velocities [m/s] or twists [m/s, rad/s]
+    twist: bool  # which of the two
+
+
 class Others:
-    """A navigator that drives everybody but one; it has the map, as a scenario's drivers do."""
+    """A navigator that drives some agents of each row; it has the map, as a scenario's drivers do.
 
-    def __init__(self, spec: Spec, batch: AgentBatch) -> None:
-        """Raises what `benchnav.navigation.configure.make` raises."""
-        self.name = split(NAVIGATORS, spec)[0]
+    Args:
+        spec: the navigator.
+        simulation: the rows.
+        at_most: how many agents of a row it drives.
+        blame: what its errors begin with.
+
+    Raises what `benchnav.navigation.configure.make` raises.
+    """
+
+    def __init__(self, spec: Spec, simulation: Relay, at_most: int, blame: str) -> None:
+        self._blame = f"{blame}={split(NAVIGATORS, spec)[0]!r}"
         self._navigator: Navigator = make(NAVIGATORS, spec)
-        self._batch = batch
-        self._mine: IntArray = np.zeros(0, np.int64)
-        self._map: Map | None = None
+        self._needs = frozenset(map(str, self._navigator.required))
+        self._simulation = simulation
+        self._mine: IntArray = np.full((simulation.B, at_most), -1)  # agents, -1: padding
+        self._maps: list[Map | None] = [None] * simulation.B
 
-    def start(self, learner: int, rng: np.random.Generator) -> None:
-        """Brief the navigator for everybody but the agent ``learner`` of the world that began."""
-        world = self._batch.simulation.worlds[0]
-        everybody = np.arange(len(world.agents))
-        self._mine = everybody[everybody != learner]
-        self._map = granted_map(world, "known")
-        if len(self._mine):
-            clock = world.clock
-            briefing = brief(
-                world.agents, self._mine, dt=clock.dt, horizon=clock.horizon,
-                goal_tolerance=world.rules.goal_tolerance, decision_budget=clock.decision_budget,
-                map=self._map, rng=rng,
+    def start(
+        self, rows: IntArray, mine: Sequence[IntArray], streams: Sequence[np.random.Generator]
+    ) -> None:
+        """Brief the navigator for the agents ``mine`` of each of the ``rows`` that began."""
+        briefings = []
+        for row, agents, rng in zip(rows.tolist(), mine, streams, strict=True):
+            world = self._simulation.worlds[row]
+            self._mine[row] = -1
+            self._mine[row, : len(agents)] = agents
+            self._maps[row] = granted_map(world, "known")
+            briefings.append(
+                brief(
+                    world.agents, agents, dt=world.clock.dt, horizon=world.clock.horizon,
+                    goal_tolerance=world.rules.goal_tolerance,
+                    decision_budget=world.clock.decision_budget, map=self._maps[row], rng=rng,
+                )
             )  # fmt: skip
-            self._navigator.reset([briefing], np.zeros(1, np.int64))
+        if self._mine.shape[1]:
+            self._navigator.reset(briefings, rows)
 
-    def decide(self) -> Instead:
-        """What they do now.
+    def decide(self, acting: BoolArray) -> Instead:
+        """What those of ``acting`` (B, A) do now that it drives.
 
         Raises NavigatorError where the navigator answers what is no command.
         """
-        batch, mine = self._batch, self._mine
-        command = np.zeros((batch.rows, batch.width, 2))
-        who = np.zeros((batch.rows, batch.width), np.bool_)
-        who[0, mine] = batch.active[0, mine]
-        if who.any():
-            seen = self._observe()
+        row = np.arange(len(acting))[:, None]
+        active = (self._mine >= 0) & acting[row, self._mine]
+        command = np.zeros((*acting.shape, 2))
+        who = np.zeros_like(acting)
+        if active.any():
             try:
-                command[0, mine] = checked(self._navigator.act(seen), seen.active)[0]
+                answer = checked(self._navigator.act(self._observe(active)), active)
             except CallFailed as failed:
-                raise NavigatorError(f"others={self.name!r}: {failed.reason}.") from None
+                raise NavigatorError(f"{self._blame}: {failed.reason}.") from None
+            world, slot = np.nonzero(active)
+            command[world, self._mine[world, slot]] = answer[world, slot]
+            who[world, self._mine[world, slot]] = True
         return Instead(who, command, self._navigator.command == "twist")
 
-    def _observe(self) -> Observation:
-        s, mine = self._batch.simulation, self._mine
-        active = self._batch.active[:1, mine]
-        needs = frozenset(map(str, self._navigator.required))
-        rays, neighbours, edges = sense(s, np.where(active, mine, -1), needs)
-        self._renew_map()
+    def _observe(self, active: BoolArray) -> Observation:
+        s, row = self._simulation, np.arange(len(active))[:, None]
+        rays, neighbours, edges = sense(s, np.where(active, self._mine, -1), self._needs)
+        self._renew_maps()
 
         def own(array: FloatArray) -> FloatArray:
-            return array[:1, mine].copy()
+            return array[row, self._mine]
 
         return Observation(
-            np.zeros(1, np.int64), s.steps_done[:1] * s.records["dt"][:1], active.copy(),
-            own(s.position), own(s.heading), own(s.velocity), own(s.goal), (self._map,),
-            rays, neighbours, edges,
+            row[:, 0], s.steps_done * s.records["dt"], active, own(s.position), own(s.heading),
+            own(s.velocity), own(s.goal), tuple(self._maps), rays, neighbours, edges,
         )  # fmt: skip
 
-    def _renew_map(self) -> None:
-        s = self._batch.simulation
-        revision = int(s.revision[0])
-        if self._map is not None and self._map.revision != revision:
-            self._map = granted_map(s.worlds[0], "known", s.body_position[0].copy(), revision)
+    def _renew_maps(self) -> None:
+        s = self._simulation
+        for row, held in enumerate(self._maps):
+            revision = int(s.revision[row])
+            if held is not None and held.revision != revision:
+                position = s.body_position[row].copy()
+                self._maps[row] = granted_map(s.worlds[row], "known", position, revision)

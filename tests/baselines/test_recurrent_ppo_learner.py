@@ -7,7 +7,7 @@ import pytest
 import torch
 from benchnav_baselines.recurrent_ppo.actor import Actor
 from benchnav_baselines.recurrent_ppo.buffer import LiveBuffer, SequenceBuffer
-from benchnav_baselines.recurrent_ppo.courses import make_env, training_worlds
+from benchnav_baselines.recurrent_ppo.courses import make_env, training_pools
 from benchnav_baselines.recurrent_ppo.learner import (
     actor_tensors,
     buffer_of,
@@ -50,7 +50,7 @@ def recipe_of(**network):
 def rolled_out(layers=1, size=8, dense=(), rollouts=3):
     """A learner that collected rollouts in which slots arrive, collide, idle and start again."""
     recipe = recipe_of(lstm_layers=layers, lstm_size=size, dense=list(dense), log_std=0.5)
-    env = make_env(recipe, training_worlds(recipe, recipe.stages[0]))
+    env = make_env(recipe, training_pools(recipe, recipe.stages[0]))
     env.enter(recipe.stages[0].reward, 0)
     learner = make_learner(recipe, env, 0, "cpu")
     reseed(learner, np.random.default_rng(0))
@@ -302,7 +302,7 @@ NETWORKS = [
 def policy_of(network):
     """A learner with weights far from their small first values."""
     recipe = recipe_of(**network.model_dump())
-    env = make_env(recipe, training_worlds(recipe, recipe.stages[0]))
+    env = make_env(recipe, training_pools(recipe, recipe.stages[0]))
     learner = make_learner(recipe, env, 3, "cpu")
     torch.manual_seed(0)
     with torch.no_grad():

@@ -5,17 +5,18 @@ from functools import cache
 import numpy as np
 import pytest
 from benchnav_baselines.recurrent_ppo.actor import Actor
-from benchnav_baselines.recurrent_ppo.evaluate import evaluate, evaluation
+from benchnav_baselines.recurrent_ppo.evaluate import evaluate
 from benchnav_baselines.recurrent_ppo.weights import write_weights
 
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
-from benchnav.envs.agent_batch import AgentBatch, Instead
+from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder
+from benchnav.envs.making import driver_specs
+from benchnav.envs.others import Instead
 from benchnav.envs.relay import KINDS, Relay
 from benchnav.envs.reward import RewardWeights
 from benchnav.episode.episode import Status
-from benchnav.errors import UsageError
 from benchnav.runner.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
 from benchnav.sensors.sense import sense
@@ -123,10 +124,9 @@ def test_what_begun_counts_adds_up_to_the_contacts(contact):
     assert {Kind.AGENT, Kind.STATIC} <= kinds
 
 
-def batch_of(pool, rows, name="ego", weights=None, seed=0):
-    return AgentBatch(
-        pool, rows, encoder(name), weights or RewardWeights(), np.random.default_rng(seed)
-    )
+def batch_of(pool, rows, name="ego", weights=None, seed=0, **more):
+    rng = np.random.default_rng(seed)
+    return AgentBatch(pool, rows, encoder(name), weights or RewardWeights(), rng, **more)
 
 
 def decide(batch, rng):
@@ -240,10 +240,34 @@ def test_somebody_else_may_drive_a_slot():
     np.testing.assert_allclose(batch.simulation.velocity[0], [[1, 0], [0, -1.5]], atol=1e-12)
 
 
-def test_agents_that_are_driven_already_are_refused():
-    crew = agents([[4.0, 4.0], [12.0, 12.0]], [[18.0, 4.0], [18.0, 12.0]], driver=[0, 1])
-    with pytest.raises(UsageError, match="evaluated agents only"):
-        batch_of([world(crew)], 1)
+def test_what_learners_command_may_be_corrected():
+    crew = agents([[4.0, 4.0], [12.0, 12.0]], [[18.0, 4.0], [18.0, 12.0]])
+
+    def slower(seen, bodies, command, tolerance):
+        assert seen.active.all()
+        assert tolerance.tolist() == [[0.3, 0.3]]
+        assert (command[..., 0] == bodies.max_speed).all()
+        return 0.5 * command
+
+    batch = batch_of([world(crew)], 1, correct=slower)
+    batch.reset()
+    batch.step(np.array([[[1.0, 0.0], [1.0, 0.0]]]))
+    speed = batch.simulation.agents["max_speed"][0]
+    np.testing.assert_allclose(batch.simulation.velocity[0, :, 0], 0.5 * speed)
+
+
+def test_agents_with_a_driver_learn_nothing_and_are_driven():
+    worlds = drawn("crowd/circle-crossing", 3)
+    batch = batch_of(worlds, 2, drivers=driver_specs(find("crowd/circle-crossing")))
+    batch.reset(np.array([0, 1]))
+    assert batch.active.tolist() == [[True] + 5 * [False]] * 2
+    start = batch.simulation.position.copy()
+    for _ in range(4):  # one second
+        step = batch.step(np.full((2, 6, 2), -1.0))
+        assert step.acted.tolist() == [[True] + 5 * [False]] * 2
+    moved = np.linalg.norm(batch.simulation.position - start, axis=-1)
+    assert (moved[:, 0] == 0).all()
+    assert (moved[:, 1:] > 0.5).all()
 
 
 def at_the_goal(noise=0.0):
@@ -271,19 +295,23 @@ def remembering():
 
 
 @pytest.mark.parametrize("tensors", [STEERING, at_the_goal(0.1), remembering()])
-@pytest.mark.parametrize("scenario", ["leaders/dynamic", "leaders/static-corner"])
+@pytest.mark.parametrize(
+    "scenario", ["leaders/dynamic", "leaders/static-corner", "crowd/circle-crossing"]
+)
 def test_strict_success_is_what_the_runner_records(tensors, scenario, tmp_path):
     path, worlds = tmp_path / "w.safetensors", drawn(scenario, 12, "validation")
     write_weights(path, tensors, {"encoder": "ego", "progress": {"decisions": 0, "seconds": 0.0}})
-    arrived = evaluate(Actor(tensors), evaluation(encoder("ego"), worlds))
+    drivers = driver_specs(find(scenario))
+    arrived = evaluate(Actor(tensors), batch_of(worlds, 12, drivers=drivers))
     spec = {"type": "recurrent-ppo", "weights": str(path)}
-    run = Assignment(scenario, "hash", "validation", "unknown", "own", spec)
+    run = Assignment(scenario, "hash", "validation", "unknown", "own", spec, drivers)
     episodes = [e for batch in rollout(run, list(enumerate(worlds))) for e in batch]
     assert sorted(episode.identity.seed for episode in episodes) == list(range(12))
     for episode in episodes:
         assert not episode.failure
         there = episode.status[-1] == Status.ARRIVED
+        there &= episode.world.agents.evaluated
         np.testing.assert_array_equal(arrived[episode.identity.seed], there)
         assert not np.isin(episode.contacts.agent, np.flatnonzero(there)).any()
-    if tensors is STEERING:
+    if tensors is STEERING and not drivers:
         assert 0 < arrived.mean() < 1

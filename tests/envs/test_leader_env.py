@@ -112,6 +112,18 @@ def test_the_others_drive_as_their_navigator_does(env):
     assert np.abs(moved - alone)[1:].min() < 0.5
 
 
+def test_in_a_scenario_with_drivers_only_evaluated_agents_learn():
+    env = LeaderEnv("crowd/circle-crossing", worlds=2)
+    for seed in range(3):
+        _, info = env.reset(seed=seed)
+        assert info["agent"] == 0
+    start = env.batch.simulation.position.copy()
+    env.step(np.float32([-1, 0]))
+    moved = np.linalg.norm(env.batch.simulation.position - start, axis=-1)
+    assert moved[0, 0] == 0
+    assert (moved[0, 1:] > 0).all()
+
+
 class Garbage(Navigator):
     def act(self, observation):
         return np.full((*observation.active.shape, 2), np.nan)
@@ -129,7 +141,6 @@ def test_others_that_answer_garbage_are_named():
     ("wrong", "says"),
     [
         ({"scenario": "leaders/statik"}, "Did you mean 'leaders/static'"),
-        ({"scenario": "crowd/circle-crossing"}, "has a team with a driver"),
         ({"encoder": "eggo"}, "Did you mean 'ego'"),
         ({"split": "test"}, "train or validation: .* Got 'test' instead"),
         ({"worlds": 0}, "at least 1 world. Got 0 instead"),

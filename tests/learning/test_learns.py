@@ -3,15 +3,17 @@
 import numpy as np
 import pytest
 from benchnav_baselines.recurrent_ppo.actor import Actor
-from benchnav_baselines.recurrent_ppo.courses import make_env, training_worlds
-from benchnav_baselines.recurrent_ppo.evaluate import evaluate, evaluation
+from benchnav_baselines.recurrent_ppo.courses import make_env, training_pools
+from benchnav_baselines.recurrent_ppo.evaluate import evaluate
 from benchnav_baselines.recurrent_ppo.learner import actor_tensors, make_learner
 from benchnav_baselines.recurrent_ppo.recipe import Course, Recipe
 from benchnav_baselines.recurrent_ppo.training import WEIGHTS, Training
 from benchnav_baselines.recurrent_ppo.weights import read_weights
 from scipy.stats import ttest_rel
 
+from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder
+from benchnav.envs.reward import RewardWeights
 from benchnav.scenario.catalogue import find
 from benchnav.world.build import build
 
@@ -39,13 +41,14 @@ RECIPE = Recipe.model_validate(
 
 def success(actor, worlds):
     """(B,) share of each world's agents that arrived untouched."""
-    arrived = evaluate(actor, evaluation(encoder(RECIPE.encoder), worlds))
+    rng, weights = np.random.default_rng(0), RewardWeights()
+    arrived = evaluate(actor, AgentBatch(worlds, len(worlds), encoder("surround"), weights, rng))
     return arrived.sum(1) / [len(world.agents) for world in worlds]
 
 
 def untrained(seed):
     one = RECIPE.model_copy(update={"courses": (Course(scenario="leaders/static", worlds=1),)})
-    env = make_env(one, training_worlds(one, one.stages[0]))
+    env = make_env(one, training_pools(one, one.stages[0]))
     return Actor(actor_tensors(make_learner(one, env, seed, "cpu")))
 
 
