@@ -154,7 +154,9 @@ def _stages(training: Path) -> Iterator[str]:
     curve = read_curve(training)
     said = json.loads((training / "training.json").read_text())["recipe"]
     names = [name for name in curve[0] if name.startswith("validation ")]
-    yield "Success on the validation split at the end of each stage, without correction:"
+    corrected = [str(k) for k, stage in enumerate(said["stages"], 1) if stage.get("foresight")]
+    how = f"corrected by foresight in stage {', '.join(corrected)} alone" if corrected else "as is"
+    yield f"Success on the validation split at the end of each stage, {how}:"
     yield ""
     yield "| stage | decisions | " + " | ".join(n.removeprefix("validation ") for n in names) + " |"
     yield "|---|---|" + "---|" * len(names)
