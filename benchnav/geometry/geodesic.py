@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchnav.arrays import FloatArray
+from benchnav.geometry.arc_polyline import around_arc
 from benchnav.geometry.capsule_grid import SLACK, capsule_grid, is_clear
 from benchnav.geometry.free_arc import Arcs, free_arcs
 from benchnav.geometry.geodesic_search import Found, Tangents, search, tangents
@@ -72,18 +73,21 @@ class FreeSpace:
         """
         return self._route(start, goal, tolerance).length
 
-    def path(self, start: FloatArray, goal: FloatArray, tolerance: float = 0.0) -> FloatArray:
+    def path(
+        self, start: FloatArray, goal: FloatArray, tolerance: float = 0.0, bend: float = _BEND
+    ) -> FloatArray:
         """The same path as waypoints (W, 2) [m]; (0, 2) where there is none.
 
-        Arcs become polylines around them, so that no corner is cut; they are longer
-        than the arc by at most 0.3 %.
+        Arcs become polylines around them, so that no corner is cut, of sides so short
+        that they are as clear as the arcs. A waypoint on an arc turns by at most ``bend``
+        [rad]; the polyline is longer than the arc by a share of bend² / 12 at most (0.3 %).
         """
         route = self._route(start, goal, tolerance)
         if math.isnan(route.length):
             return np.zeros((0, 2))
         points = [np.asarray(start, np.float64)]
         if route.leave is not None and route.arrive is not None and route.found is not None:
-            points += self._around(route.leave, route.arrive, route.found)
+            points += self._around(route.leave, route.arrive, route.found, bend)
         points.append(route.end)
         line = np.array(points)
         moved = np.hypot(*np.diff(line, axis=0).T) > 1e-9
@@ -135,7 +139,9 @@ class FreeSpace:
         out = np.stack([np.cos(turn), np.sin(turn)], axis=1)
         return np.asarray(self._arcs.center[arc] + self._arcs.radius[arc, None] * out)
 
-    def _around(self, leave: FloatArray, arrive: FloatArray, found: Found) -> list[FloatArray]:
+    def _around(
+        self, leave: FloatArray, arrive: FloatArray, found: Found, bend: float
+    ) -> list[FloatArray]:
         graph, nodes = self._graph, found.nodes
         places = [leave[:2], *np.column_stack([graph.arc[nodes], graph.angle[nodes]]), arrive[:2]]
         straight = np.zeros(len(places) - 1, bool)
@@ -143,18 +149,14 @@ class FreeSpace:
         points = [self._rim(places[0][None])[0]]
         for here, there, jump in zip(places[:-1], places[1:], straight, strict=True):
             if not jump and here[1] != there[1]:
-                points += list(self._bent(int(here[0]), here[1], there[1]))
+                points += list(self._bent(int(here[0]), here[1], there[1], bend))
             points.append(self._rim(there[None])[0])
         return points
 
-    def _bent(self, arc: int, begin: float, end: float) -> FloatArray:
+    def _bent(self, arc: int, begin: float, end: float, bend: float) -> FloatArray:
         """(N, 2) corners of the polyline around a piece of an arc."""
-        count = math.ceil(abs(end - begin) / _BEND)
-        step = (end - begin) / count
-        turn = self._arcs.low[arc] + begin + step * (np.arange(count) + 0.5)
-        reach = self._arcs.radius[arc] / math.cos(0.5 * step)
-        out = np.stack([np.cos(turn), np.sin(turn)], axis=1)
-        return np.asarray(self._arcs.center[arc] + reach * out)
+        (x, y), radius, low = self._arcs.center[arc], self._arcs.radius[arc], self._arcs.low[arc]
+        return np.asarray(around_arc(self._grid, x, y, radius, low + begin, low + end, bend))
 
 
 def geodesic_lengths(

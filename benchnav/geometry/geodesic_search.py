@@ -13,6 +13,7 @@ import numpy as np
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.free_arc import TWO_PI, Arcs
+from benchnav.geometry.heap import pop, push
 from benchnav.kernels import kernel
 
 
@@ -73,11 +74,11 @@ def search(
     for n in range(size):
         if link[n] >= 0:
             bound = cost[n] + _least(graph, n, goal_x, goal_y, tolerance)
-            waiting = _push(key, item, waiting, bound, n)
+            waiting = push(key, item, waiting, bound, n)
     done = np.zeros(size, np.bool_)
     while waiting > 0 and key[0] < best:
         n = item[0]
-        waiting = _pop(key, item, waiting)
+        waiting = pop(key, item, waiting)
         if done[n]:
             continue
         done[n] = True
@@ -93,7 +94,7 @@ def search(
             if through < cost[m]:
                 cost[m], parent[m] = through, n
                 bound = through + _least(graph, m, goal_x, goal_y, tolerance)
-                waiting = _push(key, item, waiting, bound, m)
+                waiting = push(key, item, waiting, bound, m)
     return _found(parent, best, first, last, node)
 
 
@@ -162,33 +163,3 @@ def _after(graph: Tangents, arc: int, angle: float) -> int:
         else:
             high = mid
     return int(low)
-
-
-@kernel
-def _push(key: FloatArray, item: IntArray, count: int, value: float, what: int) -> int:
-    at = count
-    while at > 0 and key[(at - 1) // 2] > value:
-        key[at], item[at] = key[(at - 1) // 2], item[(at - 1) // 2]
-        at = (at - 1) // 2
-    key[at], item[at] = value, what
-    return count + 1
-
-
-@kernel
-def _pop(key: FloatArray, item: IntArray, count: int) -> int:
-    """Removes the least key; returns how many are left."""
-    count -= 1
-    value, what = key[count], item[count]
-    at = 0
-    while True:
-        child = 2 * at + 1
-        if child >= count:
-            break
-        if child + 1 < count and key[child + 1] < key[child]:
-            child += 1
-        if key[child] >= value:
-            break
-        key[at], item[at] = key[child], item[child]
-        at = child
-    key[at], item[at] = value, what
-    return count

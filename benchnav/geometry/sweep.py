@@ -147,8 +147,11 @@ def solid_index(solids: Sequence[Outlined]) -> tuple[IntArray, IntArray]:
 
 def _reaches_to_infinity(solid: Outlined) -> bool:
     """True where the loops enclose a negative area by more than rounding makes of thin walls."""
-    extent = float(np.ptp(np.vstack(solid.loops), axis=0).max())
-    return sum(map(_area, solid.loops)) < -1e-12 * extent * extent
+    loops = [loop for loop in solid.loops if len(loop) > 2]  # two vertices enclose nothing
+    if not loops:
+        return False
+    extent = float(np.ptp(np.vstack(loops), axis=0).max())
+    return sum(map(_area, loops)) < -1e-12 * extent * extent
 
 
 def _area(loop: FloatArray) -> float:

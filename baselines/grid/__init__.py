@@ -1,0 +1,1 @@
+"""Search on an occupancy grid: A*, and any-angle Theta*."""
