@@ -1,7 +1,8 @@
 """Draws the pictures of the documentation: ``python docs/make_pictures.py``.
 
 `images/worlds.png` shows one world of each of six scenarios, and the way that every
-evaluated agent took in it when `ompl-orca` drove it. Needs ``benchnav[plan,view]``.
+evaluated agent took in it when `ompl-orca` drove it; `images/groups.png` groups that meet,
+driven by `orca`, a colour for each. Needs ``benchnav[plan,view]``.
 """
 
 from collections.abc import Sequence
@@ -29,6 +30,10 @@ ROWS = (  # of (scenario, test seed)
     (("leaders/dynamic", 4), ("circle/antipodal", 0), ("maze/grid", 2)),
     (("trap/u", 1), ("bottleneck/door", 0), ("office/rooms", 1)),
 )
+GROUPS = (
+    (("groups/diagonal", 0), ("groups/crossing-four", 0)),
+    (("groups/bottleneck-opposed", 0),),
+)
 WIDTH = 11.0  # [inch] of the picture
 HEAD = 0.3  # [inch] above each row
 COLOURS = 128  # in the file, which keeps it small
@@ -36,10 +41,10 @@ PAPER, INK, WALL, FURNITURE, MOVER = "#ffffff", "#22303c", "#36454f", "#b4bec6",
 MARGIN = 0.012  # of an arena's width: how thick the wall along its bounds is drawn
 
 
-def episode_of(name: str, seed: int) -> Episode:
+def episode_of(name: str, seed: int, navigator: str = NAVIGATOR) -> Episode:
     """What happens in the world of a test seed of a scenario."""
     scenario = find(name)
-    who = Assignment(scenario.identity, scenario.hash, "test", "known", NAVIGATOR, NAVIGATOR)
+    who = Assignment(scenario.identity, scenario.hash, "test", "known", navigator, navigator)
     ((episode,),) = rollout(who, [(seed, build(scenario, "test", seed))])
     return episode
 
@@ -54,9 +59,10 @@ def draw(axes: Any, episode: Episode) -> None:
         colour = WALL if solid.kind == Kind.WALL else FURNITURE
         axes.add_patch(_patch(solid, frame, color=colour, linewidth=0.4))
     _draw_movers(axes, episode, frame)
-    colours = pyplot.get_cmap("turbo")(np.linspace(0.05, 0.92, len(world.agents)))
-    for agent, colour in enumerate(colours):
-        _draw_way(axes, episode, agent, colour)
+    which = world.agents.team if len(world.teams) > 1 else np.arange(len(world.agents))
+    colours = pyplot.get_cmap("turbo")(np.linspace(0.05, 0.92, int(which.max()) + 1))
+    for agent, k in enumerate(which):
+        _draw_way(axes, episode, agent, colours[k])
     axes.set(xlim=frame[::2], ylim=frame[1::2], aspect="equal", xticks=[], yticks=[])
     for spine in axes.spines.values():
         spine.set_visible(False)
@@ -119,10 +125,11 @@ def caption(name: str, episode: Episode) -> str:
     return f"{name}   {int(came.sum())} of {len(came)} arrived in {last:.0f} s"
 
 
-def draw_row(figure: Any, worlds: Sequence[tuple[str, int]]) -> None:
+def draw_row(figure: Any, worlds: Sequence[tuple[str, int]], navigator: str = NAVIGATOR) -> None:
     """Worlds side by side, all as high as the row is."""
-    episodes = [episode_of(name, seed) for name, seed in worlds]
-    row = figure.subplots(1, len(worlds), width_ratios=[aspect(e.world) for e in episodes])
+    episodes = [episode_of(name, seed, navigator) for name, seed in worlds]
+    ratios = [aspect(e.world) for e in episodes]
+    row = figure.subplots(1, len(worlds), width_ratios=ratios, squeeze=False)[0]
     high = figure.bbox.height / figure.dpi
     figure.subplots_adjust(0.008, 0.02, 0.992, 1.0 - HEAD / high, 0.025)
     for axes, (name, _), episode in zip(row, worlds, episodes, strict=True):
@@ -136,23 +143,31 @@ def aspect(world: World) -> float:
     return (x1 - x0) / (y1 - y0)
 
 
-def main() -> None:
-    """Writes `images/worlds.png`."""
+def draw_picture(
+    name: str, rows: Sequence[Sequence[tuple[str, int]]], navigator: str = NAVIGATOR
+) -> None:
+    """Writes `images/NAME.png`."""
     from PIL import Image
 
-    matplotlib.use("Agg")
     heights = [
         HEAD + 0.95 * WIDTH / sum(aspect(build(find(name), "test", seed)) for name, seed in row)
-        for row in ROWS
+        for row in rows
     ]
     figure = pyplot.figure(figsize=(WIDTH, sum(heights)), dpi=110, facecolor=PAPER)
-    parts: Any = figure.subfigures(len(ROWS), 1, height_ratios=heights)
-    for part, worlds in zip(parts, ROWS, strict=True):
-        draw_row(part, worlds)
+    parts: Any = figure.subfigures(len(rows), 1, height_ratios=heights)
+    for part, worlds in zip(np.atleast_1d(parts), rows, strict=True):
+        draw_row(part, worlds, navigator)
     IMAGES.mkdir(exist_ok=True)
-    path = IMAGES / "worlds.png"
+    path = IMAGES / f"{name}.png"
     figure.savefig(path, facecolor=PAPER)
     Image.open(path).convert("RGB").quantize(COLOURS).save(path, optimize=True)
+
+
+def main() -> None:
+    """Writes all pictures."""
+    matplotlib.use("Agg")
+    draw_picture("worlds", ROWS)
+    draw_picture("groups", GROUPS, "orca")
 
 
 if __name__ == "__main__":

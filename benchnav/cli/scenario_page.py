@@ -19,6 +19,8 @@ _PLACES = {
     "grid": "in a grid",
     "points": "at points",
     "antipodal": "opposite",
+    "packed": "packed side by side",
+    "shifted": "as far away for all",
 }
 
 
@@ -35,6 +37,7 @@ def scenario_page(scenario: "Scenario") -> str:
         *(("team" if not i else "", _team(team)) for i, team in enumerate(scenario.teams)),
         *_terms(scenario),
         ("tracks", ", ".join(scenario.granted_tracks)),
+        *(("may set", text) for text in _parameters(scenario)),
         ("worlds", worlds),
         ("hash", scenario.hash),
     ]
@@ -43,6 +46,12 @@ def scenario_page(scenario: "Scenario") -> str:
     if scenario.description.strip():
         page += ["", fill(scenario.description.strip(), WIDTH)]
     return "\n".join(page)
+
+
+def _parameters(scenario: "Scenario") -> Iterator[str]:
+    for name, p in scenario.parameters.items():
+        told = f" ({p.description})" if p.description else ""
+        yield f"{name} = {p.default:g} unless chosen, from {p.low:g} to {p.high:g}{told}"
 
 
 def _line(key: str, value: str) -> str:

@@ -25,7 +25,7 @@ def show(
     blocks = [
         _plugin(kind, registry, name)
         for kind, registry in REGISTRIES.items()
-        if name in registry.names() or (":" in name and kind == Kind.NAVIGATORS)
+        if name in registry.names() or (kind == Kind.NAVIGATORS and _is_class(name))
     ]
     blocks += [*_scenario(name), *_suite(name)]
     if not blocks:
@@ -34,6 +34,11 @@ def show(
             f"{did_you_mean(name, _everything())}"
         )
     put("\n\n".join(blocks))
+
+
+def _is_class(name: str) -> bool:
+    """True for ``module:Class``; a scenario's parameters stand behind a colon, too."""
+    return ":" in name and "=" not in name
 
 
 def _plugin(kind: Kind, registry: Registry, name: str) -> str:
@@ -92,9 +97,9 @@ def _place(thing: Any) -> str:
 
 
 def _scenario(name: str) -> Iterator[str]:
-    from benchnav.scenario.catalogue import find, names
+    from benchnav.scenario.catalogue import find, is_named
 
-    if name.partition("@")[0] in names() or name.endswith((".yaml", ".yml")):
+    if is_named(name):
         yield scenario_page(find(name))
 
 

@@ -24,6 +24,7 @@ from benchnav.metrics.trajectory import Trajectories
 TTC_CAP = 5.0  # [s] a collision that is farther off than this threatens nobody yet
 RECORDED = 2.4  # [m] gaps between agents are recorded up to this
 NEAR = 4.0  # radii between centres: two diameters
+SLACK = 1e-9  # [m] rounding, where steps are left out that cannot matter
 
 
 class Things(NamedTuple):
@@ -172,7 +173,9 @@ def meet_agents(
             k = 0
             while k <= end:
                 between = _pair_sample(i, j, k, position, last, radius, clearance, gap, near)
-                if k < end:
+                if k < end and _pair_matters(
+                    i, j, k, between, velocity, clearance, ttc, fastest, dt
+                ):
                     _pair_step(
                         i, j, k, position, velocity, duration, last, leaves, radius, clearance, ttc
                     )
@@ -202,6 +205,21 @@ def _pair_sample(
         if k < last[a] or k == 0:
             clearance[a] = min(clearance[a], between)
     return between
+
+
+@kernel
+def _pair_matters(
+    i: int, j: int, k: int, between: float, velocity: FloatArray, clearance: FloatArray,
+    ttc: FloatArray, fastest: float, dt: float,
+) -> bool:  # fmt: skip
+    """False where the step from ``between`` [m] on can lower neither clearance nor ttc."""
+    if between - fastest * dt <= max(clearance[i], clearance[j]) + SLACK:
+        return True
+    wx = velocity[j, k, 0] - velocity[i, k, 0]
+    wy = velocity[j, k, 1] - velocity[i, k, 1]
+    soon = max(ttc[i], ttc[j]) + dt
+    soon_met: bool = between - SLACK <= soon * math.sqrt(wx * wx + wy * wy)
+    return soon_met
 
 
 @kernel

@@ -2,8 +2,7 @@
 
 A value is a mean over time, at 2 Hz, while at least two of the team's members are on
 their way, and then over the teams of which there are at least two members. NaN where
-no team has two. Following a guiding path is not measured here: the episode of a
-follower does not hold one.
+no team has two.
 """
 
 import math
@@ -11,7 +10,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode
 from benchnav.kernels import kernel
 from benchnav.metrics.analysis import analyse
@@ -89,29 +88,42 @@ def _order(
 def _parts(
     place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
 ) -> FloatArray:
-    """(N,) parts of those who are active: each is filled from a seed, neighbour by neighbour."""
+    """(N,) parts of those who are active."""
     n, instants = active.shape
     parts = np.zeros(instants)
-    stack = np.empty(n, np.int64)
+    label, stack = np.empty(n, np.int64), np.empty(n, np.int64)
     for k in range(instants):
-        waiting = active[:, k].copy()
-        for seed in range(n):
-            if not waiting[seed]:
-                continue
-            parts[k] += 1.0
-            waiting[seed] = False
-            stack[0], top = seed, 1
-            while top > 0:
-                top -= 1
-                i = stack[top]
-                for j in range(n):
-                    dx = place[j, k, 0] - place[i, k, 0]
-                    dy = place[j, k, 1] - place[i, k, 1]
-                    reach = LINK * (radius[i] + radius[j])
-                    if waiting[j] and dx * dx + dy * dy <= reach * reach:
-                        waiting[j] = False
-                        stack[top] = j
-                        top += 1
+        parts[k] = label_parts(place[:, k], active[:, k], radius, label, stack)
+    return parts
+
+
+@kernel
+def label_parts(
+    place: FloatArray, active: BoolArray, radius: FloatArray, label: IntArray, stack: IntArray
+) -> int:
+    """How many connected parts those have who are active (n,); ``label`` (n,) says who is in which.
+
+    Each part is filled from a seed, neighbour by neighbour. Who is not active gets -1;
+    ``stack`` (n,) is scratch.
+    """
+    parts = 0
+    label[:] = -1
+    for seed in range(len(active)):
+        if not active[seed] or label[seed] >= 0:
+            continue
+        label[seed] = parts
+        stack[0], top = seed, 1
+        while top > 0:
+            top -= 1
+            i = stack[top]
+            for j in range(len(active)):
+                dx, dy = place[j, 0] - place[i, 0], place[j, 1] - place[i, 1]
+                reach = LINK * (radius[i] + radius[j])
+                if active[j] and label[j] < 0 and dx * dx + dy * dy <= reach * reach:
+                    label[j] = parts
+                    stack[top] = j
+                    top += 1
+        parts += 1
     return parts
 
 

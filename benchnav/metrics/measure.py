@@ -61,7 +61,9 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
             "scenario_hash": who.scenario_hash, "track": who.track, "split": who.split,
             "seed": who.seed, "role": role.name.lower(), "agents": int(members.sum()),
             "failure": episode.failure, "horizon": clock.horizon, "dt": clock.dt,
-            "navigator_hash": who.navigator_hash,
+            "navigator_hash": who.navigator_hash, "rehearsal": episode.rehearsals,
+            "rehearsal_decisions": episode.rehearsal_decisions,
+            "rehearsal_seconds": episode.timings.rehearsal,
         }  # fmt: skip
         for metric in metrics:
             try:

@@ -9,7 +9,8 @@ from benchnav.metrics.metric import Metric
 from benchnav.plugins import METRICS
 
 SECTIONS = (
-    "success", "safety", "efficiency", "smoothness", "congestion", "groups", "compute"
+    "success", "safety", "efficiency", "smoothness", "congestion", "groups", "following",
+    "compute",
 )  # fmt: skip
 HEAD = """# Metrics
 

@@ -5,9 +5,10 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
-from benchnav.errors import PluginError, UnknownPluginError, did_you_mean
+from benchnav.errors import PluginError, UnknownPluginError, UsageError, did_you_mean
 from benchnav.plugins import SCENARIOS
 from benchnav.scenario.load import load_scenario
+from benchnav.scenario.parameters import Given, split_parameters
 from benchnav.scenario.scenario import Scenario
 
 _SHIPPED = "benchnav_scenarios"  # found by name: benchnav never imports it
@@ -19,22 +20,26 @@ def names() -> list[str]:
     return sorted({*_shipped(), *SCENARIOS.names()})
 
 
-def find(name: str) -> Scenario:
-    """The scenario called ``name``, ``name@version``, or the one in the file ``name``.
+def find(name: str, folder: Path = Path()) -> Scenario:
+    """The scenario called ``name``, ``name@version``, or the one in a file, from ``folder``.
+
+    ``:key=number,key=number`` behind any of them sets its parameters.
 
     Raises:
+        UsageError: it does not have such a parameter, or a number is out of its bounds.
         UnknownPluginError: there is none, or it has another version.
         ScenarioError: its file is wrong.
         PluginError: a plugin registered something that is not a scenario.
     """
-    if name.endswith(_ENDINGS):
-        return load_scenario(name)
-    bare, _, version = name.partition("@")
+    base, given = split_parameters(name)
+    if base.endswith(_ENDINGS):
+        return load_scenario(folder / base, given)
+    bare, _, version = base.partition("@")
     shipped = _shipped()
     if bare in shipped:
-        scenario = load_scenario(shipped[bare])
+        scenario = load_scenario(shipped[bare], given)
     elif bare in SCENARIOS.names() or ":" in bare:
-        scenario = _from_plugin(bare, SCENARIOS.load(bare))
+        scenario = _from_plugin(bare, SCENARIOS.load(bare), given)
     else:
         raise UnknownPluginError(
             f"No scenario is called {bare!r}.{did_you_mean(bare, names())}"
@@ -47,17 +52,25 @@ def find(name: str) -> Scenario:
     return scenario
 
 
-def _from_plugin(name: str, thing: Any) -> Scenario:
+def _from_plugin(name: str, thing: Any, given: Given) -> Scenario:
     if callable(thing) and not isinstance(thing, Scenario):
         thing = thing()
     if isinstance(thing, str | Path):
-        return load_scenario(thing)
+        return load_scenario(thing, given)
+    if given:
+        raise UsageError(f"The scenario {name!r} is no file, so it has no parameters to set.")
     if isinstance(thing, Scenario):
         return thing
     raise PluginError(
         f"The scenario plugin {name!r} must be a Scenario, the path of a YAML file, or a function"
         f" that returns one; got {type(thing).__name__}."
     )
+
+
+def is_named(name: str) -> bool:
+    """True where `find` would look for a scenario: a name that is known, or a file's."""
+    base, _ = split_parameters(name)
+    return base.endswith(_ENDINGS) or base.partition("@")[0] in names()
 
 
 def _shipped() -> dict[str, Path]:

@@ -5,18 +5,20 @@ from typing import Any
 
 from benchnav.errors import ScenarioError
 from benchnav.scenario.document import Document
+from benchnav.scenario.parameters import Given, Reference, resolve
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.validation import validate
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text
 
 
-def load_scenario(path: Path | str) -> Scenario:
-    """The scenario in the YAML file ``path``.
+def load_scenario(path: Path | str, given: Given | None = None) -> Scenario:
+    """The scenario in the YAML file ``path``, with parameters other than the default.
 
     Raises:
+        UsageError: a parameter that it does not have, or a number out of its bounds.
         ScenarioError: with ``file:line: key`` of everything that is wrong, up to ten complaints.
     """
-    return _checked(read_yaml(path), Path(path).parent)
+    return _checked(read_yaml(path), Path(path).parent, given or {})
 
 
 def scenario_from_text(text: str, name: str, folder: Path | str = ".") -> Scenario:
@@ -25,11 +27,14 @@ def scenario_from_text(text: str, name: str, folder: Path | str = ".") -> Scenar
     Raises:
         ScenarioError: as `load_scenario`.
     """
-    return _checked(read_yaml_text(text, name), Path(folder))
+    return _checked(read_yaml_text(text, name), Path(folder), {})
 
 
-def _checked(document: Document, folder: Path) -> Scenario:
-    scenario = validate(Scenario, document).placed_in(folder)
+def _checked(document: Document, folder: Path, given: Given) -> Scenario:
+    document, chosen = resolve(document, given)
+    scenario = validate(Scenario, document)
+    starts = [document.where(("teams", i, "start")) for i in range(len(scenario.teams))]
+    scenario = scenario.placed_in(folder, chosen, tuple(starts))
     for key, path in scenario.files():
         if not _is_file(path):
             raise ScenarioError(
@@ -49,4 +54,20 @@ def _is_file(path: Path) -> bool:
 def json_schema() -> dict[str, Any]:
     """JSON Schema (2020-12) of a scenario file."""
     schema = Scenario.model_json_schema()
+    _allow_references({key: part for key, part in schema.items() if key != "$defs"})
+    _allow_references({k: part for k, part in schema["$defs"].items() if k != "Parameter"})
+    schema["$defs"]["Reference"] = Reference.model_json_schema()
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+_OF_NUMBERS = ("type", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaximum")
+
+
+def _allow_references(node: Any) -> None:
+    """Wherever a number may stand, a parameter may."""
+    for child in list(node.values() if isinstance(node, dict) else node):
+        if isinstance(child, dict | list):
+            _allow_references(child)
+    if isinstance(node, dict) and node.get("type") in ("number", "integer"):
+        number = {key: node.pop(key) for key in _OF_NUMBERS if key in node}
+        node["anyOf"] = [number, {"$ref": "#/$defs/Reference"}]

@@ -2,7 +2,7 @@
 
 import hashlib
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,17 +14,27 @@ from benchnav.scenario.base import Bounds, Spec, inside
 from benchnav.scenario.document import PathKey
 from benchnav.scenario.law import RecordedTrack
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
+from benchnav.scenario.packing import lattice, most_that_fit
+from benchnav.scenario.parameters import Parameters, joined_parameters
 from benchnav.scenario.region import region_problem
 from benchnav.scenario.sampler import support
 from benchnav.scenario.shape import Mesh, Occupancy, Shape
-from benchnav.scenario.team import Driver, PointsGoal, PointsStart, RegionGoal, RegionStart, Team
+from benchnav.scenario.team import (
+    Driver,
+    PackedStart,
+    PointsGoal,
+    PointsStart,
+    RegionGoal,
+    RegionStart,
+    Team,
+)
 from benchnav.scenario.terms import Clock, Rules, Sensing, Track
 from benchnav.scenario.validation import FieldError
 from benchnav.scenario.wall import Layout, Wall, layout_problem
 
 MAX_AGENTS = 5000
 MAX_OBSTACLES = 2000
-_PROSE = {"title", "description"}
+_PROSE = {"title", "description", "parameters"}  # of which the values stand where they are used
 
 
 class Scenario(Spec):
@@ -38,6 +48,7 @@ class Scenario(Spec):
     version: int = Field(1, ge=1, le=10**6, description="rises when results stop being comparable")
     title: str = Field("", max_length=200)
     description: str = Field("", max_length=5000)
+    parameters: Parameters = Field({}, max_length=20, description="that NAME:key=number may set")
     bounds: Bounds = Field(description="of the arena: [xmin, ymin, xmax, ymax] [m]")
     walled: bool = Field(True, description="a wall stands along the bounds")
     layout: Layout | None = Field(None, description="walls that are generated")
@@ -54,23 +65,35 @@ class Scenario(Spec):
     measurement_area: Bounds | None = Field(None, description="where density is measured [m]")
 
     _folder: Path = PrivateAttr(default_factory=Path)
+    _chosen: dict[str, float] = PrivateAttr(default_factory=dict)
+    _starts: tuple[str, ...] = PrivateAttr(())
 
     @property
     def folder(self) -> Path:
         """What file names in the scenario are relative to."""
         return self._folder
 
-    def placed_in(self, folder: Path) -> "Scenario":
-        """The same scenario, its file names relative to ``folder``."""
+    def placed_in(
+        self, folder: Path, chosen: dict[str, float] | None = None, starts: tuple[str, ...] = ()
+    ) -> "Scenario":
+        """The same scenario, its file names relative to ``folder``.
+
+        ``chosen`` are its parameters that are not the default; ``starts`` says of each of
+        its teams in which file and line its start stands.
+        """
         copy = self.model_copy()
         copy.__dict__.pop("hash", None)
-        copy._folder = folder
+        copy._folder, copy._chosen, copy._starts = folder, dict(chosen or {}), starts
         return copy
+
+    def where_start(self, team: int) -> str:
+        """``file:line: teams[0].start``; without a file where it came from none."""
+        return self._starts[team] if self._starts else f"teams[{team}].start"
 
     @property
     def identity(self) -> str:
-        """``name@version``."""
-        return f"{self.name}@{self.version}"
+        """``name@version``, and ``:key=number`` of parameters that are not the default."""
+        return f"{self.name}@{self.version}{joined_parameters(self._chosen)}"
 
     @cached_property
     def hash(self) -> str:
@@ -165,16 +188,13 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     tracks = scenario.tracks
     if tracks is not None and len(set(tracks)) < len(tracks):
         yield ("tracks",), "must not name a track twice"
+    yield from _room_problems(scenario)
 
 
 def _team_problems(scenario: Scenario) -> Iterator[Problem]:
     names = [team.name for team in scenario.teams]
     for i, team in enumerate(scenario.teams):
-        if names.index(team.name) < i:
-            yield (
-                ("teams", i, "name"),
-                f"must be unique; {team.name!r} is teams[{names.index(team.name)}]",
-            )
+        yield from _namesake_problems(scenario.teams[:i], team, i)
         for j, other in enumerate(team.ignores):
             if other not in names:
                 yield (
@@ -185,11 +205,48 @@ def _team_problems(scenario: Scenario) -> Iterator[Problem]:
         yield ("teams",), "must hold at least one evaluated agent (a team without `driver`)"
 
 
+def _namesake_problems(before: Sequence[Team], team: Team, i: int) -> Iterator[Problem]:
+    for j, other in enumerate(before):
+        if other.name == team.name and other.role == team.role:
+            yield ("teams", i, "name"), f"must be unique; {team.name!r} is teams[{j}]"
+        elif other.name == team.name and set(other.ignores) != set(team.ignores):
+            yield (
+                ("teams", i, "ignores"),
+                f"must be that of teams[{j}]: leaders and followers of {team.name!r} are one team",
+            )
+
+
+def _room_problems(scenario: Scenario) -> Iterator[Problem]:
+    """Teams that are larger than what they start from or want to reach."""
+    for i, team in enumerate(scenario.teams):
+        most, radius = int(support(team.count)[1]), support(team.radius)[0]
+        margin = radius if scenario.walled else 0.0
+        for key, place in (("start", team.start), ("goal", team.goal)):
+            gap = 0.0
+            if isinstance(place, PackedStart):
+                room = len(lattice(place.front, place.spacing, place.region, scenario.bounds, most))
+                text = f"the region holds {room} points {place.spacing:g} m apart"
+            elif isinstance(place, RegionStart | RegionGoal):
+                gap = place.separation if isinstance(place, RegionStart) else 0.0
+                room = most_that_fit(place.region, scenario.bounds, 2.0 * radius + gap, margin)
+                text = (
+                    f"the region holds at most {room} agents of radius {radius:g} m that are"
+                    f" {gap:g} m apart, however closely they are packed"
+                )
+            else:
+                continue
+            if most > room:
+                yield (
+                    ("teams", i, key),
+                    f"must have room for all of {team.name!r}, up to {most} agents; {text}",
+                )
+
+
 def _place_problems(scenario: Scenario) -> Iterator[Problem]:
     bounds = scenario.bounds
     for i, team in enumerate(scenario.teams):
         for key, place in (("start", team.start), ("goal", team.goal)):
-            if isinstance(place, RegionStart | RegionGoal):
+            if isinstance(place, RegionStart | RegionGoal | PackedStart):
                 text = region_problem(place.region, bounds)
                 if text:
                     yield ("teams", i, key, "region"), text

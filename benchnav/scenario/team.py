@@ -47,6 +47,19 @@ class GridStart(Spec):
     separation: Distance = Field(0.0, description="least gap [m] to anybody at the start")
 
 
+class PackedStart(Spec):
+    """Agents side by side on a hexagonal lattice in a region, those nearest to its front first."""
+
+    type: Literal["packed"]
+    region: Region = Field(description="of their centres")
+    front: Point = Field(description="a point of the lattice, also beside the region [m]")
+    spacing: Length = Field(description="between centres [m]")
+    jitter: Distance = Field(
+        0.0, description="x and y are each shifted by up to half of it either way [m]"
+    )
+    separation: Distance = Field(0.0, description="least gap [m] to anybody at the start")
+
+
 class PointsStart(Spec):
     """Agent i at point i."""
 
@@ -77,8 +90,17 @@ class AntipodalGoal(Spec):
     center: Point = Field((0.0, 0.0), description="[m]")
 
 
-Start = Annotated[RegionStart | CircleStart | GridStart | PointsStart, Field(discriminator="type")]
-Goal = Annotated[RegionGoal | PointsGoal | AntipodalGoal, Field(discriminator="type")]
+class ShiftedGoal(Spec):
+    """Each agent's goal is its start, moved by a vector: a group arrives as it stood."""
+
+    type: Literal["shifted"]
+    by: Point = Field(description="[m]")
+
+
+Start = Annotated[
+    RegionStart | CircleStart | GridStart | PackedStart | PointsStart, Field(discriminator="type")
+]
+Goal = Annotated[RegionGoal | PointsGoal | AntipodalGoal | ShiftedGoal, Field(discriminator="type")]
 
 
 class Driver(BaseModel):
@@ -99,7 +121,10 @@ def _named(value: Any) -> Any:
 
 
 class Team(Spec):
-    """Agents that share a role, a body and a driver."""
+    """Agents that share a role, a body and a driver.
+
+    Listed twice under one name, once for each role, leaders and followers are one team.
+    """
 
     name: Name
     role: Literal["leader", "follower"] = "leader"

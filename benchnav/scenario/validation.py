@@ -174,7 +174,8 @@ def _keys(model: type[BaseModel], data: Any, path: Sequence[PathKey]) -> list[st
 
 def _step(node: Schema, key: PathKey) -> Schema | None:
     if isinstance(key, str):
-        found = node.get("properties", {}).get(key, node.get("additionalProperties"))
+        others = [node.get("additionalProperties"), *node.get("patternProperties", {}).values()]
+        found = node.get("properties", {}).get(key, others[-1])
     else:
         fixed = node.get("prefixItems", [])
         found = fixed[key] if key < len(fixed) else node.get("items")

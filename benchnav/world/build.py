@@ -13,9 +13,10 @@ from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.errors import UnsolvableError, UsageError, did_you_mean
 from benchnav.geometry.rotation import angle_of
+from benchnav.scenario.packing import most_that_fit
 from benchnav.scenario.sampler import sample, support
 from benchnav.scenario.scenario import Scenario
-from benchnav.scenario.team import Team
+from benchnav.scenario.team import RegionStart, Team
 from benchnav.world.draw_dynamic import check_clear, fixed_bodies, is_fixed, placed_bodies
 from benchnav.world.draw_gap import Barrier, barrier, joined
 from benchnav.world.draw_law import place_at_start
@@ -49,16 +50,35 @@ def build(scenario: Scenario, split: str, seed: int) -> World:
         raise UsageError(f"The seed must be ≥ 0; got {seed}.")
     prepared = prepare(scenario)
     reasons: Counter[str] = Counter()
+    crowded: set[int] = set()
     for attempt in range(MAX_ATTEMPTS):
         try:
             return _Draw(prepared, SPLITS.index(split), seed, attempt).world()
         except NoPlaceError as reason:
             reasons[str(reason)] += 1
+            crowded |= set() if reason.team is None else {reason.team}
     worst = "; ".join(f"{text} ({n} draws)" for text, n in reasons.most_common(3))
     raise UnsolvableError(
         f"{scenario.identity}, split {split}, seed {seed}: no world could be drawn in"
-        f" {MAX_ATTEMPTS} draws: {worst}."
+        f" {MAX_ATTEMPTS} draws: {worst}.{_said_of_room(scenario, sorted(crowded))}"
     )
+
+
+def _said_of_room(scenario: Scenario, crowded: Sequence[int]) -> str:
+    """Of teams whose members found no start: where it stands, and how many fit at the most."""
+    lines = []
+    for i in crowded:
+        team = scenario.teams[i]
+        if isinstance(team.start, RegionStart):
+            radius, gap = support(team.radius)[0], team.start.separation
+            margin = radius if scenario.walled else 0.0
+            room = most_that_fit(team.start.region, scenario.bounds, 2.0 * radius + gap, margin)
+            lines.append(
+                f"\n{scenario.where_start(i)} of {team.name!r} holds at most {room} agents of"
+                f" radius {radius:g} m that are {gap:g} m apart, packed closely and with nothing"
+                " else there; drawn at random, about half as many find a place."
+            )
+    return "".join(lines)
 
 
 class _Draw:
@@ -92,7 +112,7 @@ class _Draw:
             solids=(*structure.solids, *(piece.solid for piece in staying)),
             bodies=(*bodies, *(piece.body for piece in replaced)),
             agents=self.agents(structure, now, later, bodies),
-            teams=tuple(team.name for team in scenario.teams),
+            teams=_names(scenario.teams),
             sees=_sees(scenario.teams),
             clock=clock_of(scenario),
             rules=rules_of(scenario),
@@ -151,7 +171,13 @@ class _Draw:
             if later is not None:
                 spaces.append(self.prepared.space(structure, later, reach))
             radii = columns[i]["radius"]
-            place_team(team, radii, crowd, scenario.bounds, spaces, there, self.stream(_TEAM, i))
+            try:
+                place_team(
+                    team, radii, crowd, scenario.bounds, spaces, there, self.stream(_TEAM, i)
+                )
+            except NoPlaceError as reason:
+                reason.team = i
+                raise
         return _assembled(scenario, crowd, columns)
 
 
@@ -177,14 +203,16 @@ def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, Floa
 
 def _assembled(scenario: Scenario, crowd: Crowd, columns: list[dict[str, FloatArray]]) -> Agents:
     sizes = [len(column["radius"]) for column in columns]
-    team = np.repeat(np.arange(len(sizes)), sizes)
+    entry = np.repeat(np.arange(len(sizes)), sizes)
+    names = _names(scenario.teams)
+    team = np.array([names.index(t.name) for t in scenario.teams], np.int64)[entry]
 
     def column(name: str) -> FloatArray:
         return np.concatenate([part[name] for part in columns])
 
     heading = column("heading")
-    for a in range(len(team)):
-        if scenario.teams[team[a]].heading == "goal":
+    for a in range(len(entry)):
+        if scenario.teams[entry[a]].heading == "goal":
             way = crowd.goal[a] - crowd.start[a]
             heading[a] = angle_of(way[0], way[1])
     dynamics = [Dynamics[t.dynamics.upper()] for t in scenario.teams]
@@ -196,12 +224,19 @@ def _assembled(scenario: Scenario, crowd: Crowd, columns: list[dict[str, FloatAr
         max_turn_rate=column("max_turn_rate"),
         dynamics=np.repeat(np.array(dynamics, np.int8), sizes),
         role=np.repeat(np.array(roles, np.int8), sizes),
-        team=team.astype(np.int64), driver=np.repeat(np.array(drivers, np.int64), sizes),
+        team=team, driver=np.repeat(np.array(drivers, np.int64), sizes),
     )  # fmt: skip
 
 
+def _names(teams: Sequence[Team]) -> tuple[str, ...]:
+    """Of teams, each once: leaders and followers of one name are one team."""
+    return tuple(dict.fromkeys(team.name for team in teams))
+
+
 def _sees(teams: Sequence[Team]) -> BoolArray:
-    return np.array([[other.name not in team.ignores for other in teams] for team in teams])
+    blind = {team.name: set(team.ignores) for team in teams}
+    names = _names(teams)
+    return np.array([[other not in blind[name] for other in names] for name in names])
 
 
 def clock_of(scenario: Scenario) -> Clock:

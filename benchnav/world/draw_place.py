@@ -16,6 +16,8 @@ FEW = (8, 24)
 class NoPlaceError(Exception):
     """A draw has no place for something; says what. Never leaves `build`."""
 
+    team: int | None = None  # whose start had none
+
 
 def draw_points(region: Region, bounds: Bounds, count: int, rng: np.random.Generator) -> FloatArray:
     """(count, 2) points of ``region`` [m], uniform by area."""

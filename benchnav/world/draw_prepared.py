@@ -85,7 +85,7 @@ def prepare(scenario: Scenario) -> Prepared:
             scenario.layout is None and all(wall.fixed for wall in scenario.walls),
             all(group.fixed for group in scenario.static),
             _clearance(scenario),
-            np.vstack([fixed_places(team) for team in scenario.teams]),
+            np.vstack([fixed_places(team, scenario.bounds) for team in scenario.teams]),
         )
     return known
 

@@ -7,14 +7,17 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.rotation import TWO_PI, cos_sin
+from benchnav.scenario.packing import lattice
 from benchnav.scenario.sampler import Scalar, fixed, sample, support
 from benchnav.scenario.team import (
     AntipodalGoal,
     CircleStart,
     GridStart,
+    PackedStart,
     PointsGoal,
     PointsStart,
     RegionStart,
+    ShiftedGoal,
     Team,
 )
 from benchnav.world.draw_gap import Barrier, clear, point_shapes
@@ -70,9 +73,12 @@ def place_team(
     Raises:
         NoPlaceError: an agent finds no start, or no goal that it could reach from there.
     """
+    stands = lattice_of(team, bounds, len(radii))
     for k, radius in enumerate(radii):
         what = f"of teams[{team.name}] agent {k + 1} of {len(radii)}"
-        place = _Placing(team, k, len(radii), float(radius), crowd, bounds, spaces, bodies, rng)
+        place = _Placing(
+            team, k, len(radii), float(radius), crowd, bounds, spaces, bodies, rng, stands
+        )
         crowd.add(*place.find(what), float(radius))
 
 
@@ -89,6 +95,7 @@ class _Placing:
     spaces: Sequence[Space]
     bodies: Barrier
     rng: np.random.Generator
+    stands: FloatArray  # (N, 2) of a packed start; (0, 2) of any other
 
     def find(self, what: str) -> tuple[FloatArray, FloatArray]:
         """A start and a goal; a start without a goal is drawn again."""
@@ -112,6 +119,9 @@ class _Placing:
             return draw_points(start.region, self.bounds, n, self.rng)
         if isinstance(start, PointsStart):
             return np.array([start.points[self.number]])
+        if isinstance(start, PackedStart):
+            stand = self.stands[self.number]
+            return _jittered(np.repeat(stand[None], n, axis=0), start.jitter, self.rng)
         if isinstance(start, GridStart):
             row, column = divmod(self.number, start.columns)
             place = np.array(start.origin) + start.spacing * np.array([column, row])
@@ -132,17 +142,16 @@ class _Placing:
         good[good] = clear(point_shapes(points[good]), self.bodies, gap)
         labels = self._labels(points[good])
         joined = np.all(labels >= 0, axis=0)
-        if isinstance(team.goal, AntipodalGoal):
-            ends = self._labels(2.0 * np.array(team.goal.center) - points[good])
+        if isinstance(team.goal, AntipodalGoal | ShiftedGoal):
+            ends = self._labels(_bound_goals(team.goal, points[good]))
             joined &= np.all(ends == labels, axis=0)
         good[good] = joined
         return good
 
     def goal(self, start: FloatArray, what: str) -> FloatArray:
         goal, crowd = self.team.goal, self.crowd
-        if isinstance(goal, AntipodalGoal):
-            mirrored: FloatArray = 2.0 * np.array(goal.center) - start
-            return mirrored
+        if isinstance(goal, AntipodalGoal | ShiftedGoal):
+            return _bound_goals(goal, start)
         home = self._labels(start[None])
 
         def joined(points: FloatArray) -> BoolArray:
@@ -167,30 +176,54 @@ class _Placing:
         return np.array([space.labels(points) for space in self.spaces])
 
 
+def _bound_goals(goal: AntipodalGoal | ShiftedGoal, starts: FloatArray) -> FloatArray:
+    """Goals that follow from starts (…, 2)."""
+    if isinstance(goal, AntipodalGoal):
+        mirrored: FloatArray = 2.0 * np.array(goal.center) - starts
+        return mirrored
+    shifted: FloatArray = starts + np.array(goal.by)
+    return shifted
+
+
 def is_fixed(team: Team) -> bool:
     """True where the scenario says where each agent starts."""
     start = team.start
     if isinstance(start, CircleStart):
         return start.angles == "even" and start.jitter == 0.0
-    return isinstance(start, PointsStart) or (isinstance(start, GridStart) and start.jitter == 0.0)
+    if isinstance(start, GridStart | PackedStart):
+        return start.jitter == 0.0
+    return isinstance(start, PointsStart)
 
 
-def fixed_places(team: Team) -> FloatArray:
-    """(N, 5) discs that starts and goals fill whatever is drawn, as capsules."""
+def lattice_of(team: Team, bounds: Bounds, count: int) -> FloatArray:
+    """(N, 2) places of a packed start before they are shaken; (0, 2) of any other."""
+    start = team.start
+    if not isinstance(start, PackedStart):
+        return np.zeros((0, 2))
+    return lattice(start.front, start.spacing, start.region, bounds, count)
+
+
+def fixed_places(team: Team, bounds: Bounds) -> FloatArray:
+    """(N, 5) discs that starts and goals fill whatever is drawn, as capsules.
+
+    Of a packed start these are as much larger as its agents are shaken.
+    """
     most = int(support(team.count)[1])
-    places = np.zeros((0, 2))
-    if is_fixed(team) and (fixed(team.count) or not isinstance(team.start, CircleStart)):
+    places, shaken = lattice_of(team, bounds, most), 0.0
+    if isinstance(team.start, PackedStart):
+        shaken = 0.5 * np.sqrt(2.0) * team.start.jitter
+    elif is_fixed(team) and (fixed(team.count) or not isinstance(team.start, CircleStart)):
         nobody = Crowd()
         one = np.random.default_rng(0)  # draws nothing: every place is fixed
         empty = Barrier(np.zeros((0, 5)), np.zeros(1, np.int64), np.zeros(0, np.bool_))
         for k in range(most):
-            search = _Placing(team, k, most, 0.0, nobody, (0, 0, 0, 0), (), empty, one)
+            search = _Placing(team, k, most, 0.0, nobody, bounds, (), empty, one, places[:0])
             places = np.vstack([places, search.starts(1)])
-        if isinstance(team.goal, AntipodalGoal):
-            places = np.vstack([places, 2.0 * np.array(team.goal.center) - places])
+    if isinstance(team.goal, AntipodalGoal | ShiftedGoal):
+        places = np.vstack([places, _bound_goals(team.goal, places)])
     if isinstance(team.goal, PointsGoal):
         places = np.vstack([places, np.array(team.goal.points)[:most]])
-    radius = np.full((len(places), 1), support(team.radius)[1])
+    radius = np.full((len(places), 1), support(team.radius)[1] + shaken)
     return np.hstack([places, places, radius])
 
 

@@ -47,6 +47,8 @@ SHIPPED = [
     "cohesion",
     "polarisation",
     "splits",
+    "path_keeping",
+    "catch_up_time",
     "decision_time_p50",
     "decision_time_p95",
     "decision_time_p99",

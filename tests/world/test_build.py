@@ -201,7 +201,7 @@ def test_a_door_is_passable_where_it_is_wider_than_the_agent(width):
         ("center: [8, 5], radius: 1.5}, min_distance: 2",
          "center: [5, 5], radius: 0.4}, min_distance: 2", r"the goal of teams\[walkers\]"),
         ("speed: 1}\nteams", "speed: 1}\n    gap: 4\nteams", r"the path of dynamic\[0\]"),
-        ("count: 2", "count: 90", r"the (start|goal) of teams\[walkers\] agent \d+ of 90"),
+        ("count: 2", "count: 55", r"the (start|goal) of teams\[walkers\] agent \d+ of 55"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_drawn_says_so(old, new, message):
