@@ -91,6 +91,11 @@ def _training(folder: RunFolder) -> Iterator[tuple[str, tuple[float, float]]]:
 
 
 def _not_applicable(folder: RunFolder) -> Iterator[NotApplicable]:
+    entries = folder.manifest.suite.get("navigators", ())
+    asked = {entry["label"]: int(entry.get("rehearsal", 0)) for entry in entries}
     for cell in folder.manifest.cells:
         if cell["reason"]:
-            yield NotApplicable(cell["navigator"], cell["scenario"], cell["track"], cell["reason"])
+            yield NotApplicable(
+                cell["navigator"], cell["scenario"], cell["track"], cell["reason"],
+                asked.get(cell["navigator"], 0),
+            )  # fmt: skip

@@ -118,4 +118,15 @@ def _conclude(summary: "Summary", seconds: float) -> str:
     ]
     if len(summary.failures) > 10:
         lines.append(f"… and for {len(summary.failures) - 10} more reasons")
+    lines += [
+        f"warning: {who}: the leader of {team!r} succeeded in no rehearsal in {n}"
+        f" {'world' if n == 1 else 'worlds'} of {scenario}"
+        for (who, scenario, team), n in summary.unled.most_common(10)
+    ]
+    lines += [
+        f"{who} tells of {n} {'world' if n == 1 else 'worlds'} of {scenario}: {text}"
+        for (who, scenario, text), n in summary.remarks.most_common(5)
+    ]
+    if len(summary.remarks) > 5:
+        lines.append(f"… and of {len(summary.remarks) - 5} more things; episodes keep them all")
     return "\n".join(lines)

@@ -29,6 +29,7 @@ class Identity:
     track: str  # known, stale, partial, unknown
     navigator: str  # the label in the suite
     navigator_hash: str = ""  # of what the label stands for: configuration, source, version
+    rehearsal: int = 0  # k: the k-th rehearsal before the episode of this seed; 0: that episode
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,6 +61,7 @@ class Timings:
     batch: int  # worlds that shared the calls
     latency: FloatArray | None = None  # (K,) of calls for this world alone, apart; None: not taken
     memory: int | None = None  # [bytes] most that its process ever held in RAM; None: not known
+    rehearsal: float = 0.0  # of the navigator that led, in all rehearsals of this world
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +86,9 @@ class Episode:
     failure: str = ""  # why the navigator failed in this world; "" if it did not
     reproducible: bool = True  # False where a wall-clock budget decided anything
     digest: str = ""  # of states, commands and events
+    rehearsals: int = 0  # that its navigator was granted
+    rehearsal_decisions: int = 0  # of agents, in all of them
+    remarks: tuple[str, ...] = ()  # what its navigator has to tell of it
 
     @property
     def times(self) -> FloatArray:

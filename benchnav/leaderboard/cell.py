@@ -64,6 +64,15 @@ def training(r: Record) -> Cell:
     return Cell(f"{millions:.1f} M, {time}" if millions >= 0.1 else f"{millions:.2g} M, {time}")
 
 
+def rehearsal(r: Record) -> Cell:
+    """What rehearsing cost in a world, ``812 decisions, 3.2 ms``; empty without."""
+    if math.isnan(r.rehearsal_seconds):
+        return Cell("")
+    size, unit = prefixed("s", r.rehearsal_seconds)
+    seconds = number(r.rehearsal_seconds / size, r.rehearsal_seconds / size)
+    return Cell(f"{r.rehearsal_decisions:.0f} decisions, {seconds} {unit}")
+
+
 def heading(r: Record) -> Cell:
     """A metric and its direction."""
     return Cell(r.metric + {"higher": " ↑", "lower": " ↓", None: ""}[r.better])

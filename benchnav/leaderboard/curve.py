@@ -36,16 +36,17 @@ class Point:
     scenario_hash: str
     horizon: float  # [s]
     dt: float  # [s]
+    rehearsal: int = 0  # rehearsals of each world that the navigator was granted
 
 
-Key = tuple[str, str, str, str, str, float, float, str]
+Key = tuple[str, str, str, str, str, float, float, int, str]
 
 
 def success_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[Point, ...]:
     """Curves of each navigator × scenario × track × role at ``points`` even times to the horizon.
 
-    Episodes that differ in split, scenario hash, horizon or time step stand apart; one
-    that occurs twice counts once. Background agents are left out.
+    Episodes that differ in split, scenario hash, horizon, time step or rehearsals stand apart;
+    one that occurs twice counts once. Background agents are left out.
     """
     times: dict[Key, dict[int, FloatArray]] = {}
     for episode in episodes:
@@ -56,20 +57,20 @@ def success_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[P
             if members.any():
                 key = (
                     who.split, who.track, who.scenario, role.name.lower(), who.scenario_hash,
-                    clock.horizon, clock.dt, who.navigator,
+                    clock.horizon, clock.dt, episode.rehearsals, who.navigator,
                 )  # fmt: skip
                 times.setdefault(key, {})[who.seed] = succeeded[members]
     return tuple(point for key in sorted(times) for point in _curve(key, times[key], points))
 
 
 def _curve(key: Key, worlds: dict[int, FloatArray], points: int) -> list[Point]:
-    split, track, scenario, role, digest, horizon, dt, navigator = key
+    split, track, scenario, role, digest, horizon, dt, rehearsal, navigator = key
     every = np.concatenate(list(worlds.values()))
     at = np.linspace(0.0, horizon, points + 1)[1:]
     return [
         Point(
             navigator, scenario, track, role, float(time), float(share), len(every), len(worlds),
-            split, digest, horizon, dt,
+            split, digest, horizon, dt, rehearsal,
         )
         for time, share in zip(at, success_by_horizon(every, at), strict=True)
     ]  # fmt: skip
@@ -92,14 +93,15 @@ def render_curves(episodes: Iterable[Episode], format: str) -> str:
     return "\n".join([*tables, legend, ""])
 
 
-def _place(p: Point) -> tuple[str, str, str, str, str, float, float]:
-    return p.split, p.track, p.scenario, p.role, p.scenario_hash, p.horizon, p.dt
+def _place(p: Point) -> tuple[str, str, str, str, str, float, float, int]:
+    return p.split, p.track, p.scenario, p.role, p.scenario_hash, p.horizon, p.dt, p.rehearsal
 
 
 def _table(points: list[Point]) -> str:
     """The curves of one scenario, track and role, a row for each navigator."""
     first = points[0]
     title = f"{first.scenario}, track {first.track}, {first.role}s, {first.worlds} worlds"
+    title += f", rehearsal: {first.rehearsal}" if first.rehearsal else ""
     shares: dict[str, list[str]] = {}
     for p in points:
         shares.setdefault(p.navigator, []).append(number(p.share, p.share))

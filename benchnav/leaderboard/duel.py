@@ -54,8 +54,9 @@ def _turned(c: Comparison, first: str) -> Comparison:
     if c.first == first:
         return c
     return replace(
-        c, first=c.second, second=c.first, difference=-c.difference, low=-c.high, high=-c.low
-    )
+        c, first=c.second, second=c.first, difference=-c.difference, low=-c.high, high=-c.low,
+        first_rehearsal=c.second_rehearsal, second_rehearsal=c.first_rehearsal,
+    )  # fmt: skip
 
 
 def render_duel(
@@ -82,8 +83,9 @@ def render_duel(
 def sentence(c: Comparison, metric: Metric) -> str:
     """What one comparison says."""
     where = f"{c.scenario}, track {c.track}, {c.role}s, {c.metric}"
+    first, second = _named(c.first, c.first_rehearsal), _named(c.second, c.second_rehearsal)
     if not c.worlds:
-        return f"{where}: no world in which both {c.first} and {c.second} have a value."
+        return f"{where}: no world in which both {first} and {second} have a value."
     bounds = () if math.isnan(c.low) else (c.low, c.high)
     widest = max(map(abs, (c.difference, *bounds)))
     size, unit = prefixed(metric.unit, widest)
@@ -91,10 +93,14 @@ def sentence(c: Comparison, metric: Metric) -> str:
     interval = f" [{', '.join(ends)}]" if ends else ""
     worlds = f"{c.worlds} world{'s' if c.worlds > 1 else ''}"
     return (
-        f"{where}: {c.first} − {c.second} = {value}{interval}{' ' if unit else ''}{unit}"
+        f"{where}: {first} − {second} = {value}{interval}{' ' if unit else ''}{unit}"
         f" over {worlds}; p {_chance(c.p)}, after Holm {_chance(c.adjusted)}:"
         f" {_verdict(c, metric)}."
     )
+
+
+def _named(navigator: str, rehearsal: int) -> str:
+    return f"{navigator} (rehearsal: {rehearsal})" if rehearsal else navigator
 
 
 def _verdict(c: Comparison, metric: Metric) -> str:

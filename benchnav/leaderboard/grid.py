@@ -17,11 +17,14 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 KEYS = ("split", "track", "role", "scenario", "scenario_hash", "horizon", "dt")
+GRANT = "rehearsal"  # the key that keeps those apart who were granted different rehearsals
+COSTS = ("rehearsal_decisions", "rehearsal_seconds")
+MIXED = -1  # stands where entries with different grants stand together
 
 
 @dataclass(frozen=True, eq=False)
 class Stratum:
-    """Episodes with the same split, track, role, scenario, geometry, horizon and time step.
+    """Episodes with the same split, track, role, scenario, geometry, horizon, step and grant.
 
     S seeds, N navigators, M metrics.
     """
@@ -33,6 +36,7 @@ class Stratum:
     scenario_hash: str
     horizon: float
     dt: float
+    rehearsal: int  # rehearsals that everybody here was granted; `MIXED`: see granted
     navigators: tuple[str, ...]  # (N,) sorted
     metrics: tuple[str, ...]  # (M,) sorted
     seeds: IntArray  # (S,) sorted
@@ -40,6 +44,8 @@ class Stratum:
     agents: FloatArray  # (S, N, M) over which a value was taken
     attempted: BoolArray  # (S, N)
     failed: BoolArray  # (S, N) the navigator failed
+    granted: IntArray  # (N,) rehearsals
+    cost: FloatArray  # (S, N, 2) decisions and seconds [s] of rehearsing; NaN if not attempted
 
     def rng(self, purpose: str) -> np.random.Generator:
         """A generator of this scenario's own, the same in every track and table."""
@@ -48,8 +54,11 @@ class Stratum:
         return np.random.default_rng(list(sha256(key.encode()).digest()))
 
 
-def strata(results: pa.Table, metrics: Mapping[str, Metric]) -> list[Stratum]:
+def strata(results: pa.Table, metrics: Mapping[str, Metric], mixed: bool = False) -> list[Stratum]:
     """Every stratum, sorted by its key, whatever the order of the rows (RESULTS).
+
+    ``mixed`` puts entries together that were granted different rehearsals: they may be
+    compared in words that say so, and are never ranked.
 
     Raises UsageError where one navigator has two values in one world.
     """
@@ -57,8 +66,13 @@ def strata(results: pa.Table, metrics: Mapping[str, Metric]) -> list[Stratum]:
     columns = {name: _encode(results[name]) for name in (*KEYS, "navigator", "metric", "seed")}
     numbers = {name: results[name].to_numpy() for name in ("value", "defined")}
     numbers["failed"] = _failed(results["failure"])
+    for name in (GRANT, *COSTS):
+        numbers[name] = _filled(results, name)
+    if not mixed:
+        grants, code = np.unique(numbers[GRANT], return_inverse=True)
+        columns[GRANT] = code.astype(np.int64), grants.tolist()
     codes = np.zeros(rows, dtype=np.int64)
-    for name in KEYS:
+    for name in KEYS if mixed else (*KEYS, GRANT):
         code, known = columns[name]
         if len(known) > 1:
             codes = np.unique(codes * len(known) + code, return_inverse=True)[1]
@@ -66,7 +80,7 @@ def strata(results: pa.Table, metrics: Mapping[str, Metric]) -> list[Stratum]:
     ends = np.flatnonzero(np.diff(codes[order])) + 1
     parts = np.split(order, ends) if rows else []
     found = [_stratum(part, columns, numbers, metrics) for part in parts]
-    return sorted(found, key=lambda s: tuple(getattr(s, name) for name in KEYS))
+    return sorted(found, key=lambda s: tuple(getattr(s, name) for name in (*KEYS, GRANT)))
 
 
 def _encode(column: Any) -> tuple[IntArray, list[Any]]:
@@ -90,13 +104,24 @@ def _failed(column: Any) -> BoolArray:
     return failed
 
 
+def _filled(results: pa.Table, name: str) -> AnyArray:
+    """(rows,) a column that older results lack, or made-up ones leave empty: 0 there."""
+    import pyarrow.compute as pc
+
+    if name not in results.column_names:
+        return np.zeros(results.num_rows, np.int64)
+    filled: AnyArray = pc.fill_null(results[name], 0).to_numpy()
+    return filled
+
+
 def _stratum(
     part: IntArray,
     columns: Mapping[str, tuple[IntArray, list[Any]]],
     numbers: Mapping[str, AnyArray],
     metrics: Mapping[str, Metric],
 ) -> Stratum:
-    key = {name: columns[name][1][int(columns[name][0][part[0]])] for name in KEYS}
+    names = [name for name in (*KEYS, GRANT) if name in columns]
+    key = {GRANT: MIXED} | {n: columns[n][1][int(columns[n][0][part[0]])] for n in names}
     at, axes = [], []
     for name in ("seed", "navigator", "metric"):
         code, values = columns[name]
@@ -116,10 +141,15 @@ def _stratum(
     broken = numbers["failed"][part]
     failed[at[0][broken], at[1][broken]] = True
     _charge(value, agents, failed, axes[2], metrics)
+    granted = np.zeros(shape[1], np.int64)
+    granted[at[1]] = numbers[GRANT][part]
+    cost = np.full((*shape[:2], len(COSTS)), np.nan)
+    for k, name in enumerate(COSTS):
+        cost[at[0], at[1], k] = numbers[name][part]
     return Stratum(
         **key, navigators=tuple(axes[1]), metrics=tuple(axes[2]),
         seeds=np.array(axes[0], dtype=np.int64),
-        value=value, agents=agents, attempted=attempted, failed=failed,
+        value=value, agents=agents, attempted=attempted, failed=failed, granted=granted, cost=cost,
     )  # fmt: skip
 
 

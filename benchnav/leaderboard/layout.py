@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from benchnav.errors import UsageError, did_you_mean
-from benchnav.leaderboard.cell import Cell, cell, entrant, heading, rank, training
+from benchnav.leaderboard.cell import Cell, cell, entrant, heading, rank, rehearsal, training
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Leaderboard, Record
 
 DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
@@ -60,19 +60,20 @@ def sections(board: Leaderboard, metrics: Sequence[str] | None) -> Iterator[Sect
     for key, records in groups.items():
         if key[2] == ALL_INTERQUARTILE:
             continue
-        variants = sum((*k[:3], k[-1]) == (*key[:3], key[-1]) for k in groups) > 1
+        variants = sum((k[:3], k[6:]) == (key[:3], key[6:]) for k in groups) > 1
         middle = [
             r
             for k, group in groups.items()
             for r in group
-            if key[2] == ALL and (*k[:3], k[-1]) == (*key[:2], ALL_INTERQUARTILE, key[-1])
+            if key[2] == ALL and (k[:3], k[6:]) == ((*key[:2], ALL_INTERQUARTILE), key[6:])
         ]
         yield from _Table(records, middle, shown).sections(_title(records, variants))
 
 
 def _key(r: Record) -> tuple[str, ...]:
-    """What stands in one table: the scenario is third, the role last."""
-    return r.split, r.track, r.scenario, r.scenario_hash, f"{r.horizon!r}", f"{r.dt!r}", r.role
+    """What stands in one table: the scenario is third, role and grant last."""
+    variant = r.scenario_hash, f"{r.horizon!r}", f"{r.dt!r}"
+    return r.split, r.track, r.scenario, *variant, r.role, f"{r.rehearsal}"
 
 
 def _title(records: list[Record], variants: bool) -> str:
@@ -86,7 +87,8 @@ def _title(records: list[Record], variants: bool) -> str:
         if variants
         else ""
     )
-    return f"{scenario}, track {first.track}{split}, {first.role}s{worlds}{variant}"
+    grant = f", rehearsal: {first.rehearsal}" if first.rehearsal else ""
+    return f"{scenario}, track {first.track}{split}, {first.role}s{worlds}{variant}{grant}"
 
 
 class _Table:
@@ -104,6 +106,7 @@ class _Table:
         # bold says something only where somebody is significantly worse
         self.decided = {r.metric for r in records if (r.rank_low or 0) > 1}
         self.learned = any(not math.isnan(r.training_decisions) for r in records)
+        self.rehearsed = records[0].rehearsal
 
     def sections(self, title: str) -> Iterator[Section]:
         """A row for each navigator, or for each metric where those are many."""
@@ -119,6 +122,9 @@ class _Table:
             if self.learned:
                 costs = (training(self.at[name, self.leading]) for name in block)
                 rows.insert(0, (Cell("training"), *costs))
+            if self.rehearsed:
+                spent = (rehearsal(self.at[name, self.leading]) for name in block)
+                rows.insert(0, (Cell("rehearsal"), *spent))
             rows.insert(0, (Cell(f"rank ({self.leading})"), *ranks))
             yield Section(title, (Cell("metric"), *names), tuple(rows), self._notes(block))
 
@@ -130,12 +136,15 @@ class _Table:
                 yield Cell("middle half")  # interquartile mean over scenarios
             if self.learned and metric == self.leading:
                 yield Cell("training")  # decisions and time
+            if self.rehearsed and metric == self.leading:
+                yield Cell("rehearsal")  # decisions and time in one world
 
     def _navigator(self, name: str) -> tuple[Cell, ...]:
         leader = self.at[name, self.leading]
         row = [entrant(leader), rank(leader)]
         if not leader.episodes:
-            blank = [Cell("")] * (len(self.metrics) - 1 + bool(self.middle) + self.learned)
+            extra = bool(self.middle) + self.learned + bool(self.rehearsed)
+            blank = [Cell("")] * (len(self.metrics) - 1 + extra)
             return (*row, Cell(leader.note), *blank)
         wide = len(self.metrics) > NARROW
         limit = INTERVALS - bool(self.middle) if wide else len(self.metrics)
@@ -146,6 +155,8 @@ class _Table:
                 row.append(cell(inner, interval=False, decided=False))
             if self.learned and metric == self.leading:
                 row.append(training(leader))
+            if self.rehearsed and metric == self.leading:
+                row.append(rehearsal(leader))
         return tuple(row)
 
     def _metric(self, metric: str, block: list[str]) -> tuple[Cell, ...]:
@@ -160,9 +171,15 @@ class _Table:
 
     def _notes(self, names: list[str]) -> tuple[str, ...]:
         leaders = [self.at[name, self.leading] for name in names]
-        return tuple(
+        notes = [
             f"{r.navigator} is not ranked: {r.note}." for r in leaders if r.note and r.episodes
-        )
+        ]
+        if self.rehearsed:
+            notes.append(
+                f"Granted {self.rehearsed} rehearsals of each world before it was scored; ranked"
+                " among entries with the same grant alone."
+            )
+        return tuple(notes)
 
 
 def _merit(r: Record) -> tuple[float, float, float]:

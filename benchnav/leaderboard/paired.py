@@ -40,6 +40,8 @@ class Comparison:
     scenario_hash: str
     horizon: float  # [s]
     dt: float  # [s]
+    first_rehearsal: int = 0  # rehearsals of each world that the first was granted
+    second_rehearsal: int = 0
 
 
 def comparisons(
@@ -47,6 +49,7 @@ def comparisons(
 ) -> tuple[Comparison, ...]:
     """Every pair of navigators on one metric, in every scenario, track and role.
 
+    Also pairs of which one rehearsed: each says how many rehearsals both were granted.
     ``results`` has the schema `benchnav.store.results.RESULTS`. Raises UsageError for a
     metric that is not among ``metrics``, or where one label stands for two navigators.
     """
@@ -57,7 +60,7 @@ def comparisons(
         )
     require_one_navigator_per_label({"the results": results})
     found: list[Comparison] = []
-    for s in strata(results, metrics):
+    for s in strata(results, metrics, mixed=True):
         if metric in s.metrics:
             found += _compare(s, metric)
     return tuple(found)
@@ -79,6 +82,7 @@ def _compare(s: Stratum, metric: str) -> list[Comparison]:
             s.navigators[i], s.navigators[j], s.scenario, s.track, s.role, metric,
             int(worlds[c]), float(mean.value[c]), float(mean.low[c]), float(mean.high[c]),
             float(p[c]), float(adjusted[c]), s.split, s.scenario_hash, s.horizon, s.dt,
+            int(s.granted[i]), int(s.granted[j]),
         )
         for c, (i, j) in enumerate(zip(first, second, strict=True))
     ]  # fmt: skip

@@ -18,6 +18,7 @@ class NotApplicable:
     scenario: str
     track: str
     reason: str  # "needs a map"
+    rehearsal: int = 0  # rehearsals that it asks for
 
 
 @dataclass(frozen=True)
@@ -47,6 +48,9 @@ class Record:
     dt: float  # [s]; NaN for aggregates
     training_decisions: float = math.nan  # that the navigator learned from; NaN if it did not
     training_seconds: float = math.nan  # that this took
+    rehearsal: int = 0  # rehearsals of each world that the navigator was granted
+    rehearsal_decisions: float = math.nan  # in them, mean over worlds; NaN without a grant
+    rehearsal_seconds: float = math.nan  # of the navigator that led, mean over worlds
 
 
 @dataclass(frozen=True)

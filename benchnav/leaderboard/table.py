@@ -45,6 +45,7 @@ def leaderboard(
 ) -> Leaderboard:
     """Every navigator × scenario × track × role × metric, with interval and rank.
 
+    Entries that were granted different numbers of rehearsals are never ranked together.
     ``results`` has the schema `benchnav.store.results.RESULTS` and may join several
     runs; the order of its rows changes nothing. ``metrics`` maps names to definitions;
     a metric that it lacks is shown and not ranked. ``not_applicable`` are cells that
@@ -55,10 +56,11 @@ def leaderboard(
     require_one_navigator_per_label({"the results": results})
     records: list[Record] = []
     found = strata(results, metrics)
-    for _, group in groupby(found, key=lambda s: (s.split, s.track, s.role)):
+    found.sort(key=_contest)  # stable
+    for _, group in groupby(found, key=_contest):
         aligned = _align(list(group))
         records += _group(aligned, metrics)
-        records += _missing(aligned, not_applicable, metrics)
+        records += _missing(aligned, _belonging(aligned, found, not_applicable), metrics)
     records = [_with_training(record, training) for record in records]
     order = {name: place for place, name in enumerate(metrics)}
     names = sorted(
@@ -74,6 +76,19 @@ def _with_training(record: Record, training: Mapping[str, tuple[float, float]]) 
     return replace(record, training_decisions=decisions, training_seconds=seconds)
 
 
+def _contest(s: Stratum) -> tuple[str, str, str, int]:
+    """What episodes share that are ranked together, or averaged over scenarios."""
+    return s.split, s.track, s.role, s.rehearsal
+
+
+def _belonging(
+    group: list[Stratum], found: list[Stratum], cells: Sequence[NotApplicable]
+) -> list[NotApplicable]:
+    """The cells of entries with this grant; of entries with a grant that nobody has, all."""
+    grants = {s.rehearsal for s in found}
+    return [c for c in cells if c.rehearsal == group[0].rehearsal or c.rehearsal not in grants]
+
+
 def _align(group: list[Stratum]) -> list[Stratum]:
     """The same navigators and metrics in every stratum, absent ones unattempted."""
     navigators = tuple(sorted({name for s in group for name in s.navigators}))
@@ -87,10 +102,15 @@ def _align(group: list[Stratum]) -> list[Stratum]:
         value[:, n[:, None], m], agents[:, n[:, None], m] = s.value, s.agents
         attempted, failed = np.zeros(shape[:2], bool), np.zeros(shape[:2], bool)
         attempted[:, n], failed[:, n] = s.attempted, s.failed
+        granted = np.zeros(len(navigators), np.int64)
+        cost = np.full((*shape[:2], s.cost.shape[2]), np.nan)
+        granted[n], cost[:, n] = s.granted, s.cost
         aligned.append(
             replace(s, navigators=navigators, metrics=metrics, value=value, agents=agents)
         )
-        aligned[-1] = replace(aligned[-1], attempted=attempted, failed=failed)
+        aligned[-1] = replace(
+            aligned[-1], attempted=attempted, failed=failed, granted=granted, cost=cost
+        )
     return aligned
 
 
@@ -103,6 +123,7 @@ class _Body:
     value: FloatArray  # (n, N, M)
     attempted: BoolArray  # (n, N)
     failed: BoolArray  # (n, N)
+    cost: FloatArray  # (n, N, 2) of rehearsing
     found: Estimate  # (N·M,)
     places: list[list[Standing]]  # [metric][navigator]
     single: bool  # False for aggregates over scenarios
@@ -117,17 +138,19 @@ def _group(group: list[Stratum], metrics: Mapping[str, Metric]) -> Iterator[Reco
         same = np.zeros(len(s.seeds), dtype=np.int64)
         places = standings(s.value, s.attempted, same, s.metrics, metrics)
         yield from _records(
-            _Body(s.scenario, s, s.value, s.attempted, s.failed, part, places, True), metrics
+            _Body(s.scenario, s, s.value, s.attempted, s.failed, s.cost, part, places, True),
+            metrics,
         )
     if len(group) < 2:
         return
     value = np.concatenate([s.value for s in group])
     attempted = np.concatenate([s.attempted for s in group])
     failed = np.concatenate([s.failed for s in group])
+    cost = np.concatenate([s.cost for s in group])
     stratum = np.repeat(np.arange(len(group)), [len(s.seeds) for s in group])
     places = standings(value, attempted, stratum, group[0].metrics, metrics)
     whole = mean_over(parts, samples, column)
-    body = _Body(ALL, group[0], value, attempted, failed, whole, places, False)
+    body = _Body(ALL, group[0], value, attempted, failed, cost, whole, places, False)
     yield from _records(body, metrics)
     if len(group) >= MIDDLE_HALF:
         middle = interquartile_mean_over(samples)
@@ -161,6 +184,7 @@ def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:
         episodes = int(body.attempted[:, n].sum())
         if not episodes:
             continue
+        decisions, seconds = _mean_cost(body, n)
         for m, name in enumerate(s.metrics):
             at, place, metric = n * len(s.metrics) + m, body.places[m][n], metrics.get(name)
             yield Record(
@@ -171,7 +195,16 @@ def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:
                 place.low, place.high, place.ranked, place.note,
                 s.split, s.scenario_hash if body.single else "",
                 s.horizon if body.single else float("nan"), s.dt if body.single else float("nan"),
+                rehearsal=s.rehearsal, rehearsal_decisions=decisions, rehearsal_seconds=seconds,
             )  # fmt: skip
+
+
+def _mean_cost(body: _Body, navigator: int) -> tuple[float, float]:
+    """Decisions and seconds of rehearsing, mean over the worlds attempted; NaN without a grant."""
+    if not body.stratum.rehearsal:
+        return float("nan"), float("nan")
+    decisions, seconds = body.cost[body.attempted[:, navigator], navigator].mean(axis=0)
+    return float(decisions), float(seconds)
 
 
 def _missing(
@@ -194,7 +227,7 @@ def _missing(
                     float("nan"), float("nan"), float("nan"),
                     metric.unit if metric else "", metric.better if metric else None,
                     0, 0, 0, None, None, 0, f"n/a ({cell.reason})",
-                    s.split, s.scenario_hash, s.horizon, s.dt,
+                    s.split, s.scenario_hash, s.horizon, s.dt, rehearsal=s.rehearsal,
                 )  # fmt: skip
 
 
@@ -206,6 +239,6 @@ def _place(names: Sequence[str]) -> Callable[[Record], tuple[Any, ...]]:
     def key(r: Record) -> tuple[Any, ...]:
         last = aggregates.get(r.scenario, 0)
         variant = () if last else (r.scenario, r.scenario_hash, r.horizon, r.dt)
-        return (r.split, r.track, last, variant, r.role, r.navigator, order[r.metric])
+        return (r.split, r.track, last, variant, r.role, r.rehearsal, r.navigator, order[r.metric])
 
     return key

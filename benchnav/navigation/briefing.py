@@ -7,6 +7,7 @@ import numpy as np
 from benchnav.arena.agents import Agents
 from benchnav.arrays import ByteArray, FloatArray, IntArray
 from benchnav.navigation.map import Map
+from benchnav.navigation.rehearsal import Rehearsal
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +36,7 @@ class Briefing:
     team: IntArray  # (A,)
     map: Map | None
     rng: np.random.Generator
+    rehearsals: tuple[Rehearsal, ...] = ()  # as many as the navigator declares, or none
 
     def __len__(self) -> int:
         return len(self.radius)
@@ -50,6 +52,7 @@ def brief(
     decision_budget: float | None,
     map: Map | None,
     rng: np.random.Generator,
+    rehearsals: tuple[Rehearsal, ...] = (),
 ) -> Briefing:
     """The briefing of the agents ``chosen`` (indices into the world's agents)."""
 
@@ -61,4 +64,5 @@ def brief(
         copy(agents.start), copy(agents.heading), copy(agents.goal), copy(agents.radius),
         copy(agents.max_speed), copy(agents.preferred_speed), copy(agents.max_turn_rate),
         copy(agents.dynamics), copy(agents.role), copy(agents.team), map, rng,
+        rehearsals,
     )  # fmt: skip

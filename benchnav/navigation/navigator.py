@@ -18,7 +18,9 @@ from pydantic import BaseModel, ConfigDict
 from benchnav.arena.sensing import Sensing
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.configure import Spec
 from benchnav.navigation.observation import Observation
+from benchnav.plugins import Source
 
 
 class Need(StrEnum):
@@ -77,12 +79,34 @@ class Navigator(ABC):
         """Of what it reads from files, weights say, beyond its Config and version."""
         return ""
 
+    @property
+    def parts(self) -> tuple[Source, ...]:
+        """The other plugins that it is made of."""
+        return ()
+
+    @property
+    def rehearsal(self) -> int:
+        """How many rehearsals it asks for before each episode: a grant that is charged."""
+        return 0
+
+    @property
+    def leader(self) -> Spec | None:
+        """The navigator that drives the leaders in its rehearsals; None without rehearsals."""
+        return None
+
     def unfit(self, sensing: Sensing) -> str:
         """Why it cannot drive agents that sense so, beyond what it needs; "" where it can."""
         return ""
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:  # noqa: B027 - optional
         """Start the worlds ``rows`` (N,), told ``briefings`` (N,)."""
+
+    def remarks(self, row: int) -> Sequence[str]:
+        """What it has to tell of the world in ``row`` after the episode; it is kept with it.
+
+        Short sentences, of what a reader of the results should know: why there is no path, say.
+        """
+        return ()
 
     @abstractmethod
     def act(self, observation: Observation) -> FloatArray:

@@ -12,10 +12,13 @@ from benchnav.errors import MissingExtraError
 from benchnav.navigation.briefing import Briefing, brief
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.observation import Observation
+from benchnav.navigation.rehearsal import Rehearsal, copied
 from benchnav.navigation.tracks import granted_map
 from benchnav.runner.answer import CallFailed, checked
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
+
+_REMARKS = 20  # that are kept of one episode
 
 
 class Driver:
@@ -31,6 +34,7 @@ class Driver:
         which: int,
         track: str,
         blame: str = "",
+        rehearsals: Sequence[tuple[Rehearsal, ...]] = (),
     ) -> None:
         self.navigator = navigator
         self.simulation = simulation
@@ -38,6 +42,7 @@ class Driver:
         self.track = track
         self._blame = blame  # what its reasons start with
         worlds = simulation.worlds
+        self._rehearsals = rehearsals or [()] * len(worlds)
         self.chosen = _chosen(worlds, which)  # (B, An) agent index, -1: padding
         self._needs = navigator.required
         self._row = np.arange(len(worlds))[:, None]
@@ -101,6 +106,14 @@ class Driver:
         command[row, self.chosen[row, agent]] = told[world, agent]
         return seconds
 
+    def remarks(self, row: int) -> tuple[str, ...]:
+        """What it has to tell of the world in ``row``; what it cannot tell is lost."""
+        try:
+            told = [str(remark) for remark in self.navigator.remarks(row)]
+        except Exception as error:
+            return (f"remarks raised {_said(error)}",)
+        return tuple(_short(text) for text in told[:_REMARKS])
+
     def _at(self, reason: str, time: float) -> str:
         return f"{self._blame}{reason} at t = {time:g} s"
 
@@ -144,7 +157,7 @@ class Driver:
         return brief(
             world.agents, self.chosen[b][self.chosen[b] >= 0], dt=clock.dt, horizon=clock.horizon,
             goal_tolerance=world.rules.goal_tolerance, decision_budget=clock.decision_budget,
-            map=self._maps[b], rng=rng,
+            map=self._maps[b], rng=rng, rehearsals=tuple(map(copied, self._rehearsals[b])),
         )  # fmt: skip
 
 
@@ -156,7 +169,11 @@ def _chosen(worlds: Sequence[World], which: int) -> IntArray:
     return chosen
 
 
+def _short(text: str) -> str:
+    text = " ".join(text.split())
+    return text if len(text) <= 300 else text[:297] + "..."
+
+
 def _said(error: BaseException) -> str:
-    text = " ".join(str(error).split())
-    shown = text if len(text) <= 300 else text[:297] + "..."
+    shown = _short(str(error))
     return f"{type(error).__name__}: {shown}" if shown else type(error).__name__

@@ -33,7 +33,7 @@ def check_salt(salt: str) -> None:
 
 
 def generator(
-    salt: str, scenario_hash: str, split: str, seed: int, driver: int
+    salt: str, scenario_hash: str, split: str, seed: int, driver: int, rehearsal: int = 0
 ) -> np.random.Generator:
     """The one source of randomness of a navigator in one world.
 
@@ -47,8 +47,20 @@ def generator(
         split: train, validation or test.
         seed: of the world.
         driver: 0 for the evaluated navigator, k > 0 for background driver k - 1.
+        rehearsal: k in the k-th rehearsal, 0 in the scored episode.
     """
-    hashed = _hashed(salt, "stream", scenario_hash, split, seed, driver)
+    which = (rehearsal,) if rehearsal else ()
+    return _generator(_hashed(salt, "stream", scenario_hash, split, seed, driver, *which))
+
+
+def phases(
+    salt: str, scenario_hash: str, split: str, seed: int, rehearsal: int
+) -> np.random.Generator:
+    """What the movers' phases in the k-th rehearsal are drawn from: alike for every entry."""
+    return _generator(_hashed(salt, "phases", scenario_hash, split, seed, rehearsal))
+
+
+def _generator(hashed: bytes) -> np.random.Generator:
     seeds: Any = _Seeds(hashed)  # numpy takes every ISeedSequence; its stubs know one
     return np.random.Generator(np.random.PCG64(seeds))
 

@@ -3,6 +3,7 @@
 import sys
 
 from benchnav.arrays import FloatArray
+from benchnav.navigation.rehearsal import Rehearsal
 from benchnav.runner.answer import CallFailed
 from benchnav.runner.recorder import Recorder
 from benchnav.runner.rollout import Assignment, Seeded, drive, drivers_of
@@ -11,7 +12,9 @@ from benchnav.world.simulation import Simulation
 DECISIONS = 50  # of a latency pass: enough for a percentile, few enough to cost nothing
 
 
-def latency(assignment: Assignment, seeded: Seeded) -> FloatArray | None:
+def latency(
+    assignment: Assignment, seeded: Seeded, rehearsals: tuple[Rehearsal, ...] = ()
+) -> FloatArray | None:
     """(K ≤ `DECISIONS`,) [s] of the navigator's calls when it serves one world alone.
 
     A pass of its own, with a navigator made for it, and thrown away: nothing that is
@@ -20,7 +23,7 @@ def latency(assignment: Assignment, seeded: Seeded) -> FloatArray | None:
     simulation = Simulation([seeded[1]])
     recorder = Recorder(simulation)
     try:
-        drivers = drivers_of(assignment, simulation)
+        drivers = drivers_of(assignment, simulation, [rehearsals])
         drive(assignment, drivers, recorder, [seeded[0]], DECISIONS)
     except CallFailed:
         return None

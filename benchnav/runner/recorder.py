@@ -45,7 +45,12 @@ class Recorder:
             kept[-1] = getattr(self.simulation, name).copy()
 
     def episodes(
-        self, identities: Sequence[Identity], planning: float, failure: str, reproducible: bool
+        self,
+        identities: Sequence[Identity],
+        planning: float,
+        failure: str,
+        reproducible: bool,
+        remarks: Sequence[tuple[str, ...]],
     ) -> list[Episode]:
         """One episode per world, in its order.
 
@@ -54,6 +59,7 @@ class Recorder:
             planning: [s] of all resets together; each world gets its share.
             failure: why the navigator failed, "" if it did not (then B is 1).
             reproducible: whether no clock decided anything.
+            remarks: (B,) what the navigator has to tell of each world.
         """
         state = {name: np.stack(kept) for name, kept in self._state.items()}
         shape = (0, *self.simulation.position.shape)
@@ -78,6 +84,7 @@ class Recorder:
                 timings=Timings(self.seconds[:steps], share, len(identities)),
                 failure=failure,
                 reproducible=reproducible,
+                remarks=remarks[b],
             )
             episodes.append(replace(episode, digest=digest(episode)))
         return episodes

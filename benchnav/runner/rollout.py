@@ -1,8 +1,9 @@
 """Runs one navigator in many worlds, in lockstep."""
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -10,6 +11,8 @@ from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import Clock, Rules, World
 from benchnav.episode.episode import Episode, Identity
 from benchnav.navigation.configure import Spec, make, split
+from benchnav.navigation.navigator import Navigator
+from benchnav.navigation.rehearsal import Rehearsal
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.answer import CallFailed
 from benchnav.runner.driver import Driver
@@ -35,20 +38,27 @@ class Assignment:
     background: tuple[Spec, ...] = ()  # navigators of the scenario's other teams
     salt: str = ""  # of the run; no navigator is handed it
     navigator_hash: str = ""  # of its configuration, source and version
+    rehearsals: int = 0  # that the navigator asks for
+    leader: Spec | None = None  # who drives the leaders in them
+    rehearsal: int = 0  # k: this is the k-th of them
 
     def identity(self, seed: int) -> Identity:
         """Of the episode with this seed."""
         return Identity(
             self.scenario, self.scenario_hash, self.split, seed, self.track, self.label,
-            self.navigator_hash,
+            self.navigator_hash, self.rehearsal,
         )  # fmt: skip
 
 
 Seeded = tuple[int, World]
+Grants = Mapping[int, tuple[Rehearsal, ...]]  # by seed
 
 
 def rollout(
-    assignment: Assignment, worlds: Sequence[Seeded], charge: str = ""
+    assignment: Assignment,
+    worlds: Sequence[Seeded],
+    charge: str = "",
+    grants: Grants = MappingProxyType({}),
 ) -> Iterator[list[Episode]]:
     """Every world's episode, batch by batch; the batching changes no state and no command.
 
@@ -63,13 +73,14 @@ def rollout(
         worlds: (seed, world) pairs.
         charge: a reason for which every world is charged without running (its
             navigator killed the process, say); "" runs them.
+        grants: the rehearsals that the evaluated navigator is told of, by seed.
     """
     about = (assignment.salt, assignment.scenario_hash, assignment.split)
     pending = deque(_batches(sorted(worlds, key=lambda world: place(*about, world[0]))))
     while pending:
         batch = pending.popleft()
         try:
-            yield _lockstep(assignment, batch, charge)
+            yield _lockstep(assignment, batch, charge, grants)
         except CallFailed as failed:
             pending.extendleft(reversed(_split(batch, failed)))
 
@@ -107,15 +118,19 @@ def _split(batch: list[Seeded], failed: CallFailed) -> list[list[Seeded]]:
     return [part for part in (others[:half], others[half:], *alone) if part]
 
 
-def _lockstep(assignment: Assignment, batch: list[Seeded], charge: str) -> list[Episode]:
+def _lockstep(
+    assignment: Assignment, batch: list[Seeded], charge: str, grants: Grants
+) -> list[Episode]:
     simulation = Simulation([world for _, world in batch])
     recorder = Recorder(simulation)
     recorder.record_state()
     planning, failure, reproducible = 0.0, charge, True
+    remarks: list[tuple[str, ...]] = [()] * len(batch)
     if charge:
         _charge(simulation, recorder)
     else:
-        drivers = drivers_of(assignment, simulation)
+        told = [grants.get(seed, ()) for seed, _ in batch]
+        drivers = drivers_of(assignment, simulation, told)
         reproducible = all(driver.navigator.reproducible for driver in drivers)
         try:
             planning = drive(assignment, drivers, recorder, [seed for seed, _ in batch])
@@ -124,8 +139,9 @@ def _lockstep(assignment: Assignment, batch: list[Seeded], charge: str) -> list[
                 raise
             failure = failed.reason
             _charge(simulation, recorder)
+        remarks = [drivers[0].remarks(row) for row in range(len(batch))]
     identities = [assignment.identity(seed) for seed, _ in batch]
-    return recorder.episodes(identities, planning, failure, reproducible)
+    return recorder.episodes(identities, planning, failure, reproducible, remarks)
 
 
 def drive(
@@ -151,9 +167,17 @@ def _charge(simulation: Simulation, recorder: Recorder) -> None:
     recorder.restate()
 
 
-def drivers_of(assignment: Assignment, simulation: Simulation) -> list[Driver]:
-    """The evaluated navigator, then the background ones, which know the scenario's map."""
-    drivers = [Driver(make(NAVIGATORS, assignment.navigator), simulation, 0, assignment.track)]
+def drivers_of(
+    assignment: Assignment,
+    simulation: Simulation,
+    rehearsals: Sequence[tuple[Rehearsal, ...]] = (),
+) -> list[Driver]:
+    """The evaluated navigator, then the background ones, which know the scenario's map.
+
+    ``rehearsals`` (B,) are what the first is told of, none where there are none.
+    """
+    chosen: Navigator = make(NAVIGATORS, assignment.navigator)
+    drivers = [Driver(chosen, simulation, 0, assignment.track, rehearsals=rehearsals)]
     for which, spec in enumerate(assignment.background, start=1):
         blame = f"the scenario's background navigator {split(NAVIGATORS, spec)[0]!r}: "
         drivers.append(Driver(make(NAVIGATORS, spec), simulation, which, "known", blame))
@@ -163,7 +187,10 @@ def drivers_of(assignment: Assignment, simulation: Simulation) -> list[Driver]:
 def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) -> float:
     """Brief everybody. Returns the seconds that the evaluated navigator took."""
     about = (assignment.salt, assignment.scenario_hash, assignment.split)
-    seconds = [d.reset([generator(*about, seed, d.which) for seed in seeds]) for d in drivers]
+    which = assignment.rehearsal
+    seconds = [
+        d.reset([generator(*about, seed, d.which, which) for seed in seeds]) for d in drivers
+    ]
     return seconds[0]
 
 

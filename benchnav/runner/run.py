@@ -27,6 +27,10 @@ class Summary:
     redraws: int = 0  # draws of worlds that were thrown away as unsolvable, in this execution
     not_applicable: list[tuple[Cell, str]] = field(default_factory=list)
     failures: Counter[tuple[str, str]] = field(default_factory=Counter)  # (navigator, reason)
+    unled: Counter[tuple[str, str, str]] = field(default_factory=Counter)
+    """Worlds by (navigator, scenario, team) in which a leader succeeded in no rehearsal."""
+    remarks: Counter[tuple[str, str, str]] = field(default_factory=Counter)
+    """Worlds by (navigator, scenario, what it tells of them)."""
 
     def count(self, task: Task, outcome: Outcome) -> None:
         """A task is finished."""
@@ -34,6 +38,9 @@ class Summary:
         self.redraws += outcome.redraws
         label = task.cell.entry.label
         self.failures.update((label, reason) for _, reason in outcome.failures)
+        scenario = task.cell.scenario.identity
+        self.unled.update((label, scenario, team) for _, team in outcome.unled)
+        self.remarks.update((label, scenario, text) for _, text in outcome.remarks)
         if outcome.lacks:
             self.total -= len(task.seeds)
             if all(cell != task.cell for cell, _ in self.not_applicable):

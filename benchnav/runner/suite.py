@@ -4,7 +4,7 @@ import hashlib
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,6 @@ from benchnav.runner.generators import check_salt
 from benchnav.runner.rollout import Assignment
 from benchnav.runner.suite_file import SuiteFile, parse_seeds, suite_path
 from benchnav.scenario.catalogue import find
-from benchnav.scenario.load import load_scenario
 from benchnav.scenario.sampler import support
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
@@ -30,17 +29,20 @@ class Entry:
 
     label: str
     spec: Mapping[str, Any]  # {type: name, …every parameter}
-    source: str  # distribution and version that it comes from
+    source: str  # distributions and versions that it and its parts come from
     required: frozenset[Need]
     lacks: str = ""  # what is not installed that it needs to be made; "" if it can be
     training: Training | None = None
     fingerprint: str = ""  # of the files that it reads
+    rehearsal: int = 0  # rehearsals before each episode
+    leader: "Entry | None" = None  # who drives the leaders in them
 
     @property
     def hash(self) -> str:
         """Of all that the label stands for: type, every parameter, source, version, files."""
         files = [self.fingerprint] if self.fingerprint else []
-        said = json.dumps([dict(self.spec), self.source, *files], sort_keys=True)
+        led = [self.leader.hash] if self.leader else []
+        said = json.dumps([dict(self.spec), self.source, *files, *led], sort_keys=True)
         return hashlib.sha256(said.encode()).hexdigest()[:16]
 
 
@@ -60,7 +62,8 @@ class Cell:
         return Assignment(
             scenario.identity, scenario.hash, self.split, self.track, entry.label, entry.spec,
             tuple({"type": d.type, **d.params} for d in scenario.drivers),
-            navigator_hash=entry.hash,
+            navigator_hash=entry.hash, rehearsals=entry.rehearsal,
+            leader=entry.leader.spec if entry.leader else None,
         )  # fmt: skip
 
     @property
@@ -78,16 +81,25 @@ class Cell:
         """Why it is n/a; "" where it can be run."""
         if self.entry.lacks:
             return self.entry.lacks
-        required, sensing = self.entry.required, self.scenario.sensing
         if self.track not in self.scenario.granted_tracks:
             return f"the scenario has no track {self.track!r}"
+        led = self.entry.leader
+        why = self._unfit(self.entry)
+        if why or led is None:
+            return why
+        why = led.lacks or self._unfit(led)
+        return f"its leaders' {led.label} {why}" if why else ""
+
+    def _unfit(self, entry: Entry) -> str:
+        """Why a navigator cannot work with what the track and the sensors give."""
+        required, sensing = entry.required, self.scenario.sensing
         if Need.MAP in required and self.track == "unknown":
             return "needs a map"
         sensed = {need for need in Need if getattr(sensing, need, None) is not None}
         lacking = sorted(required - sensed - {Need.MAP})
         if lacking:
             return f"needs {' and '.join(lacking)}, which nobody senses there"
-        navigator: Navigator = make(NAVIGATORS, self.entry.spec)
+        navigator: Navigator = make(NAVIGATORS, entry.spec)
         return navigator.unfit(sensing_of(self.scenario))
 
     @property
@@ -95,7 +107,21 @@ class Cell:
         """How long its episodes are likely to take, to begin the longest first."""
         agents = sum(support(team.count)[1] for team in self.scenario.teams)
         planning = 4.0 if Need.MAP in self.entry.required else 1.0
-        return agents * self.scenario.clock.steps * planning
+        effort = agents * self.scenario.clock.steps * planning
+        if self.entry.leader is not None:
+            led = replace(self, entry=self.entry.leader)
+            effort += self.entry.rehearsal * led.effort * self._led / agents
+        return effort
+
+    @property
+    def _led(self) -> float:
+        """How many agents rehearse, at most: leaders, or one of a team without a leader."""
+        counts: dict[str, list[float]] = {}
+        for team in self.scenario.teams:
+            most = support(team.count)[1]
+            share = counts.setdefault(team.name, [0.0])
+            share[0] += most if team.role == "leader" else 0.0
+        return sum(max(share[0], 1.0) for share in counts.values())
 
 
 @dataclass(frozen=True)
@@ -164,7 +190,7 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     if selection.scenarios:
         scenarios = tuple(find(name) for name in selection.scenarios)
     else:
-        scenarios = tuple(_scenario(name, path.parent) for name in said.scenarios)
+        scenarios = tuple(find(name, path.parent) for name in said.scenarios)
     tracks = tuple(selection.tracks or said.tracks)
     _refuse_unknown_tracks(tracks)
     _refuse_twice("scenario", [s.identity for s in scenarios], path)
@@ -209,27 +235,43 @@ def _entry(spec: Spec, where: str) -> Entry:
     source = NAVIGATORS.source(name).distribution
     try:
         navigator: Navigator = make(NAVIGATORS, spec, where=where)
+        led = _leader(navigator, where)
+        made_of = (source, *(part.distribution for part in navigator.parts))
         return Entry(
-            label, full, source, navigator.required, training=navigator.training,
-            fingerprint=navigator.fingerprint,
+            label, full, ", ".join(dict.fromkeys(made_of)), navigator.required,
+            training=navigator.training or (led.training if led else None),
+            fingerprint=navigator.fingerprint, rehearsal=navigator.rehearsal, leader=led,
         )  # fmt: skip
     except MissingExtraError as error:
         return Entry(label, full, source, frozenset(), str(error))
 
 
+def _leader(navigator: Navigator, where: str) -> Entry | None:
+    """Who leads in the rehearsals that ``navigator`` asks for; None where it asks for none."""
+    if not navigator.rehearsal:
+        return None
+    spec = navigator.leader
+    if spec is None:
+        raise ScenarioError(f"{where}: who asks for rehearsals must name who leads in them.")
+    led = _entry(spec if isinstance(spec, str) else dict(spec), f"{where} leader")
+    if led.rehearsal:
+        raise ScenarioError(
+            f"{where}: who leads in rehearsals must need none itself. Got {led.label!r}."
+        )
+    return led
+
+
 def _resolved(entry: Entry) -> dict[str, Any]:
-    said = {"label": entry.label, "says": dict(entry.spec), "source": entry.source}
+    said: dict[str, Any] = {
+        "label": entry.label, "says": dict(entry.spec), "source": entry.source,
+    }  # fmt: skip
+    if entry.leader:
+        said["rehearsal"], said["leader"] = entry.rehearsal, _resolved(entry.leader)
     if entry.training:
         said["training"] = asdict(entry.training)
     if entry.fingerprint:
         said["fingerprint"] = entry.fingerprint
     return said
-
-
-def _scenario(name: str, folder: Path) -> Scenario:
-    if name.endswith((".yaml", ".yml")):
-        return load_scenario(folder / name)
-    return find(name)
 
 
 def _seeds(text: str) -> range:

@@ -9,7 +9,8 @@ from benchnav.errors import MissingExtraError
 from benchnav.metrics.measure import all_metrics
 from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.measured import measured
-from benchnav.runner.rollout import Assignment, Seeded, rollout
+from benchnav.runner.rehearsal import Performance, perform
+from benchnav.runner.rollout import Assignment, Seeded
 from benchnav.runner.suite import Cell
 from benchnav.store.part import Part
 from benchnav.store.part_writer import PartWriter
@@ -53,6 +54,10 @@ class Outcome:
     episodes: int
     redraws: int  # draws of worlds that were thrown away as unsolvable
     failures: tuple[tuple[int, str], ...] = field(default=())  # (seed, reason)
+    unled: tuple[tuple[int, str], ...] = field(
+        default=()
+    )  # (seed, team): its leader never succeeded
+    remarks: tuple[tuple[int, str], ...] = field(default=())  # (seed, what the navigator tells)
     lacks: str = ""  # what is not installed, and how to: then nothing was stored
 
 
@@ -91,22 +96,30 @@ def _work(task: Task, tick: Callable[[int], None]) -> Outcome:
     worlds = [(seed, build(cell.scenario, cell.split, seed)) for seed in task.seeds]
     metrics = all_metrics()
     failures: list[tuple[int, str]] = []
+    unled: list[tuple[int, str]] = []
+    remarks: list[tuple[int, str]] = []
     with PartWriter(Part(task.folder, task.first, task.stop)) as writer:
-        for batch in rollout(task.assignment, worlds, task.charge):
+        for batch in perform(task.assignment, worlds, task.charge):
             episodes = _timed(task, batch)
-            writer.add(episodes, measured(_ticking(episodes, tick), metrics))
+            rehearsals = [e for performance in batch for e in performance.rehearsed.episodes]
+            writer.add(episodes, measured(_ticking(episodes, tick), metrics), rehearsals)
             failures += [(e.identity.seed, e.failure) for e in episodes if e.failure]
+            remarks += [(e.identity.seed, text) for e in episodes for text in e.remarks]
+            unled += [(p.episode.identity.seed, team) for p in batch for team in p.unled]
         writer.seal()
-    return Outcome(len(worlds), sum(w.redraws for _, w in worlds), tuple(sorted(failures)))
+    redraws = sum(world.redraws for _, world in worlds)
+    failed, alone, said = (tuple(sorted(found)) for found in (failures, unled, remarks))
+    return Outcome(len(worlds), redraws, failed, alone, said)
 
 
-def _timed(task: Task, batch: list[Episode]) -> list[Episode]:
+def _timed(task: Task, batch: list[Performance]) -> list[Episode]:
     """The episodes with peak memory, and with latency where it is to be taken."""
     timed = []
-    for episode in batch:
+    for performance in batch:
+        episode, grant = performance.episode, tuple(performance.rehearsed.grant)
         seeded: Seeded = (episode.identity.seed, episode.world)
         wanted = seeded[0] == task.probe and not episode.failure
-        alone = latency(task.assignment, seeded) if wanted else None
+        alone = latency(task.assignment, seeded, grant) if wanted else None
         timings = replace(episode.timings, latency=alone, memory=peak_memory())
         timed.append(replace(episode, timings=timings))
     return timed

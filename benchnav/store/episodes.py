@@ -55,12 +55,22 @@ EPISODES = pa.schema(
         ("latency_seconds", pa.large_list(pa.float64())),  # null where not taken
         ("memory_bytes", pa.int64()),  # null where not known
         ("navigator_hash", pa.string()),
+        ("rehearsal", pa.int64()),  # which one this is; 0: the scored episode
+        ("rehearsals", pa.int64()),  # granted for it
+        ("rehearsal_decisions", pa.int64()),
+        ("rehearsal_seconds", pa.float64()),
+        ("remarks", pa.list_(pa.string())),
     ]
 )
 LATER = (
     "latency_seconds",
     "memory_bytes",
     "navigator_hash",
+    "rehearsal",
+    "rehearsals",
+    "rehearsal_decisions",
+    "rehearsal_seconds",
+    "remarks",
 )  # columns that older parts lack; null there
 DICTIONARY = [*_IDENTITY, "navigator_hash", "failure"]  # columns whose values repeat
 
@@ -69,9 +79,9 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
     """(N rows) of `EPISODES`."""
     columns: dict[str, Any] = {
         name: [getattr(e.identity, name) for e in episodes]
-        for name in (*_IDENTITY, "seed", "navigator_hash")
+        for name in (*_IDENTITY, "seed", "navigator_hash", "rehearsal")
     }
-    for name in ("failure", "reproducible", "digest"):
+    for name in ("failure", "reproducible", "digest", "rehearsals", "rehearsal_decisions"):
         columns[name] = [getattr(e, name) for e in episodes]
     columns["steps"] = [len(e.requested) for e in episodes]
     columns["agents"] = [len(e.world.agents) for e in episodes]
@@ -86,6 +96,8 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
     columns["batch"] = [e.timings.batch for e in episodes]
     columns["latency_seconds"] = [e.timings.latency for e in episodes]
     columns["memory_bytes"] = [e.timings.memory for e in episodes]
+    columns["remarks"] = [list(e.remarks) for e in episodes]
+    columns["rehearsal_seconds"] = [e.timings.rehearsal for e in episodes]
     arrays = [
         values if isinstance(values, pa.Array) else pa.array(values, type=field.type)
         for field in EPISODES
@@ -128,16 +140,22 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
     timings = Timings(
         values("decision_seconds", np.float64), scalar("planning_seconds"), scalar("batch"),
         None if latency is None else np.array(latency, np.float64), scalar("memory_bytes"),
+        scalar("rehearsal_seconds") or 0.0,
     )  # fmt: skip
     identity = {name: scalar(name) for name in (*_IDENTITY, "seed")}
+    identity["navigator_hash"] = scalar("navigator_hash") or ""
+    identity["rehearsal"] = scalar("rehearsal") or 0
     return Episode(
-        identity=Identity(**identity, navigator_hash=scalar("navigator_hash") or ""),
+        identity=Identity(**identity),
         world=world_from_json(scalar("world")),
         contacts=Contacts(**contacts),
         timings=timings,
         failure=scalar("failure"),
         reproducible=scalar("reproducible"),
         digest=scalar("digest"),
+        rehearsals=scalar("rehearsals") or 0,
+        rehearsal_decisions=scalar("rehearsal_decisions") or 0,
+        remarks=tuple(scalar("remarks") or ()),
         **arrays,
     )
 

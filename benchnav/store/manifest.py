@@ -12,7 +12,7 @@ from typing import Any
 
 from benchnav.errors import CorruptPartError, StoreError
 
-SCHEMA = 1  # version of the layout of a run folder and of its columns
+SCHEMA = 2  # version of the layout of a run folder and of its columns; 2: rehearsals
 MANIFEST = "manifest.json"
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
 

@@ -1,7 +1,8 @@
 """A part: the episodes of one cell for a range of seeds, and the values measured on them.
 
-A part is three files. The seal is written last and holds size and sha256 of the
-other two; without a seal there is no part, whatever else a killed run left there.
+A part is three files, or four where there were rehearsals. The seal is written last and
+holds size and sha256 of the others; without a seal there is no part, whatever else a
+killed run left there.
 """
 
 import hashlib
@@ -23,6 +24,8 @@ from benchnav.store.results import completed
 SEAL = ".seal.json"
 EPISODES_FILE = ".episodes.parquet"
 RESULTS_FILE = ".results.parquet"
+REHEARSALS_FILE = ".rehearsals.parquet"  # only where there were rehearsals
+FILES = (EPISODES_FILE, RESULTS_FILE, REHEARSALS_FILE)
 
 
 @dataclass(frozen=True, order=True)
@@ -35,11 +38,11 @@ class Part:
 
     @property
     def stem(self) -> str:
-        """What the names of its three files start with."""
+        """What the names of its files start with."""
         return f"{self.first:06d}-{self.stop:06d}"
 
     def path(self, suffix: str) -> Path:
-        """One of its three files."""
+        """One of its files."""
         return self.folder / f"{self.stem}{suffix}"
 
     @property
@@ -57,17 +60,30 @@ class Part:
         return completed(self._table(RESULTS_FILE))
 
     def episodes(self) -> Iterator[Episode]:
-        """Its episodes, by seed. Raises CorruptPartError."""
-        table = self._table(EPISODES_FILE)
-        try:
-            yield from from_table(table)
-        except (KeyError, TypeError, ValueError) as error:
-            raise self._corrupt(self.path(EPISODES_FILE), f"cannot be decoded ({error})") from error
+        """Its scored episodes, by seed. Raises CorruptPartError."""
+        yield from self._episodes(EPISODES_FILE)
+
+    def rehearsals(self) -> Iterator[Episode]:
+        """The rehearsals of its episodes, by seed; none where none were made.
+
+        Raises CorruptPartError.
+        """
+        if REHEARSALS_FILE in self._seal():
+            yield from self._episodes(REHEARSALS_FILE)
 
     def check(self) -> None:
         """Raise CorruptPartError where a file is missing or has another size than was sealed."""
         for suffix in (EPISODES_FILE, RESULTS_FILE):
             self._check_size(suffix, self._sealed(suffix))
+        if REHEARSALS_FILE in self._seal():
+            self._check_size(REHEARSALS_FILE, self._sealed(REHEARSALS_FILE))
+
+    def _episodes(self, suffix: str) -> Iterator[Episode]:
+        table = self._table(suffix)
+        try:
+            yield from from_table(table)
+        except (KeyError, TypeError, ValueError) as error:
+            raise self._corrupt(self.path(suffix), f"cannot be decoded ({error})") from error
 
     def _table(self, suffix: str) -> pa.Table:
         path, sealed = self.path(suffix), self._sealed(suffix)
@@ -80,16 +96,26 @@ class Part:
             )
         try:
             table = pq.read_table(path, partitioning=None)
-            return table.take(pc.sort_indices(table["seed"]))  # stable: batches may be out of order
+            keys = [
+                (key, "ascending") for key in ("seed", "rehearsal") if key in table.column_names
+            ]
+            return table.take(pc.sort_indices(table, keys))  # stable: batches may be out of order
         except (OSError, pa.ArrowException) as error:
             raise self._corrupt(path, f"is no Parquet file ({error})") from error
 
     def _sealed(self, suffix: str) -> dict[str, Any]:
+        try:
+            sealed = self._seal()[suffix]
+            return {"bytes": int(sealed["bytes"]), "sha256": str(sealed["sha256"])}
+        except (ValueError, KeyError, TypeError) as error:
+            raise self._corrupt(self.path(SEAL), f"cannot be read ({error})") from error
+
+    def _seal(self) -> dict[str, Any]:
         seal = self.path(SEAL)
         try:
-            sealed: dict[str, Any] = json.loads(seal.read_text(encoding="utf-8"))[suffix]
-            return {"bytes": int(sealed["bytes"]), "sha256": str(sealed["sha256"])}
-        except (OSError, ValueError, KeyError, TypeError) as error:
+            said: dict[str, Any] = json.loads(seal.read_text(encoding="utf-8"))
+            return dict(said)
+        except (OSError, ValueError, TypeError) as error:
             raise self._corrupt(seal, f"cannot be read ({error})") from error
 
     def _check_size(self, suffix: str, sealed: dict[str, Any]) -> None:

@@ -5,9 +5,10 @@ import json
 import os
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import IO, Any, Self
 
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -15,10 +16,16 @@ import pyarrow.parquet as pq
 from benchnav.episode.episode import Episode
 from benchnav.errors import StoreError
 from benchnav.store.episodes import DICTIONARY, EPISODES, to_table
-from benchnav.store.part import EPISODES_FILE, RESULTS_FILE, SEAL, Part
+from benchnav.store.part import EPISODES_FILE, FILES, REHEARSALS_FILE, RESULTS_FILE, SEAL, Part
 from benchnav.store.results import RESULTS
 
 TEMPORARY = ".writing-"  # names of files that are not finished start with this
+
+
+@dataclass(frozen=True)
+class _Stream:
+    file: IO[bytes]
+    writer: pq.ParquetWriter
 
 
 class PartWriter:
@@ -33,14 +40,21 @@ class PartWriter:
         self._results: list[pa.Table] = []
         self._rows = 0
         self._sealed = False
-        self._open()
+        self._streams: dict[str, _Stream] = {}
+        self._open(EPISODES_FILE)
 
-    def add(self, episodes: Sequence[Episode], results: pa.Table) -> None:
-        """Append episodes, and the table of `RESULTS` that was measured on them."""
+    def add(
+        self, episodes: Sequence[Episode], results: pa.Table, rehearsals: Sequence[Episode] = ()
+    ) -> None:
+        """Append scored episodes, the table of `RESULTS` measured on them, and rehearsals."""
         if not episodes:
             return
         try:
-            self._writer.write_table(to_table(episodes))
+            self._streams[EPISODES_FILE].writer.write_table(to_table(episodes))
+            if rehearsals:
+                if REHEARSALS_FILE not in self._streams:
+                    self._open(REHEARSALS_FILE)
+                self._streams[REHEARSALS_FILE].writer.write_table(to_table(rehearsals))
         except OSError as error:
             raise self._refused(error) from error
         self._rows += len(episodes)
@@ -49,8 +63,9 @@ class PartWriter:
     def seal(self) -> None:
         """Make the part visible, complete and durable."""
         try:
-            self._writer.close()
-            _sync(self._file)
+            for stream in self._streams.values():
+                stream.writer.close()
+                _sync(stream.file)
             results = self._temporary(RESULTS_FILE)
             with results.open("wb") as file:
                 pq.write_table(
@@ -59,12 +74,13 @@ class PartWriter:
                     compression="zstd",
                 )
                 _sync(file)
-            sealed = {s: _facts(self._temporary(s)) for s in (EPISODES_FILE, RESULTS_FILE)}
+            written = [suffix for suffix in FILES if suffix in {RESULTS_FILE, *self._streams}]
+            sealed = {suffix: _facts(self._temporary(suffix)) for suffix in written}
             notes = {**sealed, "episodes": self._rows, **self._notes}
             with self._temporary(SEAL).open("wb") as file:
                 file.write(json.dumps(notes, indent=1).encode())
                 _sync(file)
-            for suffix in (EPISODES_FILE, RESULTS_FILE, SEAL):
+            for suffix in (*written, SEAL):
                 self._temporary(suffix).replace(self.part.path(suffix))
             _sync_folder(self.part.folder)
         except OSError as error:
@@ -82,23 +98,25 @@ class PartWriter:
     ) -> None:
         if self._sealed:
             return
-        with suppress(OSError, pa.ArrowException):  # what made it fail is already on its way up
-            self._writer.close()
-        with suppress(OSError):
-            self._file.close()
-        for suffix in (EPISODES_FILE, RESULTS_FILE, SEAL):
+        for stream in self._streams.values():
+            with suppress(OSError, pa.ArrowException):  # what made it fail is already on its way up
+                stream.writer.close()
+            with suppress(OSError):
+                stream.file.close()
+        for suffix in (*FILES, SEAL):
             self._temporary(suffix).unlink(missing_ok=True)
 
-    def _open(self) -> None:
+    def _open(self, suffix: str) -> None:
         try:
             self.part.folder.mkdir(parents=True, exist_ok=True)
-            self._file = self._temporary(EPISODES_FILE).open("wb")
+            file = self._temporary(suffix).open("wb")
         except OSError as error:
             raise self._refused(error) from error
-        self._writer = pq.ParquetWriter(
-            self._file, EPISODES, compression="zstd", use_dictionary=DICTIONARY,
+        writer = pq.ParquetWriter(
+            file, EPISODES, compression="zstd", use_dictionary=DICTIONARY,
             write_statistics=["seed"],
         )  # fmt: skip
+        self._streams[suffix] = _Stream(file, writer)
 
     def _temporary(self, suffix: str) -> Path:
         return self.part.folder / f"{TEMPORARY}{self.part.stem}{suffix}"

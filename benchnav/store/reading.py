@@ -11,12 +11,21 @@ from benchnav.store.run_folder import RunFolder
 
 
 def read_episodes(run: Path) -> Iterator[Episode]:
-    """Every stored episode of a run: cell by cell, by seed.
+    """Every scored episode of a run: cell by cell, by seed.
 
     Raises StoreError where the folder is no run, CorruptPartError for a damaged part.
     """
     for part in RunFolder.open(run).parts():
         yield from part.episodes()
+
+
+def read_rehearsals(run: Path) -> Iterator[Episode]:
+    """Every stored rehearsal of a run: cell by cell, by seed, in order.
+
+    Raises as `read_episodes` does.
+    """
+    for part in RunFolder.open(run).parts():
+        yield from part.rehearsals()
 
 
 def read_results(run: Path) -> pa.Table:

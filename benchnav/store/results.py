@@ -26,13 +26,23 @@ RESULTS = pa.schema(
         ("horizon", pa.float64()),  # [s]
         ("dt", pa.float64()),  # [s]
         ("navigator_hash", pa.string()),  # of configuration, source, version; "" in older parts
+        ("rehearsal", pa.int64()),  # rehearsals granted; 0 in older parts, as the next two
+        ("rehearsal_decisions", pa.int64()),  # of agents, in the rehearsals of this world
+        ("rehearsal_seconds", pa.float64()),  # of the navigator that led
     ]
 )
 
 
+LATER = {"navigator_hash": "", "rehearsal": 0, "rehearsal_decisions": 0, "rehearsal_seconds": 0.0}
+"""Columns that older parts lack, and what stands for them."""
+
+
 def completed(table: pa.Table) -> pa.Table:
     """The table with what older parts lack."""
-    if "navigator_hash" in table.column_names:
-        return table
-    field = RESULTS.field("navigator_hash")
-    return table.append_column(field, pa.repeat(pa.scalar("", field.type), len(table)))
+    for name, missing in LATER.items():
+        if name not in table.column_names:
+            field = RESULTS.field(name)
+            table = table.append_column(
+                field, pa.repeat(pa.scalar(missing, field.type), len(table))
+            )
+    return table.select(RESULTS.names)

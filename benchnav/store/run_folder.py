@@ -9,7 +9,7 @@ from pathlib import Path
 from benchnav.errors import RunConflictError, StoreError
 from benchnav.store.lock import LOCKS, locked
 from benchnav.store.manifest import MANIFEST, Manifest, load_manifest
-from benchnav.store.part import EPISODES_FILE, RESULTS_FILE, Part, parts_of
+from benchnav.store.part import FILES, Part, parts_of
 from benchnav.store.part_writer import TEMPORARY
 
 
@@ -97,7 +97,7 @@ class RunFolder:
         for folder in self.path.glob("parts/*"):
             sealed = {part.stem for part in parts_of(folder)}
             for path in folder.iterdir():
-                unsealed = path.name.endswith((EPISODES_FILE, RESULTS_FILE))
+                unsealed = path.name.endswith(FILES)
                 unsealed &= path.name.partition(".")[0] not in sealed
                 if unsealed or path.name.startswith(TEMPORARY):
                     path.unlink()

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from benchnav.arena.sensing import Sensing
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.controller import Controller, Guide
@@ -45,7 +46,10 @@ class _Guided(Navigator):
 
     @property
     def required(self) -> frozenset[Need]:
-        return self.controller.needs
+        return self.controller.required
+
+    def unfit(self, sensing: Sensing) -> str:
+        return self.controller.unfit(sensing)
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         self.controller.reset(briefings, rows)

@@ -63,13 +63,20 @@ def check_declaration(make: Make) -> None:
         navigator.command in ("velocity", "twist"),
         f"{name}.command must be 'velocity' or 'twist'. Got {navigator.command!r} instead.",
     )
+    asked = navigator.rehearsal
+    whole = isinstance(asked, int) and not isinstance(asked, bool) and asked >= 0
+    require(whole, f"{name}.rehearsal must be how many rehearsals it asks for. Got {asked!r}.")
+    require(
+        not asked or navigator.leader is not None,
+        f"{name} asks for rehearsals, so {name}.leader must name who leads in them.",
+    )
 
 
 def check_answer(make: Make) -> None:
     """Finite commands of the right shape, with nothing but what it needs; nothing is changed."""
     navigator = make()
     name, needs = type(navigator).__name__, navigator.required
-    told = briefings_of(_scenes(make), needs)
+    told = briefings_of(_scenes(make), needs, navigator.rehearsal)
     before = [contents(briefing) for briefing in told]
     with global_generators_untouched(name):
         _call(name, "reset", needs, navigator.reset, told, np.arange(len(told)))
@@ -129,12 +136,13 @@ def check_rows(make: Make) -> None:
     kept, disturbing, _ = _scenes(make)
     needs, row, other = navigator.required, np.array([0]), np.array([1])
     expected = answers_of(make(), [kept], row)
-    navigator.reset(briefings_of([kept, disturbing], needs), np.array([0, 1]))
+    asked = navigator.rehearsal
+    navigator.reset(briefings_of([kept, disturbing], needs, asked), np.array([0, 1]))
     got = []
     noise = observations_of([disturbing], needs, other)
     for k, observation in enumerate(observations_of([kept], needs, row)):
         if k == 3:
-            navigator.reset(briefings_of([disturbing], needs), other)
+            navigator.reset(briefings_of([disturbing], needs, asked), other)
         navigator.act(noise[k % 3])
         got.append(masked(navigator.act(observation), observation)[0])
     name = type(navigator).__name__

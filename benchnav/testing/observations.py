@@ -19,13 +19,19 @@ from benchnav.navigation.navigator import Navigator, Need
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.tracks import granted_map
 from benchnav.sensors.sense import sense
+from benchnav.testing.rehearsals import rehearsals_of
 from benchnav.world.simulation import Simulation
 
 FRAMES = 6
 
 
-def briefings_of(worlds: Sequence[World], needs: frozenset[Need]) -> list[Briefing]:
-    """A fresh briefing of each world; its generator depends on the world's geometry alone."""
+def briefings_of(
+    worlds: Sequence[World], needs: frozenset[Need], rehearsals: int = 0
+) -> list[Briefing]:
+    """A fresh briefing of each world; its generator depends on the world's geometry alone.
+
+    With as many made-up ``rehearsals`` as are asked for.
+    """
     track = "known" if Need.MAP in needs else "unknown"
     return [
         brief(
@@ -37,6 +43,7 @@ def briefings_of(worlds: Sequence[World], needs: frozenset[Need]) -> list[Briefi
             decision_budget=world.clock.decision_budget,
             map=granted_map(world, track),
             rng=np.random.default_rng(crc32(world.solids[-1].capsules.tobytes())),
+            rehearsals=rehearsals_of(world, rehearsals),
         )
         for world in worlds
     ]
@@ -111,7 +118,7 @@ def answers_of(
 ) -> list[FloatArray]:
     """What a navigator commands after a reset: for each world (FRAMES, A, 2), NaN if inactive."""
     needs, places = navigator.required, np.arange(len(worlds)) if rows is None else rows
-    navigator.reset(briefings_of(worlds, needs), places.copy())
+    navigator.reset(briefings_of(worlds, needs, navigator.rehearsal), places.copy())
     frames = [
         masked(navigator.act(observation), observation)
         for observation in observations_of(worlds, needs, places, padding)

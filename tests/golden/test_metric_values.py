@@ -8,9 +8,10 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import erf
 
+from benchnav.arena.agents import Role
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards
-from benchnav.metrics import efficiency, safety, smoothness, success
+from benchnav.metrics import efficiency, following, safety, smoothness, success
 from benchnav.metrics.filter import SIGMA
 from benchnav.testing.episodes import (
     RULES,
@@ -265,3 +266,29 @@ def test_events_are_counted_by_kind_and_only_when_charged():
     assert safety.collided(episode).tolist() == [1.0, 0.0]
     assert safety.contact_time(episode) == pytest.approx([0.7 + 0.5 + 1.0, 0.0])
     assert success.success(episode).tolist() == [0.0, 1.0]
+
+
+def test_two_followers_along_an_s_curve():
+    """Each at a fixed distance from the curve, along its normal, one on either side."""
+    height, length = 0.8, 8.0
+    k = 2.0 * math.pi / length
+
+    def beside(distance):
+        def path(t):
+            x = 1.0 + 0.8 * t
+            slope = height * k * np.cos(k * x)
+            normal = np.stack([-slope, np.ones_like(slope)], axis=1) / np.hypot(1.0, slope)[:, None]
+            return np.stack([x, height * np.sin(k * x)], axis=1) + distance * normal
+
+        return path
+
+    walks = [
+        Walk(wave((0.0, 0.0), 1.2, height, length), (90.0, 0.0)),
+        Walk(beside(0.4), (90.0, 0.0), radius=0.1, role=Role.FOLLOWER),
+        Walk(beside(-0.7), (90.0, 0.0), radius=0.1, role=Role.FOLLOWER),
+    ]
+    for dt in (0.05, 0.1):
+        found = following.path_keeping(record(walks, Setting(dt=dt, horizon=12.0)))
+        assert found[1:] == pytest.approx([0.4, 0.7], rel=0.01)
+    # 1.1 m apart, link 0.6 m: two parts of one each, of which nobody is behind the other
+    assert np.isnan(following.catch_up_time(record(walks))).all()

@@ -1,0 +1,1 @@
+"""Groups that follow the recorded trajectory of their leader, and avoid each other with ORCA."""

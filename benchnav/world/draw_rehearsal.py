@@ -1,0 +1,75 @@
+"""The world of a rehearsal: the scored one with its leaders alone, and other phases of movers."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+
+from benchnav.arena.agents import Agents, Role
+from benchnav.arena.body import Body, Law, LawKind
+from benchnav.arena.solid import Kind
+from benchnav.arena.world import World
+from benchnav.arrays import IntArray
+from benchnav.geometry.rotation import TWO_PI
+
+
+def rehearsal_world(world: World, rng: np.random.Generator) -> tuple[World, IntArray]:
+    """(the world, (L',) indices that its agents have in ``world``).
+
+    Walls and static obstacles are those of ``world``; what is re-placed within the
+    episode stands where it begins, for a rehearsal comes before it. Movers keep their
+    ways and speeds, each with a phase of its own from ``rng``; a recorded track keeps its
+    time. Of the evaluated agents there are `leaders_of`, of the others all.
+    """
+    leading = leaders_of(world.agents)
+    present = ~world.agents.evaluated
+    present[leading] = True
+    index = np.flatnonzero(present)
+    agents = Agents(**{f.name: getattr(world.agents, f.name)[index] for f in fields(Agents)})
+    role = np.where(agents.evaluated, int(Role.LEADER), agents.role).astype(np.int8)
+    standing = [body for body in world.bodies if body.solid.kind == Kind.STATIC]
+    moving = [body for body in world.bodies if body.solid.kind != Kind.STATIC]
+    placed = tuple(body.solid.moved(body.law.points[0]) for body in standing)
+    stale = world.stale_solids
+    rehearsed = replace(
+        world,
+        solids=world.solids + placed,
+        bodies=tuple(Body(body.solid, _rephased(body.law, rng)) for body in moving),
+        agents=replace(agents, role=role),
+        stale_solids=None if stale is None else stale + placed,
+    )
+    return rehearsed, index
+
+
+def leaders_of(agents: Agents) -> IntArray:
+    """Indices of the evaluated agents that rehearse, rising.
+
+    The leaders; for a team that has none, the member whose start and goal are nearest to
+    the means of its members' starts and goals.
+    """
+    led: list[int] = []
+    for team in np.unique(agents.team[agents.evaluated]):
+        members = np.flatnonzero(agents.evaluated & (agents.team == team))
+        leaders = members[agents.role[members] == int(Role.LEADER)]
+        led += leaders.tolist() if len(leaders) else [_middle(agents, members)]
+    return np.array(sorted(led), np.int64)
+
+
+def _middle(agents: Agents, members: IntArray) -> int:
+    away = np.zeros(len(members))
+    for places in (agents.start[members], agents.goal[members]):
+        offset = places - places.mean(axis=0)
+        away += np.sqrt(np.sum(offset * offset, axis=1))
+    ties = members[away == away.min()]
+    keys = (*agents.goal[ties].T[::-1], *agents.start[ties].T[::-1])
+    return int(ties[np.lexsort(keys)[0]])  # whatever the order of the agents
+
+
+def _rephased(law: Law, rng: np.random.Generator) -> Law:
+    share = float(rng.random())
+    if law.kind == LawKind.CIRCLE:
+        points = law.points.copy()
+        points[1, 1] = TWO_PI * share
+        return replace(law, points=points)
+    if law.kind == LawKind.TRACK and law.periodic:
+        return replace(law, phase=float(law.times[-1]) * share)
+    return law
