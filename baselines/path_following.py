@@ -1,6 +1,7 @@
 """Pure pursuit: straight at the guide's target (Coulter 1992), whatever is in the way."""
 
 from collections.abc import Sequence
+from typing import ClassVar
 
 import numpy as np
 
@@ -16,6 +17,8 @@ from .approach import approach
 
 class PathFollowing(Controller):
     """Drives along its path at preferred speed, slower only to stop at its end."""
+
+    cut: ClassVar[float] = 0.03  # it does not see the corners that it cuts
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)

@@ -23,6 +23,7 @@ DENSITY_RATE = 1.0  # [Hz]
 REACH = 0.8  # [m]: a circle of 2.01 m²
 QUARTER = 16  # segments of a quarter of that circle
 SKIN = 1e-3  # [m] half the least thickness of a wall
+DIGITS = 9  # of places [m]: GEOS cannot cut cells at coordinates like 1e-33
 
 
 def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
@@ -35,6 +36,7 @@ def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
 
     times = frame_times(trajectories, DENSITY_RATE)
     ids, frames, points = bodies_at(trajectories, times)
+    points = np.round(points, DIGITS)
     density = np.zeros(len(times))
     counts = _matter(area, frames, points)
     if not counts.any():

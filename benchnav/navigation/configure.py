@@ -8,8 +8,15 @@ from typing import Any, Union, get_origin
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
-from benchnav.errors import BenchnavError, BrokenPluginError, ConfigError, did_you_mean
-from benchnav.plugins import Registry
+from benchnav.errors import (
+    BenchnavError,
+    BrokenPluginError,
+    ConfigError,
+    PluginError,
+    did_you_mean,
+)
+from benchnav.navigation.pair import HIERARCHICAL, is_pair, parameters_of
+from benchnav.plugins import NAVIGATORS, Registry
 
 Spec = str | Mapping[str, Any]
 
@@ -19,7 +26,8 @@ def make(registry: Registry, spec: Spec, *, where: str = "") -> Any:
 
     Args:
         registry: the kind of plugin, e.g. ``benchnav.plugins.NAVIGATORS``.
-        spec: a name, or a mapping with ``type`` and that plugin's parameters.
+        spec: a name, or a mapping with ``type`` and that plugin's parameters; a navigator's
+            name may be made of those of its parts (`benchnav.navigation.pair`).
         where: what the spec stands at (``"suite.yaml:12: navigators[0]"``), for messages.
 
     Raises:
@@ -33,7 +41,7 @@ def make(registry: Registry, spec: Spec, *, where: str = "") -> Any:
     except BenchnavError:
         raise
     except Exception as error:
-        name, _ = split(registry, spec, where=where)
+        name, _ = _written(registry, spec, where)
         raise BrokenPluginError(
             f"{_at(where)}The {registry.kind} {name!r} cannot be made:"
             f" {type(error).__name__}: {error}."
@@ -56,15 +64,29 @@ def configure(registry: Registry, spec: Spec, *, where: str = "") -> tuple[Any, 
     try:
         return plugin, declared(**parameters)
     except ValidationError as error:
-        lines = _explanations(f"{registry.kind} {name!r}", declared, error.errors())
+        written, _ = _written(registry, spec, where)
+        lines = _explanations(f"{registry.kind} {written!r}", declared, error.errors())
         raise ConfigError(_at(where) + "\n".join(lines)) from None
+    except PluginError as error:  # of a part that the Config names
+        raise type(error)(_at(where) + str(error)) from None
 
 
 def split(registry: Registry, spec: Spec, *, where: str = "") -> tuple[str, dict[str, Any]]:
-    """(name, parameters) of either form of a spec.
+    """(registered name, parameters) of either form of a spec; a pair is a `hierarchical` one.
 
-    Raises ConfigError where it is neither.
+    Raises ConfigError where it is neither, UnknownPluginError where a pair's part is unknown.
     """
+    name, parameters = _written(registry, spec, where)
+    if registry is not NAVIGATORS or not is_pair(name):
+        return name, parameters
+    try:
+        return HIERARCHICAL, parameters_of(name, parameters)
+    except PluginError as error:
+        raise type(error)(_at(where) + str(error)) from None
+
+
+def _written(registry: Registry, spec: Spec, where: str) -> tuple[str, dict[str, Any]]:
+    """(name, parameters) as they were written."""
     if isinstance(spec, str):
         return spec, {}
     rule = f"{_at(where)}A {registry.kind} must be a name or {{type: name, …parameters}}."

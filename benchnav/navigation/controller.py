@@ -5,9 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
+from benchnav.arena.sensing import Sensing
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.navigator import CommandKind, Need, PluginConfig
+from benchnav.navigation.navigator import CommandKind, Need, PluginConfig, Training
 from benchnav.navigation.observation import Observation
 
 
@@ -26,9 +27,30 @@ class Controller(ABC):
     Config: ClassVar[type[PluginConfig]] = PluginConfig
     needs: ClassVar[frozenset[Need]] = frozenset()
     command: ClassVar[CommandKind] = "velocity"
+    lookahead: ClassVar[float] = 1.0  # [m] of path to its target, at most, unless told otherwise
+    cut: ClassVar[float] = 0.1  # [m] by which it may miss corners, unless told otherwise
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         self.config: Any = config if config is not None else self.Config()
+
+    @property
+    def required(self) -> frozenset[Need]:
+        """What this configured instance needs."""
+        return self.needs
+
+    @property
+    def training(self) -> Training | None:
+        """What it cost to train; None for what does not learn."""
+        return None
+
+    @property
+    def fingerprint(self) -> str:
+        """Of what it reads from files, weights say, beyond its Config and version."""
+        return ""
+
+    def unfit(self, sensing: Sensing) -> str:
+        """Why it cannot drive agents that sense so, beyond what it needs; "" where it can."""
+        return ""
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:  # noqa: B027 - optional
         """Start the worlds ``rows`` (N,)."""

@@ -75,6 +75,16 @@ class PathTracker:
         )  # fmt: skip
         return Guide(target, remaining, self._count[rows, :agents] > 0)
 
+    def rest(self, row: int, agent: int) -> FloatArray:
+        """(W, 2) [m] what is left of a path, from where the agent was last seen; none if W is 0."""
+        count, k = self._count[row, agent], self._segment[row, agent]
+        way, arc = self._path[row, agent, :count], self._arc[row, agent, :count]
+        if count < 2:
+            return way.copy()
+        share = (self._progress[row, agent] - arc[k]) / (arc[k + 1] - arc[k])
+        here = way[k] + min(max(share, 0.0), 1.0) * (way[k + 1] - way[k])
+        return np.vstack([here, way[k + 1 :]])
+
     def _reserve(self, rows: int, agents: int, waypoints: int) -> None:
         old = self._path.shape
         if old[0] >= rows and old[1] >= agents and old[2] >= waypoints:

@@ -2,12 +2,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.hierarchical import Hierarchical, OmplOrca, OmplPure
+from benchnav_baselines.ompl.pairs import OmplOrca, OmplPure
 from pydantic import Field
 
 from benchnav.errors import ConfigError, UnknownPluginError
 from benchnav.navigation.configure import make
 from benchnav.navigation.controller import Controller
+from benchnav.navigation.hierarchical import Hierarchical
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Need, PluginConfig
 from benchnav.navigation.planner import UNSOLVED, Plan, Planner
@@ -98,7 +99,13 @@ def test_without_a_plan_the_goal_is_the_target_and_the_reason_is_kept():
 
 @pytest.mark.parametrize(
     ("replan", "times"),
-    [("never", []), ("map-change", [0.6]), ({"every": 0.4}, [0.4, 0.6, 1.0])],
+    [
+        ("never", []),
+        ("map-change", [0.6]),
+        ({"every": 0.4}, [0.4, 0.8, 1.2]),
+        (["map-change", {"every": 0.4}], [0.4, 0.6, 1.0]),
+        ("blocked", []),
+    ],
 )
 def test_when_it_plans_again(replan, times):
     """The map changes at 0.6 s; what is planned then starts where the agent is."""
@@ -116,6 +123,21 @@ def test_when_it_plans_again(replan, times):
             assert call[0] == map.revision
             assert call[1] == tuple(position[0, 0])
     assert planned == times
+
+
+def test_who_is_stuck_goes_back_the_way_it_came_and_plans_again():
+    told, seen = stand(1, [(6.0, 0.0)])
+    navigator = Hierarchical(Hierarchical.Config(planner="detour", patience=1.0, give_way=1.0))
+    navigator.reset([told], seen.rows)
+    backward, planned = [], []
+    for k in range(60):
+        place = np.array([[(min(0.2 * k, 2.0), 0.0)]])  # it comes to 2 m and no farther
+        before = len(navigator.planner.calls)
+        command = navigator.act(replace(seen, time=np.array([k * 0.2]), position=place))
+        backward += [k * 0.2] * bool(command[0, 0, 0] < -0.5)
+        planned += [k * 0.2] * (len(navigator.planner.calls) - before)
+    assert 2.0 < backward[0] < 4.0
+    assert any(backward[0] + 2.0 <= time <= backward[0] + 6.4 for time in planned)
 
 
 @pytest.mark.parametrize("replan", ["map-change", "never"])
@@ -199,5 +221,5 @@ def test_wrong_parts_are_refused_by_name():
         Hierarchical(Hierarchical.Config(planner={"type": "detour", "fail": True}))
     with pytest.raises(UnknownPluginError, match="There is no controller 'orcaa'"):
         Hierarchical(Hierarchical.Config(planner="detour", controller="orcaa"))
-    with pytest.raises(ConfigError, match="must be 'never' or 'map-change', or a valid dictionary"):
+    with pytest.raises(ConfigError, match="must be 'never', or 'map-change' or 'blocked', or"):
         make(NAVIGATORS, {"type": "hierarchical", "replan": 3})

@@ -1,0 +1,1 @@
+"""The dynamic window approach (Fox, Burgard & Thrun 1997)."""

@@ -1,0 +1,1 @@
+"""Model predictive path integral control (Williams et al. 2017)."""

@@ -1,0 +1,143 @@
+"""One decision of model predictive path integral control, for every agent of a batch.
+
+Rows N are (world, agent) pairs; each depends on nothing but itself. See `weights` for the
+source.
+"""
+
+import math
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
+from benchnav.kernels import kernel
+
+from .cost import cost_of
+from .weights import disturbed, moved_on, weigh
+
+
+@kernel
+def gathered(
+    i: int, x: float, y: float, way: float, time: float, position: FloatArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: int,
+    p: FloatArray, u: FloatArray, r: FloatArray, what: ByteArray,
+) -> int:  # fmt: skip
+    """Copy those neighbours of row i that could be met within ``time``; returns how many."""
+    n = 0
+    for j in range(count):
+        dx, dy = position[i, j, 0] - x, position[i, j, 1] - y
+        vx, vy = velocity[i, j, 0], velocity[i, j, 1]
+        reach = way + radius[i, j] + math.sqrt(vx * vx + vy * vy) * time
+        if dx * dx + dy * dy < reach * reach:
+            p[n, 0], p[n, 1] = position[i, j, 0], position[i, j, 1]
+            u[n, 0], u[n, 1] = vx, vy
+            r[n], what[n] = radius[i, j], kind[i, j]
+            n += 1
+    return n
+
+
+@kernel
+def leaving(base: FloatArray, plan: FloatArray, sigma: FloatArray) -> float:
+    """Σ uᵀ Σ⁻¹ ε / H of a plan u + ε about the base u (H, 2): the control term of the cost."""
+    total = 0.0
+    for t in range(len(base)):
+        for c in range(2):
+            total += base[t, c] * (plan[t, c] - base[t, c]) / (sigma[c] * sigma[c])
+    return total / len(base)
+
+
+@kernel
+def averaged(weight: FloatArray, tried: FloatArray, mean: FloatArray) -> None:
+    """``mean`` (H, 2): Σ weight (S,) · tried (S, H, 2)."""
+    mean[:] = 0.0
+    for k in range(len(weight)):
+        if weight[k] > 0.0:
+            for t in range(len(mean)):
+                mean[t, 0] += weight[k] * tried[k, t, 0]
+                mean[t, 1] += weight[k] * tried[k, t, 1]
+
+
+@kernel
+def control(
+    low: int, high: int, active: BoolArray, here: FloatArray, heading: FloatArray,
+    target: FloatArray, remaining: FloatArray, body: FloatArray, plan: FloatArray,
+    position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
+    count: IntArray, start: FloatArray, end: FloatArray, edges: IntArray, noise: FloatArray,
+    tick: float, spread: FloatArray, temperature: float, control_cost: float, margin: float,
+    weights: FloatArray, out: FloatArray,
+) -> None:  # fmt: skip
+    """Write new plans into rows low … high - 1 of ``out`` (N, H, 2); their first twist is driven.
+
+    Args:
+        low: first row.
+        high: one past the last row.
+        active: (N,) rows that are not are left alone.
+        here: (N, 2) [m].
+        heading: (N,) [rad].
+        target: (N, 2) [m].
+        remaining: (N,) [m] of the path.
+        body: (N, 6) see `baselines.sensed.BODY`.
+        plan: (N, H, 2) the last plans; zero where there is none.
+        position: (N, K, 2) of neighbours [m].
+        velocity: (N, K, 2) [m/s].
+        radius: (N, K) [m].
+        kind: (N, K).
+        count: (N,) valid neighbours.
+        start: (N, E, 2) of edges [m].
+        end: (N, E, 2) [m].
+        edges: (N,) valid edges.
+        noise: (N, S, M, 2) standard normal: S samples, M knots.
+        tick: [s] that each twist of a plan is held.
+        spread: (2,) of the noise, as shares of preferred speed and top turn rate.
+        temperature: λ [m].
+        control_cost: γ / λ: what plans cost that leave the last one.
+        margin: [m] within which a contact is counted.
+        weights: (6,) see `cost.WEIGHTS`.
+        out: (N, H, 2).
+    """
+    samples, steps, most = noise.shape[1], plan.shape[1], position.shape[1]
+    tried, base, mean = np.empty((samples, steps, 2)), np.empty((steps, 2)), np.empty((steps, 2))
+    cost, weight = np.empty(samples), np.empty(samples)
+    sigma, bottom, top = np.empty(2), np.empty(2), np.empty(2)
+    p, u, r, what = (
+        np.empty((most, 2)),
+        np.empty((most, 2)),
+        np.empty(most),
+        np.empty(most, np.int8),
+    )
+    for i in range(low, high):
+        if not active[i]:
+            continue
+        x, y, me, last = here[i, 0], here[i, 1], body[i], plan[i, 0]
+        way = me[2] * tick * steps + me[0] + weights[4]
+        n = gathered(
+            i, x, y, way, tick * steps, position, velocity, radius, kind, count[i], p, u, r, what
+        )
+        sigma[0], sigma[1] = spread[0] * me[2], spread[1] * me[3]
+        bottom[0], bottom[1], top[0], top[1] = 0.0, -me[3], me[2], me[3]
+        moved_on(plan[i], me[4] / tick, base)
+        gx, gy = target[i, 0], target[i, 1]
+        final = remaining[i] <= math.sqrt((gx - x) ** 2 + (gy - y) ** 2) + me[5]
+        all_touch, best = True, 0
+        for k in range(samples):
+            if k == 0:
+                tried[k] = base
+            elif k == 1:
+                tried[k] = 0.0  # an addition: standing is always weighed
+            else:
+                disturbed(base, noise[i, k], sigma, bottom, top, tried[k])
+            cost[k], touches = cost_of(
+                tried[k], tick, x, y, heading[i], last, gx, gy, final, me, margin,
+                p, u, r, what, n, start[i], end[i], edges[i], weights,
+            )  # fmt: skip
+            cost[k] += control_cost * temperature * leaving(base, tried[k], sigma)
+            if cost[k] < cost[best]:
+                best = k
+            all_touch = all_touch and touches
+        weigh(cost, temperature, weight)
+        averaged(weight, tried, mean)
+        _, touches = cost_of(
+            mean, tick, x, y, heading[i], last, gx, gy, final, me, margin,
+            p, u, r, what, n, start[i], end[i], edges[i], weights,
+        )  # fmt: skip
+        # an addition: the mean of ways round both sides of something leads into it
+        out[i] = tried[best] if touches and not all_touch else mean

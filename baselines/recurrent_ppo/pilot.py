@@ -1,0 +1,137 @@
+"""What a learned navigator and a learned controller share: the policy at work in many rows."""
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arena.sensing import Sensing
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.envs.encoders.catalogue import encoder
+from benchnav.envs.encoders.encoder import Bodies
+from benchnav.envs.encoders.paper import RANGE, RAYS
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.navigator import Need, PluginConfig, Training
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.row_table import RowTable
+
+from .actor import Actor
+from .foresight import foresee
+from .weights import read_weights
+
+SHIPPED = Path(__file__).parent / "weights"
+_LIMITS = ("radius", "max_speed", "max_turn_rate")
+
+
+class PilotConfig(PluginConfig):
+    """Which weights."""
+
+    weights: str = Field("", description="file that `benchnav train` wrote; its own if empty")
+
+
+class ForesightConfig(PilotConfig):
+    """Which weights, and whether to look ahead."""
+
+    foresight: bool = Field(True, description="correct twists that would collide")
+
+
+class Pilot:
+    """Drives agents to the goals of what it is shown, which may be waypoints.
+
+    Deterministic: the mean of the Gaussian over (forward speed, turn rate).
+
+    Args:
+        weights: file that `benchnav train` wrote.
+        foresight: correct twists that would collide; needs neighbours and edges.
+    """
+
+    def __init__(self, weights: Path, foresight: bool = False) -> None:
+        self._actor, self.about = _loaded(weights)
+        self._encoder = encoder(self.about["encoder"])
+        self._foresight = foresight
+        self._kept = RowTable()
+
+    @property
+    def needs(self) -> frozenset[Need]:
+        """What its encoder reads."""
+        return self._encoder.needs
+
+    @property
+    def training(self) -> Training:
+        """What the weights cost."""
+        progress = self.about["progress"]
+        return Training(int(progress["decisions"]), float(progress["seconds"]))
+
+    @property
+    def fingerprint(self) -> str:
+        """Of the weights."""
+        return str(self.about["sha256"])
+
+    def unfit(self, sensing: Sensing) -> str:
+        """Why it cannot drive agents that sense so; "" where it can."""
+        rays = sensing.rays
+        if Need.RAYS not in self.needs or rays is None:
+            return ""
+        like = (rays.count, round(rays.fan, 6), rays.range, rays.thick)
+        if like == (RAYS, round(math.pi, 6), RANGE, True):
+            return ""
+        return (
+            f"its encoder {self._encoder.name!r} was made for {RAYS} thick rays over 180° and"
+            f" {RANGE:g} m, and agents there have {rays.count}{' thick' if rays.thick else ''}"
+            f" over {math.degrees(rays.fan):.0f}° and {rays.range:g} m"
+        )
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        """Start the worlds ``rows`` (N,) without memory."""
+        for row, briefing in zip(rows, briefings, strict=True):
+            memory = np.zeros((len(briefing), self._actor.state_size), np.float32)
+            limits = {name: getattr(briefing, name) for name in _LIMITS}
+            limits["tolerance"] = np.full(len(briefing), briefing.goal_tolerance)
+            self._kept.put(int(row), memory=memory, **limits)
+
+    def kept(self, name: str, seen: Observation) -> FloatArray:
+        """(B, A) radius, max_speed, max_turn_rate or tolerance of the agents in sight."""
+        values: FloatArray = self._kept.take(name, seen.rows, seen.active.shape[1])
+        return values
+
+    def twists(self, seen: Observation, tolerance: FloatArray) -> FloatArray:
+        """(B, A, 2) forward speed [m/s] and turn rate [rad/s] towards the goals.
+
+        Args:
+            seen: one decision's view.
+            tolerance: (B, A) [m] from a goal within which nothing behind it matters.
+        """
+        active, rows = seen.active, seen.rows
+        radius, speed, turn = (self.kept(name, seen) for name in _LIMITS)
+        bodies = Bodies(radius, speed, turn)
+        encoded = self._encoder.encode(seen, bodies)
+        memory = self._kept.take("memory", rows, active.shape[1]).copy()
+        now = memory[active]
+        action = np.clip(self._actor.decide(encoded[active], now).astype(float), -1.0, 1.0)
+        memory[active] = now
+        self._kept.write("memory", rows, memory)
+        command = np.zeros((*active.shape, 2))
+        command[active] = action
+        command[..., 0] = 0.5 * (command[..., 0] + 1.0) * speed
+        command[..., 1] *= turn
+        return foresee(seen, bodies, command, tolerance) if self._foresight else command
+
+
+def pilot_of(config: Any, shipped: str) -> Pilot:
+    """By a `PilotConfig` or `ForesightConfig`; ``shipped`` are its weights where it names none."""
+    path = Path(config.weights) if config.weights else SHIPPED / shipped
+    return Pilot(path, getattr(config, "foresight", False))
+
+
+@lru_cache(maxsize=8)
+def _read(path: Path, changed: int) -> tuple[Actor, dict[str, Any]]:
+    return read_weights(path)
+
+
+def _loaded(path: Path) -> tuple[Actor, dict[str, Any]]:
+    """Read once per state of the file."""
+    return _read(path, path.stat().st_mtime_ns if path.is_file() else 0)

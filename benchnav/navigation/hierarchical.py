@@ -1,0 +1,314 @@
+"""Any planner with any controller; itself a navigator."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from pydantic import Field, field_validator, model_validator
+
+from benchnav.arena.sensing import Sensing
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.geometry.sweep import clearance
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.configure import configure, make, split
+from benchnav.navigation.controller import Controller
+from benchnav.navigation.learned_map import way_is_free
+from benchnav.navigation.map import Map
+from benchnav.navigation.mapping import Mapping, MappingConfig
+from benchnav.navigation.navigator import Navigator, Need, PluginConfig, Training
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.pair import NO_PLANNER
+from benchnav.navigation.path_tracker import PathTracker
+from benchnav.navigation.planner import Plan, Planner
+from benchnav.navigation.replanning import Policies, Replan, Watch
+from benchnav.navigation.retreat import Retreat
+from benchnav.plugins import CONTROLLERS, PLANNERS, Registry, Source
+
+PartSpec = str | dict[str, Any]
+
+TOUCH = 1e-3  # [m] by which a path may come nearer than its disc's radius: rounding blocks nothing
+LEAST_DISC = 0.5  # of its radius: for a smaller disc no agent that stands too close is planned
+CONTACT = 1e-5  # [m] from what is known at which a disc still counts as standing in it
+
+
+class GuidedConfig(PluginConfig):
+    """Parameters that every pair of planner and controller has."""
+
+    planner: PartSpec = Field(
+        "ompl.rrt-connect",
+        validate_default=True,
+        description="a planner: name or {type: name, …}; none: the goal is the target, and no map"
+        " is needed",
+    )
+    mapping: MappingConfig | None = Field(
+        None,
+        description="true or {…}: plan on a map that is made of the granted one, if there is any,"
+        " and of what the agents sense",
+    )
+    replan: Replan | None = Field(
+        None,
+        description="when to plan again: never; when the map changes (map-change); when the rest"
+        " of the path leads through what the map now holds, or there was no path and the map"
+        " changed (blocked); at intervals ({every: seconds}); or a list of these. Unless told:"
+        " blocked with mapping, else map-change",
+    )
+    pause: float = Field(
+        0.4,
+        ge=0,
+        description="[s] at least between plans of an agent because its path is blocked, or because"
+        " of what mapping learned",
+    )
+    patience: float = Field(
+        4.0,
+        gt=0,
+        description="[s] without getting a radius away, after which an agent that may"
+        " plan again does (twice as long if that does not help, and so on): others can push it"
+        " round a corner that its path does not turn",
+    )
+    give_way: float = Field(
+        0.0,
+        ge=0,
+        le=1,
+        description="probability that an agent whose patience ends goes back the way it came for 2"
+        " to 6 s before it plans again: two that meet in a door wait for each other otherwise",
+    )
+    lookahead: float | None = Field(
+        None,
+        gt=0,
+        description="[m] of path between agent and target, at most; unless told, as the controller"
+        " declares",
+    )
+    cut: float | None = Field(
+        None,
+        gt=0,
+        description="[m] by which corners of the path may be missed; unless told, as the controller"
+        " declares",
+    )
+
+    @field_validator("mapping", mode="before")
+    @classmethod
+    def _take_a_flag(cls, given: Any) -> Any:
+        return MappingConfig() if given is True else None if given is False else given
+
+    @field_validator("planner")
+    @classmethod
+    def _resolve_planner(cls, part: PartSpec) -> PartSpec:
+        return part if part == NO_PLANNER else resolved(PLANNERS, part)
+
+    @model_validator(mode="after")
+    def _refuse_a_map_for_nobody(self) -> Self:
+        if self.mapping is not None and self.planner == NO_PLANNER:
+            raise ValueError("given a planner where it maps")
+        return self
+
+
+def resolved(registry: Registry, part: PartSpec) -> dict[str, Any]:
+    """``{type: name, …every parameter}`` of a part.
+
+    Raises what `benchnav.navigation.configure.configure` raises.
+    """
+    name, _ = split(registry, part, where=registry.kind)
+    _, config = configure(registry, part, where=registry.kind)
+    return {"type": name, **config.model_dump(mode="json")}
+
+
+class Hierarchical(Navigator):
+    """Plans a path for each agent on the map that it has, and follows it.
+
+    The map is the granted one, or with ``mapping`` what the agent makes of that and of
+    what it senses, in the track `unknown` from nothing. Where planning fails, the agent
+    keeps the path that it has; without one its target is the goal. `plans` says what
+    planning answered. ``PLANNER+CONTROLLER`` and ``mapping+PLANNER+CONTROLLER`` are
+    names of such navigators (`benchnav.navigation.pair`).
+    """
+
+    class Config(GuidedConfig):
+        """Parameters."""
+
+        controller: PartSpec = Field(
+            "path-following",
+            validate_default=True,
+            description="a controller: name or {type: name, …}",
+        )
+
+        @field_validator("controller")
+        @classmethod
+        def _resolve_controller(cls, part: PartSpec) -> PartSpec:
+            return resolved(CONTROLLERS, part)
+
+    needs: ClassVar[frozenset[Need]] = frozenset({Need.MAP})
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        c = self.config
+        self.planner: Planner | None = None
+        if c.planner != NO_PLANNER:
+            self.planner = make(PLANNERS, c.planner, where="planner")
+        self.controller: Controller = make(CONTROLLERS, self._controller(), where="controller")
+        vars(self)["command"] = self.controller.command  # declared for the class, known here
+        self.mapping = Mapping(c.mapping) if c.mapping is not None else None
+        self.plans: dict[int, list[Plan]] = {}  # row → the last plan of each agent
+        usual: Replan = "blocked" if self.mapping else "map-change"
+        self._policies = Policies(usual if c.replan is None else c.replan)
+        self._tracker = PathTracker(
+            self.controller.lookahead if c.lookahead is None else c.lookahead,
+            self.controller.cut if c.cut is None else c.cut,
+        )
+        self._watch: dict[int, Watch] = {}
+        self._retreats: dict[int, Retreat] = {}
+
+    def _controller(self) -> PartSpec:
+        part: PartSpec = self.config.controller
+        return part
+
+    @property
+    def required(self) -> frozenset[Need]:
+        if self.planner is None:
+            return self.controller.required
+        known = self.needs if self.mapping is None else self.mapping.needs
+        return known | self.controller.required
+
+    @property
+    def reproducible(self) -> bool:
+        return self.planner is None or self.planner.reproducible
+
+    @property
+    def training(self) -> Training | None:
+        return self.controller.training
+
+    @property
+    def fingerprint(self) -> str:
+        parts = (self.planner, self.controller)
+        return " ".join(part.fingerprint for part in parts if part and part.fingerprint)
+
+    @property
+    def parts(self) -> tuple[Source, ...]:
+        controller = CONTROLLERS.source(_name(self._controller()))
+        if self.planner is None:
+            return (controller,)
+        return PLANNERS.source(_name(self.config.planner)), controller
+
+    def unfit(self, sensing: Sensing) -> str:
+        why = self.controller.unfit(sensing)
+        return why if why or self.mapping is None else self.mapping.unfit(sensing)
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        self.controller.reset(briefings, rows)
+        if self.mapping is not None:
+            self.mapping.reset(briefings, rows)
+        for row, briefing in zip(rows.tolist(), briefings, strict=True):
+            self._tracker.reset(row, briefing.preferred_speed * briefing.dt)
+            self._watch[row] = Watch(briefing)
+            self._retreats[row] = Retreat(briefing.start)
+            self.plans[row] = []
+            for agent in range(len(briefing)):
+                self._plan(row, agent, briefing.map, briefing.start[agent], 0.0)
+
+    def act(self, observation: Observation) -> FloatArray:
+        if self.mapping is not None:
+            self.mapping.see(observation)
+        if self.planner is not None and not self._policies.never:
+            for world, row in enumerate(observation.rows.tolist()):
+                count, time = len(self._watch[row].briefing), float(observation.time[world])
+                place = observation.position[world, :count]
+                active, map = observation.active[world, :count], observation.maps[world]
+                for agent in np.flatnonzero(active & self._due(row, place, active, map, time)):
+                    self._plan(row, int(agent), map, place[agent], time)
+        return self.controller.steer(observation, self._tracker.guide(observation))
+
+    def _due(
+        self, row: int, place: FloatArray, active: BoolArray, map: Map | None, time: float
+    ) -> BoolArray:
+        """(A,) who plans again now; nobody does where the answer would be the same."""
+        watch, policies = self._watch[row], self._policies
+        if map is None and self.mapping is None:
+            return np.zeros(len(place), np.bool_)
+        version = np.array([self._version(row, agent, map) for agent in range(len(place))])
+        changed = version != watch.version
+        if policies.blocked:
+            for agent in np.flatnonzero(active & (version != watch.looked)):
+                self._look(row, int(agent), map, int(version[agent]))
+        learned = watch.blocked if policies.blocked else np.zeros(len(place), np.bool_)
+        due = changed & policies.map_change
+        if self.mapping is None:
+            due = due | self._ready(watch, learned, time)
+        else:
+            due = self._ready(watch, due | learned, time)
+        due |= time - watch.planned >= policies.interval * (1.0 - 1e-9)
+        solved = np.array([plan.solved for plan in self.plans[row]], np.bool_)
+        more = 1.0 if self.config.give_way else 2.0
+        waited = watch.waited(place, time, self.config.patience, more)
+        if self.config.give_way:
+            due = self._give_way(row, place, due, active & waited, time)
+        free = ~self._retreats[row].going(time)
+        again: BoolArray = due | (waited & (solved | changed) & free)
+        return again
+
+    def _give_way(
+        self, row: int, place: FloatArray, due: BoolArray, stuck: BoolArray, time: float
+    ) -> BoolArray:
+        """Send some of the stuck back; (A,) who plans again: none of these until they are back."""
+        retreat, watch = self._retreats[row], self._watch[row]
+        retreat.note(place, time)
+        came = ~retreat.going(time) & np.isfinite(retreat.until)
+        retreat.until[came] = -np.inf
+        for agent in np.flatnonzero(stuck & ~retreat.going(time)).tolist():
+            rng = watch.streams[agent]
+            if rng.random() < self.config.give_way:
+                self._tracker.follow(row, agent, retreat.begin(agent, place[agent], time, rng))
+        again: BoolArray = (due | came) & ~retreat.going(time)
+        return again
+
+    def _ready(self, watch: Watch, who: BoolArray, time: float) -> BoolArray:
+        ready: BoolArray = who & (time - watch.planned >= self.config.pause * (1.0 - 1e-9))
+        return ready
+
+    def _look(self, row: int, agent: int, map: Map | None, version: int) -> None:
+        """Hold the rest of a path against the map as it is now."""
+        watch = self._watch[row]
+        watch.looked[agent] = version
+        if not self.plans[row][agent].solved:
+            watch.blocked[agent] |= version != watch.version[agent]
+            return
+        way, radius = self._tracker.rest(row, agent), float(watch.radius[agent]) - TOUCH
+        watch.blocked[agent] |= not way_is_free(way, radius, self._capsules(row, agent, map))
+
+    def _plan(self, row: int, agent: int, map: Map | None, start: FloatArray, time: float) -> None:
+        watch, plans = self._watch[row], self.plans[row]
+        if self.planner is None or (map is None and self.mapping is None):
+            return
+        known = map if self.mapping is None else self.mapping.map(row, agent)
+        assert known is not None  # noqa: S101 - one of them is
+        told, radius = watch.briefing, self._disc(row, agent, start)
+        plan = self.planner.plan(
+            known, start, told.goal[agent], radius, told.goal_tolerance, watch.streams[agent]
+        )
+        plans[agent : agent + 1] = [plan]
+        watch.planned[agent], watch.blocked[agent] = time, False
+        watch.version[agent] = watch.looked[agent] = self._version(row, agent, map)
+        if plan.solved:
+            watch.radius[agent] = radius
+            self._tracker.follow(row, agent, plan.path)
+
+    def _disc(self, row: int, agent: int, start: FloatArray) -> float:
+        """[m] The agent's radius, or less where it stands in what it mapped: a disc's octagon."""
+        radius = float(self._watch[row].briefing.radius[agent])
+        if self.mapping is None:
+            return radius
+        x, y = start.tolist()
+        room = clearance(x, y, self.mapping.capsules(row, agent)) - CONTACT
+        return min(radius, max(room, LEAST_DISC * radius))
+
+    def _version(self, row: int, agent: int, map: Map | None) -> int:
+        if self.mapping is not None:
+            return self.mapping.version(row, agent)
+        return 0 if map is None else map.revision
+
+    def _capsules(self, row: int, agent: int, map: Map | None) -> FloatArray:
+        if self.mapping is not None:
+            return self.mapping.capsules(row, agent)
+        return np.zeros((0, 5)) if map is None else map.capsules
+
+
+def _name(part: PartSpec) -> str:
+    return part if isinstance(part, str) else str(part["type"])
