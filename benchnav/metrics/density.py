@@ -23,7 +23,7 @@ DENSITY_RATE = 1.0  # [Hz]
 REACH = 0.8  # [m]: a circle of 2.01 m²
 QUARTER = 16  # segments of a quarter of that circle
 SKIN = 1e-3  # [m] half the least thickness of a wall
-DIGITS = 9  # of places [m]: GEOS cannot cut cells at coordinates like 1e-33
+AWAY = 128.0  # [m] by which all is moved: GEOS cannot cut cells with corners like 1e-33
 
 
 def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
@@ -33,10 +33,10 @@ def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
         return np.zeros(0)
     import pedpy
     import shapely
+    import shapely.affinity
 
     times = frame_times(trajectories, DENSITY_RATE)
     ids, frames, points = bodies_at(trajectories, times)
-    points = np.round(points, DIGITS)
     density = np.zeros(len(times))
     counts = _matter(area, frames, points)
     if not counts.any():
@@ -45,13 +45,15 @@ def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
     counts &= shapely.contains_xy(walkable, points[:, 0], points[:, 1])
     if not counts.any():
         return density
+    there = shapely.affinity.translate(walkable, AWAY, AWAY)
     cells = pedpy.compute_individual_voronoi_polygons(
-        traj_data=_table(ids[counts], frames[counts], points[counts]),
-        walkable_area=pedpy.WalkableArea(walkable),
+        traj_data=_table(ids[counts], frames[counts], points[counts] + AWAY),
+        walkable_area=pedpy.WalkableArea(there),
         cut_off=pedpy.Cutoff(radius=REACH, quad_segments=QUARTER),
     )
+    box = shapely.box(*(np.array(area) + AWAY))
     measured, _ = pedpy.compute_voronoi_density(
-        individual_voronoi_data=cells, measurement_area=pedpy.MeasurementArea(shapely.box(*area))
+        individual_voronoi_data=cells, measurement_area=pedpy.MeasurementArea(box)
     )
     density[measured["frame"].to_numpy()] = measured["density"].to_numpy()
     return density

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 import shapely
 
-from benchnav.metrics import congestion
+from benchnav.metrics import congestion, density
 from benchnav.metrics.analysis import analyse
 from benchnav.runner.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
@@ -106,3 +106,29 @@ def test_density_of_a_published_recording_is_pedpys():
     assert expected.max() > 0.0
     # walls have a skin of 1 mm, within which cells end
     np.testing.assert_allclose(analyse(episode).density, expected, rtol=2e-3, atol=1e-6)
+
+
+# fmt: off
+SYMMETRIC = [  # a frame of circle/antipodal, about whose centre some cells have corners at 1e-33
+    (1.1449999999999996, -0.125), (1.8750000000000004, 0.12500000000000006),
+    (0.6309702691821313, 1.4674846312611278), (0.125, 1.1449999999999996),
+    (-1.8749999999999998, 0.8750000000000001), (-0.625, 1.8850000000000002), (-1.375, 1.625),
+    (-2.205294372515229, -0.5447056274847712), (-1.1449999999999996, 0.125),
+    (-1.9826394002987233, -1.3823194113852912), (-1.5355887450304575, -0.5355887450304574),
+    (-0.1791567162802224, -1.6670488494624462), (-0.6249999999999999, -2.1250000000000004),
+    (0.125, -1.1449999999999996), (-1.0447056274847712, -2.705294372515229),
+    (1.4674846312611285, -0.6309702691821308),
+]
+# fmt: on
+
+
+def test_density_of_a_symmetric_crowd_is_that_of_one_a_little_aside(monkeypatch):
+    episode = simulated("circle/antipodal")
+    trajectories, found = analyse(episode).trajectories, []
+    for aside in (0.0, 1e-6):
+        points = np.array(SYMMETRIC) + np.array([aside, 0.5 * aside])
+        seen = np.arange(len(points)), np.zeros(len(points), np.int64), points
+        monkeypatch.setattr(density, "bodies_at", lambda *_, seen=seen: seen)
+        found.append(density.voronoi_density(episode.world, trajectories)[0])
+    assert found[0] == pytest.approx(found[1], abs=1e-5)
+    assert found[0] > 0.5
