@@ -164,13 +164,15 @@ def choose(
                         x, y, turned, body[i, 2], 0.0, size + margin, position[i], velocity[i],
                         radius[i], moving, horizon, hold,
                     )  # fmt: skip
-                free_share = min(min(dist, far) / far, time / horizon)
+                if time < horizon:
+                    dist = min(dist, body[i, 2] * time)
                 allowed += 1
                 ahead = facing(
                     x, y, heading[i], v, w, target[i, 0], target[i, 1], brake, turn_brake, dt
                 )
                 score[a, b] = (
-                    weights[0] * ahead + weights[1] * free_share + weights[2] * v / body[i, 2]
+                    weights[0] * ahead + weights[1] * min(dist, far) / far
+                    + weights[2] * v / body[i, 2]
                 )  # fmt: skip
         answer[i, 0], answer[i, 1] = _best(score, free, meets, vs, ws, allowed > 0)
         if answer[i, 0] < 0.0:  # no way is free: brake along the arc that was found free before

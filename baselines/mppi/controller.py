@@ -45,7 +45,6 @@ class MppiConfig(PluginConfig):
         1.0, ge=0, description="[m] cost of touching at once a dynamic obstacle if it turned back"
     )
     near: float = Field(3.0, ge=0, description="[m] cost of being as near as it gets all the time")
-    near_edges: float = Field(0.3, ge=0, description="[m] the same of what stands")
     clearance: float = Field(0.4, gt=0, description="[m] nearer than which is near")
     smooth: float = Field(
         0.1, ge=0, description="[m] cost of a change by the whole preferred speed or turn rate"
@@ -84,7 +83,7 @@ class Mppi(Controller):
             edges,
         )  # fmt: skip
         new = plan.reshape(rows, *plan.shape[2:]).copy()
-        weights = np.array([c.contact, c.probability, c.near, c.smooth, c.clearance, c.back, c.near_edges])
+        weights = np.array([c.contact, c.probability, c.near, c.smooth, c.clearance, c.back])
         run_rows(
             control, rows, *flat(rows, arrays), self._noise(observation), c.tick,
             np.array([c.speed_noise, c.turn_noise]), c.temperature, c.control_cost, c.margin,

@@ -74,15 +74,13 @@ def cost_of(
         if back < margin and not turned:
             turned = True
             total += weights[5] * (steps - t) / steps
-        wall = _edges(x, y, body[0], start, end, edges, 1e9)
-        if gap < margin or wall < 0.5 * margin:
+        gap = min(gap, _edges(x, y, body[0], start, end, edges, gap))
+        if gap < margin:
             rest = steps - t
             return total + (rest * left + weights[0] * rest) / steps + weights[0], True
         total += weights[1] * risk / steps
         if gap < weights[4]:
             total += weights[2] * (1.0 - gap / weights[4]) / steps
-        if wall < weights[4]:
-            total += weights[6] * (1.0 - wall / weights[4]) / steps
         if passed:
             left -= v * tick
         else:
