@@ -265,7 +265,7 @@ def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file,
         start_new_session=True,
     )  # fmt: skip
     deadline = time.monotonic() + 300  # the worker may have to compile first
-    while not list(out.glob(f"parts/*/*{SEAL}")) and time.monotonic() < deadline:
+    while not list(out.glob(f"parts/*/[!.]*{SEAL}")) and time.monotonic() < deadline:
         time.sleep(0.01)
     os.killpg(process.pid, signal.SIGINT)
     stdout, stderr = process.communicate(timeout=60)

@@ -5,9 +5,11 @@ import pytest
 from benchnav_baselines.ompl.pairs import OmplOrca, OmplPure
 from pydantic import Field
 
+from benchnav.arena.solid import Kind, Solid
 from benchnav.errors import ConfigError, UnknownPluginError
 from benchnav.navigation.configure import make
 from benchnav.navigation.controller import Controller
+from benchnav.navigation.hierarchical import Hierarchical
 from benchnav.navigation.hierarchical import Hierarchical
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Need, PluginConfig
@@ -140,6 +142,82 @@ def test_who_is_stuck_goes_back_the_way_it_came_and_plans_again():
     assert any(backward[0] + 2.0 <= time <= backward[0] + 6.4 for time in planned)
 
 
+def wall(y, *, revision):
+    """A wall from (2, y) to (4, y)."""
+    line = np.array([(2.0, y), (4.0, y)])
+    return Map(BOUNDS, (Solid(Kind.WALL, (line,)),), revision)
+
+
+def planned_at(navigator, told, seen, maps, place=lambda k: (0.1 * k, 0.0)):
+    """[s] when it planned, seeing the world ``k`` every 0.2 s."""
+    navigator.reset([told], seen.rows)
+    when = []
+    for k, map in enumerate(maps):
+        before = len(navigator.planner.calls)
+        position = np.array([[place(k)]])
+        navigator.act(replace(seen, time=np.array([k * 0.2]), position=position, maps=(map,)))
+        when += [round(k * 0.2, 1)] * (len(navigator.planner.calls) - before)
+    return when
+
+
+def straight(**parameters):
+    planner = {"type": "detour", "spread": 0.0}
+    return Hierarchical(Hierarchical.Config(planner=planner, **parameters))
+
+
+def test_it_plans_again_when_its_path_is_blocked_and_not_when_another_place_is():
+    """The disc (0.3 m) goes along y = 0: a wall 0.35 m beside it does not touch it, 0.25 m does."""
+    told, seen = stand(1, [(6.0, 0.0)], radius=0.3)
+    beside, across = wall(0.35, revision=1), wall(0.25, revision=2)
+    maps = [Map(BOUNDS, ())] * 2 + [beside] * 2 + [across] * 3
+    assert planned_at(straight(replan="blocked"), told, seen, maps) == [0.8]
+    assert planned_at(straight(replan="map-change"), told, seen, maps) == [0.4, 0.8]
+    assert planned_at(straight(replan=["blocked", {"every": 0.6}]), told, seen, maps) == [0.6, 1.0]
+
+
+def test_what_blocks_the_path_behind_it_is_no_reason():
+    told, seen = stand(1, [(6.0, 0.0)], radius=0.3)
+    maps = [Map(BOUNDS, ())] * 3 + [wall(0.0, revision=1)] * 3
+    walked = straight(replan="blocked")
+    assert planned_at(walked, told, seen, maps, lambda k: (2.2 * k, 0.0)) == []
+    assert planned_at(straight(replan="blocked"), told, seen, maps) == [0.6]
+
+
+def test_a_blocked_path_is_planned_anew_at_a_bounded_rate():
+    told, seen = stand(1, [(6.0, 0.0)], radius=0.3)
+    maps = [wall(0.0, revision=k) for k in range(12)]
+    navigator = straight(replan="blocked", pause=0.5, patience=99.0)
+    assert planned_at(navigator, told, seen, maps) == [0.6, 1.2, 1.8]
+
+
+def test_without_a_path_a_changed_map_is_asked_again():
+    told, seen = stand(1, [(6.0, 0.0)])
+    spec = {"type": "detour", "fails": True}
+    navigator = Hierarchical(Hierarchical.Config(planner=spec, replan="blocked"))
+    empty = [Map(BOUNDS, ()), Map(BOUNDS, (), revision=1)]
+    assert planned_at(navigator, told, seen, empty[:1] * 3 + empty[1:] * 3) == [0.6]
+
+
+def test_who_is_stuck_goes_back_the_way_it_came_and_then_plans_again():
+    told, seen = stand(1, [(9.0, 0.0)])
+    navigator = straight(give_way=1.0, patience=0.6)
+    commands, places = [], [(min(0.5 * k, 3.0), 0.0) for k in range(60)]
+    navigator.reset([told], seen.rows)
+    calls = []
+    for k, place in enumerate(places):
+        position = np.array([[place]])
+        commands.append(
+            navigator.act(replace(seen, time=np.array([k * 0.2]), position=position))[0, 0]
+        )
+        calls.append(len(navigator.planner.calls))
+    forward = [bool(command[0] > 0.0) for command in commands]
+    assert all(forward[:8])
+    back = forward.index(False)
+    assert 2.0 <= 0.2 * forward[back:].index(True) <= 6.3
+    assert calls[back] == 1
+    assert calls[back + forward[back:].index(True)] == 2
+
+
 @pytest.mark.parametrize("replan", ["map-change", "never"])
 def test_who_waits_too_long_plans_again(replan):
     """One agent walks and one stands; one that has no path needs no other on the same map."""
@@ -214,6 +292,25 @@ def test_a_pair_needs_and_gives_what_its_parts_need_and_give():
     assert orca.controller.config.time_horizon == 2.5
     pure = OmplPure(OmplPure.Config(planner="detour"))
     assert pure.required == {Need.MAP}
+
+
+def test_a_controller_alone_needs_no_map_and_heads_for_the_goal():
+    told, seen = stand(1, [(0.0, 6.0)], map=None)
+    navigator = make(NAVIGATORS, "none+path-following")
+    assert navigator.required == frozenset()
+    command = answers(navigator, [replace(told, map=None)], replace(seen, maps=(None,)))
+    np.testing.assert_allclose(command, [[(0.0, 1.0)]])
+
+
+def test_parts_count_with_their_distributions_parameters_and_files():
+    navigator = Hierarchical(Hierarchical.Config(planner="detour", controller="recurrent-ppo"))
+    assert [part.name for part in navigator.parts] == ["detour", "recurrent-ppo"]
+    assert navigator.parts[0].distribution == "registered in this process"
+    assert navigator.fingerprint == navigator.controller.fingerprint != ""
+    assert navigator.training == navigator.controller.training
+    assert navigator.config.planner == {
+        "type": "detour", "fails": False, "spread": 1.0, "timed": False,
+    }  # fmt: skip
 
 
 def test_wrong_parts_are_refused_by_name():

@@ -1,1 +1,0 @@
-"""The dynamic window approach (Fox, Burgard & Thrun 1997)."""
