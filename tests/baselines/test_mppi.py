@@ -92,12 +92,12 @@ def test_noise_runs_straight_between_knots_and_stays_within_limits():
     np.testing.assert_allclose(out[:, 1], [0.5, 2.5, 3.0, 2.5, 0.5])
 
 
-WEIGHTS = np.array([8.0, 1.5, 0.7, 0.3, 0.4, 2.5, 1.1])
+WEIGHTS = np.array([8.0, 1.5, 0.7, 0.3, 0.4, 2.5])
 
 
 def slow_cost(plan, tick, place, heading, last, goal, final, body, margin, near, edges):
     """The twin of the cost: the whole way first, then each term as a sum over it."""
-    contact, probability, close, smooth, clearance, back, close_edges = WEIGHTS
+    contact, probability, close, smooth, clearance, back = WEIGHTS
     position, velocity, radius, kind = near
     H, way, course = len(plan), [np.array(place)], heading
     courses = []
@@ -113,17 +113,16 @@ def slow_cost(plan, tick, place, heading, last, goal, final, body, margin, near,
         cost += smooth * (change[t] ** 2).sum()
         x = way[t + 1]
         others = position + (t + 1) * tick * velocity
-        walls = []
         gaps = list(np.hypot(*(others - x).T) - radius - body[0])
         for a, b in zip(*edges, strict=True):
             s = np.clip((x - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
-            walls.append(np.hypot(*(a + s * (b - a) - x)) - body[0])
-        gap, wall = min(gaps, default=np.inf), min(walls, default=np.inf)
+            gaps.append(np.hypot(*(a + s * (b - a) - x)) - body[0])
+        gap = min(gaps, default=np.inf)
         back_at = (position - (t + 1) * tick * velocity)[movers]
         if not turned and (np.hypot(*(back_at - x).T) - radius[movers] - body[0] < margin).any():
             turned = True
             cost += back * (H - t) / H
-        if gap < margin or wall < 0.5 * margin:
+        if gap < margin:
             return cost + contact * (1 + (H - t) / H) + left * (H - t) / H, True
         risk = 0.0
         moving = plan[t, 0] * np.array([np.cos(courses[t]), np.sin(courses[t])])
@@ -135,7 +134,6 @@ def slow_cost(plan, tick, place, heading, last, goal, final, body, margin, near,
                 risk = max(risk, min(1.0, 1.0 / max(times[hit[0], 0], 1e-9)))
         cost += probability * risk / H
         cost += close * max(1 - gap / clearance, 0) / H
-        cost += close_edges * max(1 - wall / clearance, 0) / H
         if passed:
             left -= plan[t, 0] * tick
         else:
@@ -209,7 +207,7 @@ def test_where_the_mean_touches_the_best_sample_is_taken():
     noise = np.zeros((1, 4, 2, 2))
     noise[0, :, 0, 1], noise[0, :, 1, 1] = turns, -turns
     post = np.array([[[1.2, 0.0]]]), np.zeros((1, 1, 2)), np.array([[0.2]])
-    weights = np.array([8.0, 0, 0, 0, 0.1, 0, 0])
+    weights = np.array([8.0, 0, 0, 0, 0.1, 0])
     nothing = np.zeros((1, 0, 2))
     out = np.zeros((1, 8, 2))
     control(

@@ -10,7 +10,6 @@ from benchnav.errors import ConfigError, UnknownPluginError
 from benchnav.navigation.configure import make
 from benchnav.navigation.controller import Controller
 from benchnav.navigation.hierarchical import Hierarchical
-from benchnav.navigation.hierarchical import Hierarchical
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Need, PluginConfig
 from benchnav.navigation.planner import UNSOLVED, Plan, Planner

@@ -10,7 +10,6 @@ from benchnav.navigation.learned_map import (
     DOUBT,
     GUESSED,
     TOLD,
-    way_is_free,
     with_edge,
     with_guess,
     without_contradicted,
@@ -138,18 +137,3 @@ def test_a_stopped_disc_is_explained_or_guessed_at():
     assert held.owner[: held.n].tolist() == [TOLD, GUESSED]
     assert clearance(0.0, 3.0, held.now) == pytest.approx(0.3)
     assert with_guess(held.capsules, held.owner, held.n, 0.0, 3.02, 0.1, 1.0, 0.3) == 2
-
-
-def test_a_way_is_free_where_each_of_its_motions_is():
-    rng = np.random.default_rng(3)
-    capsules = np.hstack([rng.uniform(-4, 4, (6, 4)), rng.uniform(0, 0.5, (6, 1))])
-    found = []
-    for _ in range(200):
-        way = rng.uniform(-4, 4, (3, 2))
-        share = np.linspace(0, 1, 400)[:, None]
-        points = np.vstack([a + share * (b - a) for a, b in zip(way, way[1:], strict=False)])
-        least = min(clearance(*point, capsules) for point in points)
-        if abs(least - 0.3) > 0.02:
-            found.append(least > 0.3)
-            assert way_is_free(way, 0.3, capsules) == found[-1]
-    assert 5 < sum(found) < len(found)
