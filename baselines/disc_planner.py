@@ -1,32 +1,20 @@
-"""What planners without randomness share: clearance, the straight way, reasons."""
+"""What planners without randomness share: the straight way, then a search; and reasons."""
 
 from abc import abstractmethod
-from collections.abc import Iterator
 from dataclasses import dataclass
-from weakref import WeakKeyDictionary
 
 import numpy as np
-from pydantic import Field
 
 from benchnav.arrays import FloatArray
 from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import PluginConfig
-from benchnav.navigation.planner import UNSOLVED, Plan, Planner
+from benchnav.navigation.planner import UNSOLVED, Plan
 
-from .ompl.checker import SKIN, PlanarChecker
-from .ompl.planner import free_goal
+from .checker import SKIN, Checker, PlanarChecker
+from .clearance_planner import ClearancePlanner, free_goal, problem
 
 Frame = tuple[float, float, float, float]  # xmin, ymin, xmax, ymax [m]
 WITHIN = 0.99  # of the tolerance: how far from a blocked goal a path may end
 _LEAST = 1e-6  # [m] a point is planned for as a disc of this radius
-
-
-class DiscConfig(PluginConfig):
-    """Parameters of every planner here."""
-
-    clearance: float = Field(
-        0.05, ge=0, description="[m] kept from obstacles where start, goal and passages allow it"
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +26,7 @@ class Query:
     goal: FloatArray  # (2,) [m]
     reach: float  # [m] radius of the disc and the clearance
     tolerance: float  # [m] a path may end so far from the goal
-    checker: PlanarChecker
+    checker: Checker
 
     @property
     def inflation(self) -> float:
@@ -51,20 +39,11 @@ class Query:
         return WITHIN * max(self.tolerance, 0.0)
 
 
-class DiscPlanner(Planner):
-    """Plans for the disc enlarged by a clearance, by less of it where that finds nothing.
+class DiscPlanner(ClearancePlanner):
+    """Plans without drawing anything. A motion that is free straight is the path."""
 
-    The clearance is ½ or ¼ of what is wanted where start or goal are nearer to an
-    obstacle, and 0 where nothing is found with it. A motion that is free straight is
-    the path.
-    """
-
-    class Config(DiscConfig):
-        """Parameters."""
-
-    def __init__(self, config: PluginConfig | None = None) -> None:
-        super().__init__(config)
-        self._checkers: WeakKeyDictionary[Map, dict[float, PlanarChecker]] = WeakKeyDictionary()
+    def new_checker(self, map: Map, reach: float) -> Checker:
+        return PlanarChecker(map, reach)
 
     def plan(
         self,
@@ -79,18 +58,18 @@ class DiscPlanner(Planner):
 
         Where the goal cannot be reached, the path ends within the tolerance of it.
         """
-        if not (np.isfinite([*start, *goal, radius, tolerance]).all() and radius >= 0.0):
-            return Plan(UNSOLVED, False, 0, "start, goal, radius or tolerance is not finite")
+        if wrong := problem(start, goal, radius, tolerance):
+            return Plan(UNSOLVED, False, 0, wrong)
         start, goal = np.array(start, np.float64), np.array(goal, np.float64)
         checks = 0
-        for extra in self._clearances(map, start, goal, radius):
+        for extra in self.clearances(map, start, goal, radius):
             reach = radius + extra
-            query = Query(map, start, goal, reach, tolerance, self._checker(map, reach))
+            query = Query(map, start, goal, reach, tolerance, self.checker(map, reach))
             path, more = self._straight_or_found(query)
             checks += more
             if len(path):
                 return Plan(path, True, checks)
-        checker = self._checker(map, radius)
+        checker = self.checker(map, radius)
         if not checker.point_is_free(*start.tolist()):
             return Plan(UNSOLVED, False, checks, "the start is blocked")
         blocked = free_goal(checker, goal, tolerance) is None
@@ -113,25 +92,6 @@ class DiscPlanner(Planner):
             return np.array(ends), 1
         path, checks = self.search(query)
         return path, checks + 1
-
-    def _clearances(
-        self, map: Map, start: FloatArray, goal: FloatArray, radius: float
-    ) -> Iterator[float]:
-        """The largest clearance that both ends allow, then 0; none where the start is blocked."""
-        wanted = self.config.clearance
-        for extra in (wanted, 0.5 * wanted, 0.25 * wanted):
-            checker = self._checker(map, radius + extra)
-            if extra > 0.0 and all(checker.point_is_free(*p.tolist()) for p in (start, goal)):
-                yield extra
-                break
-        if self._checker(map, radius).point_is_free(*start.tolist()):
-            yield 0.0
-
-    def _checker(self, map: Map, reach: float) -> PlanarChecker:
-        known = self._checkers.setdefault(map, {})
-        if reach not in known:
-            known[reach] = PlanarChecker(map, reach)
-        return known[reach]
 
 
 def frame_of(query: Query, margin: float) -> Frame:

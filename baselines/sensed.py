@@ -10,9 +10,7 @@ from benchnav.navigation.observation import Observation
 
 from .orca.avoidance import no_edges, no_neighbours
 
-BODY = (
-    6  # radius [m], top and preferred speed [m/s], top turn rate [rad/s], step [s], tolerance [m]
-)
+BODY = 6  # radius [m], top and preferred speed [m/s], turn rate [rad/s], step [s], tolerance [m]
 
 
 def bodies_of(briefing: Briefing) -> FloatArray:

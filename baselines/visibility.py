@@ -9,7 +9,8 @@ from benchnav.geometry.geodesic import FreeSpace
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import PluginConfig
 
-from .disc_planner import DiscConfig, DiscPlanner, Query
+from .clearance_planner import ClearanceConfig
+from .disc_planner import DiscPlanner, Query
 
 
 class Visibility(DiscPlanner):
@@ -20,7 +21,7 @@ class Visibility(DiscPlanner):
     by a share of bend² / 12.
     """
 
-    class Config(DiscConfig):
+    class Config(ClearanceConfig):
         """Parameters."""
 
         bend: float = Field(

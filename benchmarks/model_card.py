@@ -79,7 +79,7 @@ def measure(navigator: str, scenario: str, agents: int) -> Row:
 def _run(task: tuple[str, str, int, int]) -> list[tuple[FloatArray, FloatArray, FloatArray, list]]:
     navigator, name, first, stop = task
     scenario = find(name)
-    background = tuple({"type": d.type, **d.params} for d in scenario.drivers)
+    background = scenario.driver_specs
     about = Assignment(
         scenario.identity, scenario.hash, "test", "unknown", navigator, navigator, background,
         salt="00",

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 from benchnav_baselines.recurrent_ppo.log import read_rows
-from benchnav_baselines.recurrent_ppo.navigator import SHIPPED
+from benchnav_baselines.recurrent_ppo.policy_pilot import SHIPPED
 from benchnav_baselines.recurrent_ppo.weights import read_weights
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -76,9 +76,9 @@ def learning() -> Figure:
             x = [row["decisions"] / 1e6 for row in run]
             for key in [key for key in run[0] if key.startswith("validation ")]:
                 axes.plot(x, [100 * row[key] for row in run], label=key.removeprefix("validation "))
-            stage = next((k for k, row in enumerate(run) if row["stage"] >= 1), None)
-            if stage is not None:
-                axes.axvline(x[stage], color="0.6", ls=":", lw=1)
+            for k in range(1, len(run) - 1):
+                if run[k]["stage"] > run[k - 1]["stage"]:  # the row that ends a stage says the next
+                    axes.axvline(x[k], color="0.6", ls=":", lw=1)
         axes.set(title=f"recipe {name}", xlabel="million decisions", ylim=(0, 101))
         axes.grid(alpha=0.3)
         axes.legend(fontsize="x-small", loc="lower right")

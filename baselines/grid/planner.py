@@ -10,8 +10,8 @@ from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import PluginConfig
 from benchnav.navigation.planner import UNSOLVED
 
-from ..disc_planner import DiscConfig, DiscPlanner, Frame, Query, frame_of
-from ..ompl.planner import free_goal
+from ..clearance_planner import ClearanceConfig, free_goal
+from ..disc_planner import DiscPlanner, Frame, Query, frame_of
 from .lattice import MAX_CELLS, Lattice, joined, lattice, size_of
 from .search import Ends, search
 
@@ -19,7 +19,7 @@ _RINGS = (1, 3)  # places that ends are joined to: the square around them, or wh
 _Key = tuple[float, float, Frame]  # inflation [m], cell [m], frame
 
 
-class GridConfig(DiscConfig):
+class GridConfig(ClearanceConfig):
     """Parameters of both."""
 
     cell: float = Field(
@@ -44,7 +44,7 @@ class GridPlanner(DiscPlanner):
         self._lattices: WeakKeyDictionary[Map, dict[_Key, Lattice]] = WeakKeyDictionary()
 
     def nothing(self, map: Map, start: FloatArray, goal: FloatArray, radius: float) -> str:
-        query = Query(map, start, goal, radius, 0.0, self._checker(map, radius))
+        query = Query(map, start, goal, radius, 0.0, self.checker(map, radius))
         cells = [self.config.cell / 2**k for k in range(self.config.halvings + 1)]
         fit = [cell for cell in cells if self._fits(query, cell)]
         if not fit:

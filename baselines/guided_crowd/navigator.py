@@ -8,11 +8,10 @@ from pydantic import Field
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.configure import Spec, make
-from benchnav.navigation.navigator import Navigator, Need, PluginConfig, Training
+from benchnav.navigation.configure import Spec
+from benchnav.navigation.navigator import Navigator, Need, PluginConfig
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.row_table import RowTable
-from benchnav.plugins import NAVIGATORS
 from benchnav.threads import run_rows
 
 from ..orca.avoidance import LEAST, Avoidance, OrcaConfig, no_edges
@@ -92,12 +91,6 @@ class GuidedCrowd(Navigator):
     @property
     def fingerprint(self) -> str:
         return "" if self.config.path is None else fingerprint_of(self.config.path)
-
-    @property
-    def training(self) -> Training | None:
-        """What the navigator that leads learned from."""
-        led: Navigator = make(NAVIGATORS, self.config.leader, where="leader")
-        return led.training
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         self._avoidance.reset(briefings, rows)

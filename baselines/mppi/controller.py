@@ -36,7 +36,11 @@ class MppiConfig(PluginConfig):
     turn_noise: float = Field(
         0.5, gt=0, description="standard deviation of turn rates, as a share of the largest"
     )
-    margin: float = Field(0.05, ge=0, description="[m] nearer than which is a contact")
+    margin: float = Field(
+        0.05,
+        ge=0,
+        description="[m] nearer than which a neighbour is touched; half of it for what stands",
+    )
     contact: float = Field(20.0, ge=0, description="[m] cost of a contact; twice that if at once")
     probability: float = Field(
         1.0, ge=0, description="[m] cost of a collision probability (Eq. 24) of 1 all the time"
@@ -44,8 +48,11 @@ class MppiConfig(PluginConfig):
     back: float = Field(
         1.0, ge=0, description="[m] cost of touching at once a dynamic obstacle if it turned back"
     )
-    near: float = Field(3.0, ge=0, description="[m] cost of being as near as it gets all the time")
-    clearance: float = Field(0.4, gt=0, description="[m] nearer than which is near")
+    near: float = Field(
+        3.0, ge=0, description="[m] cost of touching a neighbour all the time; nearness costs less"
+    )
+    near_edges: float = Field(0.6, ge=0, description="[m] the same of touching what stands")
+    clearance: float = Field(0.4, gt=0, description="[m] from which on nothing is near")
     smooth: float = Field(
         0.1, ge=0, description="[m] cost of a change by the whole preferred speed or turn rate"
     )
@@ -83,7 +90,9 @@ class Mppi(Controller):
             edges,
         )  # fmt: skip
         new = plan.reshape(rows, *plan.shape[2:]).copy()
-        weights = np.array([c.contact, c.probability, c.near, c.smooth, c.clearance, c.back])
+        weights = np.array(
+            [c.contact, c.probability, c.near, c.smooth, c.clearance, c.back, c.near_edges]
+        )
         run_rows(
             control, rows, *flat(rows, arrays), self._noise(observation), c.tick,
             np.array([c.speed_noise, c.turn_noise]), c.temperature, c.control_cost, c.margin,

@@ -14,7 +14,7 @@ from benchnav.envs.collision import probability
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.kernels import kernel
 
-WEIGHTS = 6  # of contact, probability, nearness, changes; the clearance [m] that is near; of back
+WEIGHTS = 7  # contact, probability, near, smooth, clearance [m], back, near_edges: see `MppiConfig`
 _MOVER = int(Kind.DYNAMIC)
 
 
@@ -23,7 +23,7 @@ def cost_of(
     plan: FloatArray, tick: float, x: float, y: float, heading: float, last: FloatArray,
     goal_x: float, goal_y: float, final: bool, body: FloatArray, margin: float,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: int,
-    start: FloatArray, end: FloatArray, edges: int, weights: FloatArray,
+    start: FloatArray, end: FloatArray, far: FloatArray, edges: int, weights: FloatArray,
 ) -> tuple[float, bool]:  # fmt: skip
     """(cost [m], touches) of a plan.
 
@@ -42,7 +42,7 @@ def cost_of(
         goal_y: target [m].
         final: the path ends in the target.
         body: (6,) see `baselines.sensed.BODY`.
-        margin: [m] within which a contact is counted.
+        margin: [m] within which a contact is counted; half of it beside what stands.
         position: (K, 2) of neighbours [m].
         velocity: (K, 2) [m/s].
         radius: (K,) [m].
@@ -50,12 +50,14 @@ def cost_of(
         count: neighbours that count.
         start: (E, 2) of edges [m].
         end: (E, 2) [m].
+        far: (E,) [m] of each from (x, y).
         edges: edges that count.
-        weights: (6,) see `WEIGHTS`.
+        weights: (7,) see `WEIGHTS`.
     """
     steps = len(plan)
     left = math.sqrt((goal_x - x) ** 2 + (goal_y - y) ** 2)
-    total, passed, turned = 0.0, False, False
+    total, passed, turned, moved = 0.0, False, False, 0.0
+    within = body[0] + max(weights[4], margin)
     v0, w0 = last[0], last[1]
     ahead_x, ahead_y = (goal_x - x, goal_y - y)
     for t in range(steps):
@@ -74,13 +76,16 @@ def cost_of(
         if back < margin and not turned:
             turned = True
             total += weights[5] * (steps - t) / steps
-        gap = min(gap, _edges(x, y, body[0], start, end, edges, gap))
-        if gap < margin:
+        moved += v * tick
+        wall = _edges(x, y, start, end, far, edges, within, moved) - body[0]
+        if gap < margin or wall < 0.5 * margin:
             rest = steps - t
             return total + (rest * left + weights[0] * rest) / steps + weights[0], True
         total += weights[1] * risk / steps
         if gap < weights[4]:
             total += weights[2] * (1.0 - gap / weights[4]) / steps
+        if wall < weights[4]:
+            total += weights[6] * (1.0 - wall / weights[4]) / steps
         if passed:
             left -= v * tick
         else:
@@ -125,15 +130,29 @@ def _nearer(dx: float, dy: float, reach: float, gap: float) -> float:
 
 
 @kernel
-def _edges(
-    x: float, y: float, size: float, start: FloatArray, end: FloatArray, edges: int, gap: float
-) -> float:
-    """Gap [m] to the nearest edge, where it is less than ``gap``."""
-    far = gap + size
-    least = far * far
+def edge_distances(
+    x: float, y: float, start: FloatArray, end: FloatArray, edges: int, out: FloatArray
+) -> None:
+    """Fill ``out`` (E,) with the distance [m] of each edge from (x, y)."""
     for k in range(edges):
         px, py = nearest_on_segment(x, y, start[k, 0], start[k, 1], end[k, 0], end[k, 1])
-        px -= x
-        py -= y
-        least = min(least, px * px + py * py)
-    return math.sqrt(least) - size
+        out[k] = math.sqrt((px - x) ** 2 + (py - y) ** 2)
+
+
+@kernel
+def _edges(
+    x: float, y: float, start: FloatArray, end: FloatArray, far: FloatArray, edges: int,
+    within: float, moved: float,
+) -> float:  # fmt: skip
+    """Distance [m] to the nearest edge where that is less than ``within``.
+
+    An edge that was ``far`` away is no nearer than that less what was ``moved`` since.
+    """
+    least = within * within
+    for k in range(edges):
+        if far[k] - moved < within:
+            px, py = nearest_on_segment(x, y, start[k, 0], start[k, 1], end[k, 0], end[k, 1])
+            px -= x
+            py -= y
+            least = min(least, px * px + py * py)
+    return math.sqrt(least)

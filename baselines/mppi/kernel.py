@@ -11,7 +11,7 @@ import numpy as np
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.kernels import kernel
 
-from .cost import cost_of
+from .cost import cost_of, edge_distances
 from .weights import disturbed, moved_on, weigh
 
 
@@ -91,7 +91,7 @@ def control(
         temperature: λ [m].
         control_cost: γ / λ: what plans cost that leave the last one.
         margin: [m] within which a contact is counted.
-        weights: (6,) see `cost.WEIGHTS`.
+        weights: (7,) see `cost.WEIGHTS`.
         out: (N, H, 2).
     """
     samples, steps, most = noise.shape[1], plan.shape[1], position.shape[1]
@@ -104,6 +104,7 @@ def control(
         np.empty(most),
         np.empty(most, np.int8),
     )
+    far = np.empty(start.shape[1])
     for i in range(low, high):
         if not active[i]:
             continue
@@ -112,6 +113,7 @@ def control(
         n = gathered(
             i, x, y, way, tick * steps, position, velocity, radius, kind, count[i], p, u, r, what
         )
+        edge_distances(x, y, start[i], end[i], edges[i], far)
         sigma[0], sigma[1] = spread[0] * me[2], spread[1] * me[3]
         bottom[0], bottom[1], top[0], top[1] = 0.0, -me[3], me[2], me[3]
         moved_on(plan[i], me[4] / tick, base)
@@ -127,7 +129,7 @@ def control(
                 disturbed(base, noise[i, k], sigma, bottom, top, tried[k])
             cost[k], touches = cost_of(
                 tried[k], tick, x, y, heading[i], last, gx, gy, final, me, margin,
-                p, u, r, what, n, start[i], end[i], edges[i], weights,
+                p, u, r, what, n, start[i], end[i], far, edges[i], weights,
             )  # fmt: skip
             cost[k] += control_cost * temperature * leaving(base, tried[k], sigma)
             if cost[k] < cost[best]:
@@ -137,7 +139,7 @@ def control(
         averaged(weight, tried, mean)
         _, touches = cost_of(
             mean, tick, x, y, heading[i], last, gx, gy, final, me, margin,
-            p, u, r, what, n, start[i], end[i], edges[i], weights,
+            p, u, r, what, n, start[i], end[i], far, edges[i], weights,
         )  # fmt: skip
         # an addition: the mean of ways round both sides of something leads into it
         out[i] = tried[best] if touches and not all_touch else mean

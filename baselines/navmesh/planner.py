@@ -10,7 +10,8 @@ from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import PluginConfig
 from benchnav.navigation.planner import UNSOLVED
 
-from ..disc_planner import DiscConfig, DiscPlanner, Frame, Query, frame_of
+from ..clearance_planner import ClearanceConfig
+from ..disc_planner import DiscPlanner, Frame, Query, frame_of
 from .free_polygon import free_polygons
 from .mesh import Mesh, mesh_of
 
@@ -18,15 +19,15 @@ _AROUND = 1.0  # [m] of room around all that stands
 
 
 class NavMesh(DiscPlanner):
-    """Triangles of the free space of a disc (Delaunay, constrained), A* over their sides, a
-    string pulled taut (Mononen 2010).
+    """A* over the sides of free space's triangles (constrained Delaunay), a string pulled taut.
 
-    The mesh is made once for a map and a radius. The path is the shortest of its row of
-    triangles, and clear of obstacles, whose corners' arcs are approximated from outside;
-    which row is found is not always the best.
+    The string is pulled by the funnel algorithm (Mononen 2010). The mesh is made once for
+    a map and a radius. The path is the shortest of its row of triangles, and clear of
+    obstacles, whose corners' arcs are approximated from outside; which row is found is not
+    always the best.
     """
 
-    class Config(DiscConfig):
+    class Config(ClearanceConfig):
         """Parameters."""
 
         segments: int = Field(

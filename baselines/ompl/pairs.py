@@ -2,7 +2,8 @@
 
 from pydantic import Field
 
-from benchnav.navigation.hierarchical import GuidedConfig, Hierarchical, PartSpec
+from benchnav.navigation.guided_config import GuidedConfig, PartSpec
+from benchnav.navigation.hierarchical import Hierarchical
 
 from ..orca.avoidance import OrcaConfig
 

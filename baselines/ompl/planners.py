@@ -13,8 +13,8 @@ from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import PluginConfig
 from benchnav.navigation.planner import UNSOLVED
 
+from ..checker import Checker
 from .budget import Budget
-from .checker import Checker
 from .planner import MOST_SEED, OmplConfig, OmplPlanner
 from .roadmap import Roadmap, grow
 from .search import Bounds, Query, search

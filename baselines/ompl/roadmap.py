@@ -13,8 +13,8 @@ import numpy as np
 
 from benchnav.arrays import FloatArray
 
+from ..checker import Checker
 from .budget import Budget
-from .checker import Checker
 from .search import Bounds, load, space_information
 
 _TRIED = 60  # milestones, nearest first, to which a start or goal may be connected

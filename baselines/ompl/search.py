@@ -15,8 +15,8 @@ import numpy as np
 from benchnav.arrays import FloatArray
 from benchnav.errors import MissingExtraError
 
+from ..checker import Checker
 from .budget import Budget
-from .checker import Checker
 
 Bounds = tuple[float, float, float, float]  # xmin, ymin, xmax, ymax [m]
 Make = Callable[[Any, Any], Any]  # (ompl.geometric, space information) → planner

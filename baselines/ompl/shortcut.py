@@ -7,7 +7,7 @@ import numpy as np
 
 from benchnav.arrays import FloatArray
 
-from .checker import Checker
+from ..checker import Checker
 
 _Point = tuple[float, float]
 _ROUNDS = 20

@@ -9,7 +9,6 @@ from benchnav.arena.world import World
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.agent_vec_env import AgentVecEnv
 from benchnav.envs.encoders.catalogue import encoder
-from benchnav.envs.making import driver_specs
 from benchnav.envs.reward import RewardWeights
 from benchnav.navigation.configure import Spec
 from benchnav.scenario.catalogue import find
@@ -59,7 +58,7 @@ def validation_batches(recipe: Recipe) -> dict[str, AgentBatch]:
 
 def _pool(name: str, split: str, count: int) -> Pool:
     scenario = find(name)
-    return Pool([build(scenario, split, seed) for seed in range(count)], driver_specs(scenario))
+    return Pool([build(scenario, split, seed) for seed in range(count)], scenario.driver_specs)
 
 
 def _batch(recipe: Recipe, pool: Pool, rows: int) -> AgentBatch:

@@ -1,6 +1,7 @@
 """`benchnav show`: one thing by name, with its parameters, units and source."""
 
 import inspect
+import re
 from collections.abc import Iterator
 from typing import Annotated, Any
 
@@ -9,8 +10,11 @@ import typer
 from benchnav.cli.console import columns, put
 from benchnav.cli.listing import REGISTRIES, Kind, sentence
 from benchnav.cli.scenario_page import scenario_page
-from benchnav.errors import UsageError, did_you_mean
-from benchnav.plugins import Registry
+from benchnav.errors import BenchnavError, UsageError, did_you_mean
+from benchnav.navigation.pair import MAPPING, NO_PLANNER, is_pair
+from benchnav.plugins import CONTROLLERS, NAVIGATORS, PLANNERS, Registry
+
+WIDEST = 40  # characters of a type
 
 
 def show(
@@ -25,9 +29,10 @@ def show(
     blocks = [
         _plugin(kind, registry, name)
         for kind, registry in REGISTRIES.items()
-        if name in registry.names() or (kind == Kind.NAVIGATORS and _is_class(name))
+        if name in registry.names()
+        or (kind == Kind.NAVIGATORS and _is_class(name) and not is_pair(name))
     ]
-    blocks += [*_scenario(name), *_suite(name)]
+    blocks += [*_pair(name), *_scenario(name), *_suite(name)]
     if not blocks:
         raise UsageError(
             f"NAME must be something that 'benchnav list' lists. Got {name!r} instead."
@@ -47,13 +52,46 @@ def _plugin(kind: Kind, registry: Registry, name: str) -> str:
     facts.append(("comes from", f"{source.distribution}, {source.value}{_place(thing)}"))
     if kind == Kind.METRICS:
         facts += _metric_facts(thing)
-    needs = getattr(thing, "needs", None)
-    if isinstance(needs, frozenset):
-        facts.append(("needs", ", ".join(sorted(needs)) or "nothing beyond its own state and goal"))
+    if kind in (Kind.NAVIGATORS, Kind.CONTROLLERS):
+        facts.append(("needs", _needs(registry, name)))
     if isinstance(getattr(thing, "command", None), str):
         facts.append(("answers", f"a {thing.command} per agent"))
     text = f"{name}\n" + columns([("  " + key, value) for key, value in facts])
     return f"{text}\n  parameters\n{_parameters(thing)}" if hasattr(thing, "Config") else text
+
+
+def _needs(registry: Registry, name: str) -> str:
+    """What it needs as it is made without parameters."""
+    from benchnav.navigation.configure import make
+
+    try:
+        required = make(registry, name).required
+    except BenchnavError as error:
+        return f"what it says once it can be made: {error}"
+    return ", ".join(sorted(required)) or "nothing beyond its own state and goal"
+
+
+def _pair(name: str) -> Iterator[str]:
+    """A navigator named by its parts, and these."""
+    from benchnav.navigation.configure import make
+
+    if not is_pair(name):
+        return
+    navigator = make(NAVIGATORS, name)
+    distributions = dict.fromkeys(part.distribution for part in navigator.parts)
+    facts = [
+        ("is", f"a navigator: {sentence(type(navigator))}"),
+        ("comes from", ", ".join(distributions)),
+        ("needs", _needs(NAVIGATORS, name)),
+        ("answers", f"a {navigator.command} per agent"),
+    ]
+    head = f"{name}\n" + columns([("  " + key, value) for key, value in facts])
+    others = _parameters(type(navigator), named=(PLANNERS.kind, CONTROLLERS.kind, MAPPING))
+    yield f"{head}\n  parameters beside its parts'\n{others}"
+    planner, controller = name.split("+")[-2:]
+    if planner != NO_PLANNER:
+        yield _plugin(Kind.PLANNERS, PLANNERS, planner)
+    yield _plugin(Kind.CONTROLLERS, CONTROLLERS, controller)
 
 
 def _metric_facts(metric: Any) -> list[tuple[str, str]]:
@@ -68,10 +106,12 @@ def _metric_facts(metric: Any) -> list[tuple[str, str]]:
     return [*facts, ("reference", metric.reference)]
 
 
-def _parameters(plugin: Any) -> str:
+def _parameters(plugin: Any, named: tuple[str, ...] = ()) -> str:
+    """One line each, without those ``named`` elsewhere."""
     rows = [
         ("    " + key, _type(field.annotation), _default(field), field.description or "")
         for key, field in plugin.Config.model_fields.items()
+        if key not in named
     ]
     return columns(rows) if rows else "    none"
 
@@ -79,7 +119,8 @@ def _parameters(plugin: Any) -> str:
 def _type(annotation: Any) -> str:
     if isinstance(annotation, type):
         return annotation.__name__
-    return str(annotation).replace("typing.", "").replace("NoneType", "None")
+    text = re.sub(r"\b(?:\w+\.)+(?=\w)", "", str(annotation)).replace("NoneType", "None")
+    return text if len(text) <= WIDEST else "one of several"  # which, its description says
 
 
 def _default(field: Any) -> str:

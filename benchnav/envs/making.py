@@ -12,9 +12,7 @@ from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder as encoder_called
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import ConfigError, UsageError, did_you_mean
-from benchnav.navigation.configure import Spec
 from benchnav.scenario.catalogue import find
-from benchnav.scenario.scenario import Scenario
 from benchnav.world.build import build
 
 Reward = RewardWeights | Mapping[str, Any] | None
@@ -37,11 +35,6 @@ def make_worlds(scenario: str, split: str, count: int) -> list[World]:
         raise UsageError(f"An environment must have at least 1 world. Got {count} instead.")
     found = find(scenario)
     return [build(found, split, seed) for seed in range(count)]
-
-
-def driver_specs(scenario: Scenario) -> tuple[Spec, ...]:
-    """The navigators of the scenario's teams that are not evaluated."""
-    return tuple({"type": d.type, **d.params} for d in scenario.drivers)
 
 
 def weights_of(reward: Reward) -> RewardWeights:
@@ -67,7 +60,7 @@ def make_batch(
     encoders raise.
     """
     chosen, weights = encoder_called(encoder), weights_of(reward)
-    pool, drivers = make_worlds(scenario, split, worlds), driver_specs(find(scenario))
+    pool, drivers = make_worlds(scenario, split, worlds), find(scenario).driver_specs
     rows, A = 1, max(len(world.agents) for world in pool)
     if slots is not None:
         rows = max(slots // A, 1)

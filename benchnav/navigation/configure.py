@@ -13,9 +13,10 @@ from benchnav.errors import (
     BrokenPluginError,
     ConfigError,
     PluginError,
+    UnknownPluginError,
     did_you_mean,
 )
-from benchnav.navigation.pair import HIERARCHICAL, is_pair, parameters_of
+from benchnav.navigation.pair import HIERARCHICAL, hint, is_pair, parameters_of
 from benchnav.plugins import NAVIGATORS, Registry
 
 Spec = str | Mapping[str, Any]
@@ -54,7 +55,11 @@ def configure(registry: Registry, spec: Spec, *, where: str = "") -> tuple[Any, 
     Raises what `make` raises.
     """
     name, parameters = split(registry, spec, where=where)
-    plugin = registry.load(name)
+    try:
+        plugin = registry.load(name)
+    except UnknownPluginError as error:
+        also = hint(name) if registry is NAVIGATORS else ""
+        raise UnknownPluginError(f"{error}{also}") from None
     declared = getattr(plugin, "Config", None)
     if not (isinstance(declared, type) and issubclass(declared, BaseModel)):
         raise BrokenPluginError(

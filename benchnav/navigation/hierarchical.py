@@ -1,20 +1,21 @@
 """Any planner with any controller; itself a navigator."""
 
 from collections.abc import Sequence
-from typing import Any, ClassVar, Self
+from typing import ClassVar
 
 import numpy as np
-from pydantic import Field, field_validator, model_validator
+from pydantic import Field, field_validator
 
 from benchnav.arena.sensing import Sensing
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.sweep import clearance
 from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.configure import configure, make, split
+from benchnav.navigation.configure import make
 from benchnav.navigation.controller import Controller
+from benchnav.navigation.guided_config import GuidedConfig, PartSpec, resolved
 from benchnav.navigation.learned_map import way_is_free
 from benchnav.navigation.map import Map
-from benchnav.navigation.mapping import Mapping, MappingConfig
+from benchnav.navigation.mapping import Mapping
 from benchnav.navigation.navigator import Navigator, Need, PluginConfig, Training
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.pair import NO_PLANNER
@@ -22,94 +23,11 @@ from benchnav.navigation.path_tracker import PathTracker
 from benchnav.navigation.planner import Plan, Planner
 from benchnav.navigation.replanning import Policies, Replan, Watch
 from benchnav.navigation.retreat import Retreat
-from benchnav.plugins import CONTROLLERS, PLANNERS, Registry, Source
-
-PartSpec = str | dict[str, Any]
+from benchnav.plugins import CONTROLLERS, PLANNERS, Source
 
 TOUCH = 1e-3  # [m] by which a path may come nearer than its disc's radius: rounding blocks nothing
 LEAST_DISC = 0.5  # of its radius: for a smaller disc no agent that stands too close is planned
 CONTACT = 1e-5  # [m] from what is known at which a disc still counts as standing in it
-
-
-class GuidedConfig(PluginConfig):
-    """Parameters that every pair of planner and controller has."""
-
-    planner: PartSpec = Field(
-        "ompl.rrt-connect",
-        validate_default=True,
-        description="a planner: name or {type: name, …}; none: the goal is the target, and no map"
-        " is needed",
-    )
-    mapping: MappingConfig | None = Field(
-        None,
-        description="true or {…}: plan on a map that is made of the granted one, if there is any,"
-        " and of what the agents sense",
-    )
-    replan: Replan | None = Field(
-        None,
-        description="when to plan again: never; when the map changes (map-change); when the rest"
-        " of the path leads through what the map now holds, or there was no path and the map"
-        " changed (blocked); at intervals ({every: seconds}); or a list of these. Unless told:"
-        " blocked with mapping, else map-change",
-    )
-    pause: float = Field(
-        0.4,
-        ge=0,
-        description="[s] at least between plans of an agent because its path is blocked, or because"
-        " of what mapping learned",
-    )
-    patience: float = Field(
-        4.0,
-        gt=0,
-        description="[s] without getting a radius away, after which an agent that may"
-        " plan again does (twice as long if that does not help, and so on): others can push it"
-        " round a corner that its path does not turn",
-    )
-    give_way: float = Field(
-        0.0,
-        ge=0,
-        le=1,
-        description="probability that an agent whose patience ends goes back the way it came for 2"
-        " to 6 s before it plans again: two that meet in a door wait for each other otherwise",
-    )
-    lookahead: float | None = Field(
-        None,
-        gt=0,
-        description="[m] of path between agent and target, at most; unless told, as the controller"
-        " declares",
-    )
-    cut: float | None = Field(
-        None,
-        gt=0,
-        description="[m] by which corners of the path may be missed; unless told, as the controller"
-        " declares",
-    )
-
-    @field_validator("mapping", mode="before")
-    @classmethod
-    def _take_a_flag(cls, given: Any) -> Any:
-        return MappingConfig() if given is True else None if given is False else given
-
-    @field_validator("planner")
-    @classmethod
-    def _resolve_planner(cls, part: PartSpec) -> PartSpec:
-        return part if part == NO_PLANNER else resolved(PLANNERS, part)
-
-    @model_validator(mode="after")
-    def _refuse_a_map_for_nobody(self) -> Self:
-        if self.mapping is not None and self.planner == NO_PLANNER:
-            raise ValueError("given a planner where it maps")
-        return self
-
-
-def resolved(registry: Registry, part: PartSpec) -> dict[str, Any]:
-    """``{type: name, …every parameter}`` of a part.
-
-    Raises what `benchnav.navigation.configure.configure` raises.
-    """
-    name, _ = split(registry, part, where=registry.kind)
-    _, config = configure(registry, part, where=registry.kind)
-    return {"type": name, **config.model_dump(mode="json")}
 
 
 class Hierarchical(Navigator):
@@ -178,8 +96,7 @@ class Hierarchical(Navigator):
 
     @property
     def fingerprint(self) -> str:
-        parts = (self.planner, self.controller)
-        return " ".join(part.fingerprint for part in parts if part and part.fingerprint)
+        return self.controller.fingerprint
 
     @property
     def parts(self) -> tuple[Source, ...]:
@@ -223,26 +140,23 @@ class Hierarchical(Navigator):
         watch, policies = self._watch[row], self._policies
         if map is None and self.mapping is None:
             return np.zeros(len(place), np.bool_)
-        version = np.array([self._version(row, agent, map) for agent in range(len(place))])
-        changed = version != watch.version
+        version = self._versions(row, map)
+        changed: BoolArray = version != watch.version
+        due = changed & policies.map_change
+        if self.mapping is not None:  # it learns all the time
+            due = due & self._ready(watch, time)
         if policies.blocked:
             for agent in np.flatnonzero(active & (version != watch.looked)):
                 self._look(row, int(agent), map, int(version[agent]))
-        learned = watch.blocked if policies.blocked else np.zeros(len(place), np.bool_)
-        due = changed & policies.map_change
-        if self.mapping is None:
-            due = due | self._ready(watch, learned, time)
-        else:
-            due = self._ready(watch, due | learned, time)
-        due |= time - watch.planned >= policies.interval * (1.0 - 1e-9)
-        solved = np.array([plan.solved for plan in self.plans[row]], np.bool_)
-        more = 1.0 if self.config.give_way else 2.0
-        waited = watch.waited(place, time, self.config.patience, more)
-        if self.config.give_way:
-            due = self._give_way(row, place, due, active & waited, time)
-        free = ~self._retreats[row].going(time)
-        again: BoolArray = due | (waited & (solved | changed) & free)
-        return again
+            due = due | (watch.blocked & self._ready(watch, time))
+        due = due | (time - watch.planned >= policies.interval * (1.0 - 1e-9))
+        if not self.config.give_way:
+            waited = watch.waited(place, time, self.config.patience, 2.0)
+            return due | (waited & (watch.solved | changed))
+        waited = watch.waited(place, time, self.config.patience, 1.0)
+        due = self._give_way(row, place, due, active & waited, time)
+        again = waited & (watch.solved | changed) & ~self._retreats[row].going(time)
+        return due | again
 
     def _give_way(
         self, row: int, place: FloatArray, due: BoolArray, stuck: BoolArray, time: float
@@ -259,15 +173,16 @@ class Hierarchical(Navigator):
         again: BoolArray = (due | came) & ~retreat.going(time)
         return again
 
-    def _ready(self, watch: Watch, who: BoolArray, time: float) -> BoolArray:
-        ready: BoolArray = who & (time - watch.planned >= self.config.pause * (1.0 - 1e-9))
+    def _ready(self, watch: Watch, time: float) -> BoolArray:
+        """(A,) whose last plan is long enough ago."""
+        ready: BoolArray = time - watch.planned >= self.config.pause * (1.0 - 1e-9)
         return ready
 
     def _look(self, row: int, agent: int, map: Map | None, version: int) -> None:
         """Hold the rest of a path against the map as it is now."""
         watch = self._watch[row]
         watch.looked[agent] = version
-        if not self.plans[row][agent].solved:
+        if not watch.solved[agent]:
             watch.blocked[agent] |= version != watch.version[agent]
             return
         way, radius = self._tracker.rest(row, agent), float(watch.radius[agent]) - TOUCH
@@ -277,18 +192,27 @@ class Hierarchical(Navigator):
         watch, plans = self._watch[row], self.plans[row]
         if self.planner is None or (map is None and self.mapping is None):
             return
-        known = map if self.mapping is None else self.mapping.map(row, agent)
-        assert known is not None  # noqa: S101 - one of them is
-        told, radius = watch.briefing, self._disc(row, agent, start)
-        plan = self.planner.plan(
-            known, start, told.goal[agent], radius, told.goal_tolerance, watch.streams[agent]
-        )
+        plan, radius = self._answer(row, agent, map, start)
+        if not plan.solved and self.mapping is not None and self.mapping.doubt(row, agent):
+            plan, radius = self._answer(row, agent, map, start)
         plans[agent : agent + 1] = [plan]
         watch.planned[agent], watch.blocked[agent] = time, False
-        watch.version[agent] = watch.looked[agent] = self._version(row, agent, map)
+        watch.version[agent] = watch.looked[agent] = self._versions(row, map)[agent]
+        watch.solved[agent] = plan.solved
         if plan.solved:
             watch.radius[agent] = radius
             self._tracker.follow(row, agent, plan.path)
+
+    def _answer(
+        self, row: int, agent: int, map: Map | None, start: FloatArray
+    ) -> tuple[Plan, float]:
+        """(what the planner says now, [m] radius of the disc that it was asked for)."""
+        known = map if self.mapping is None else self.mapping.map(row, agent)
+        assert self.planner is not None and known is not None  # noqa: S101, PT018 - see `_plan`
+        told, radius = self._watch[row].briefing, self._disc(row, agent, start)
+        rng = self._watch[row].streams[agent]
+        goal, tolerance = told.goal[agent], told.goal_tolerance
+        return self.planner.plan(known, start, goal, radius, tolerance, rng), radius
 
     def _disc(self, row: int, agent: int, start: FloatArray) -> float:
         """[m] The agent's radius, or less where it stands in what it mapped: a disc's octagon."""
@@ -299,10 +223,12 @@ class Hierarchical(Navigator):
         room = clearance(x, y, self.mapping.capsules(row, agent)) - CONTACT
         return min(radius, max(room, LEAST_DISC * radius))
 
-    def _version(self, row: int, agent: int, map: Map | None) -> int:
+    def _versions(self, row: int, map: Map | None) -> IntArray:
+        """(A,) of the map that each agent plans on."""
+        count = len(self._watch[row].briefing)
         if self.mapping is not None:
-            return self.mapping.version(row, agent)
-        return 0 if map is None else map.revision
+            return self.mapping.versions(row, count)
+        return np.full(count, 0 if map is None else map.revision)
 
     def _capsules(self, row: int, agent: int, map: Map | None) -> FloatArray:
         if self.mapping is not None:

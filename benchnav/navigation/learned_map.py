@@ -8,7 +8,6 @@ import math
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
-from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.rotation import cos_sin
 from benchnav.geometry.sweep import is_free_of
 from benchnav.kernels import kernel
@@ -21,7 +20,7 @@ _APOTHEM = 0.5 + _EIGHTH  # of a regular octagon of side 1
 _CORNER = math.sqrt(1.0 + 0.25 / _APOTHEM**2)  # distance of its corners, of apothem 1
 SAME = 1e-6  # [m] within which two edges lie on one line, or meet
 DOT = 0.05  # [m] radius of the disc that stands for a guess
-EXPLAINED = 0.05  # [m] from a stopped disc within which something known has stopped it
+FURTHER = 0.1  # [m] that a stopped disc would have to go to enter what explains why it stopped
 DOUBT = 0.1  # [m] by which a ray's disc must enter what is known to prove it gone: the cut side
 # of an octagon lies outside of its disc, and guesses are not exact
 _WALL, _STATIC = int(Kind.WALL), int(Kind.STATIC)
@@ -124,10 +123,9 @@ def with_guess(
 
     Returns how many capsules there are.
     """
+    ex, ey = cx + FURTHER * ux, cy + FURTHER * uy
     for k in range(n):
-        reach = r + held[k, 4] + EXPLAINED
-        x, y = nearest_on_segment(cx, cy, held[k, 0], held[k, 1], held[k, 2], held[k, 3])
-        if (x - cx) * (x - cx) + (y - cy) * (y - cy) <= reach * reach:
+        if not is_free_of(cx, cy, ex, ey, r, held[k]):
             return n
     x, y = cx + (r + DOT) * ux, cy + (r + DOT) * uy
     held[n, 0], held[n, 1], held[n, 2], held[n, 3], held[n, 4] = x, y, x, y, DOT

@@ -126,9 +126,28 @@ class Mapping:
         parts = (edges.start, edges.end, edges.before, edges.after)
         return np.concatenate(parts, axis=-1), edges.count
 
+    def doubt(self, row: int, agent: int) -> bool:
+        """Forget the agent's guesses; False where there are none."""
+        m = self._place(agent)
+        count = self._count[row, m]
+        sure = self._owner[row, m, :count] != GUESSED
+        kept = int(sure.sum())
+        if kept == count:
+            return False
+        self._capsules[row, m, :kept] = self._capsules[row, m, :count][sure]
+        self._owner[row, m, :kept] = self._owner[row, m, :count][sure]
+        self._count[row, m] = kept
+        self._version[row, m] += 1
+        return True
+
     def version(self, row: int, agent: int) -> int:
         """Rises whenever the agent's map changes."""
         return int(self._version[row, self._place(agent)])
+
+    def versions(self, row: int, agents: int) -> IntArray:
+        """(A,) the version of each agent's map."""
+        own: IntArray = self._version[row, :agents]
+        return np.repeat(own[:1], agents) if self.config.share else own
 
     def capsules(self, row: int, agent: int) -> FloatArray:
         """(P, 5) what the agent's map holds."""

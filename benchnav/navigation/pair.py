@@ -26,6 +26,15 @@ def is_pair(name: str) -> bool:
     return "+" in name and name not in NAVIGATORS.names()
 
 
+def hint(name: str) -> str:
+    """How a navigator is named by the part ``name``; "" where it is none."""
+    if name in PLANNERS.names():
+        return f" It is a planner: {name}+CONTROLLER is a navigator."
+    if name in CONTROLLERS.names():
+        return f" It is a controller: PLANNER+{name} and {NO_PLANNER}+{name} are navigators."
+    return ""
+
+
 def parameters_of(name: str, given: Mapping[str, Any]) -> dict[str, Any]:
     """What `hierarchical` must be given to be the pair ``name`` with the parameters ``given``.
 

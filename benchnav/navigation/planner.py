@@ -44,11 +44,6 @@ class Planner(ABC):
         """False where a wall-clock budget decides what it answers."""
         return True
 
-    @property
-    def fingerprint(self) -> str:
-        """Of what it reads from files beyond its Config and version."""
-        return ""
-
     @abstractmethod
     def plan(
         self,

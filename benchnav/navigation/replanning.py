@@ -41,6 +41,7 @@ class Watch:
         self.briefing = briefing
         self.streams = agent_streams(briefing)
         self.radius = briefing.radius.copy()  # (A,) [m] of the disc that the path is for
+        self.solved = np.zeros(count, np.bool_)  # (A,) its last plan was
         self.blocked = np.zeros(count, np.bool_)  # (A,) its path was found to be
         self.looked = np.zeros(count, np.int64)  # (A,) version of the map that it was held against
         self.version = np.zeros(count, np.int64)  # (A,) of the map that was planned on

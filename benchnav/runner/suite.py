@@ -61,7 +61,7 @@ class Cell:
         scenario, entry = self.scenario, self.entry
         return Assignment(
             scenario.identity, scenario.hash, self.split, self.track, entry.label, entry.spec,
-            tuple({"type": d.type, **d.params} for d in scenario.drivers),
+            scenario.driver_specs,
             navigator_hash=entry.hash, rehearsals=entry.rehearsal,
             leader=entry.leader.spec if entry.leader else None,
         )  # fmt: skip

@@ -115,6 +115,11 @@ class Scenario(Spec):
         return tuple(found)
 
     @property
+    def driver_specs(self) -> tuple[dict[str, Any], ...]:
+        """What `benchnav.navigation.configure.make` takes for each of `drivers`."""
+        return tuple({"type": d.type, **d.params} for d in self.drivers)
+
+    @property
     def granted_tracks(self) -> tuple[Track, ...]:
         """Knowledge tracks in which the scenario may be run; stale only where anything moves."""
         if self.tracks is not None:

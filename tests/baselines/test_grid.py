@@ -3,11 +3,11 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
+from benchnav_baselines.checker import PlanarChecker
 from benchnav_baselines.disc_planner import Query, frame_of
 from benchnav_baselines.grid.lattice import joined, lattice
 from benchnav_baselines.grid.planner import straightened
 from benchnav_baselines.grid.search import Ends, search
-from benchnav_baselines.ompl.checker import PlanarChecker
 
 from benchnav.geometry.sweep import motion_is_free
 from benchnav.navigation.map import Map

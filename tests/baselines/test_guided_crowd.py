@@ -30,6 +30,7 @@ from benchnav.plugins import NAVIGATORS
 from benchnav.runner.recorder import Recorder
 from benchnav.runner.rehearsal import perform
 from benchnav.runner.rollout import Assignment, drive, drivers_of
+from benchnav.runner.suite import load_suite
 from benchnav.world.simulation import Simulation
 from tests import worlds
 from tests.baselines.crowds import briefing
@@ -367,9 +368,14 @@ def test_the_file_is_part_of_what_an_entry_is(tmp_path):
     assert make(NAVIGATORS, "guided-crowd").fingerprint == ""
 
 
-def test_it_learned_what_its_leader_learned():
-    assert make(NAVIGATORS, "guided-crowd").training is not None
-    assert make(NAVIGATORS, {"type": "guided-crowd", "leader": "orca"}).training is None
+def test_its_entry_learned_what_its_leader_learned(tmp_path):
+    leaders = ("recurrent-ppo", "orca")
+    asked = [f"{{type: guided-crowd, leader: {who}, label: {who}}}" for who in leaders]
+    path = tmp_path / "s.yaml"
+    path.write_text(f"name: s\nscenarios: [groups/crossing]\nnavigators: [{', '.join(asked)}]\n")
+    learned, planned = load_suite(str(path)).entries
+    assert learned.training == make(NAVIGATORS, "recurrent-ppo").training is not None
+    assert planned.training is None
 
 
 def performed(world, **parameters):

@@ -16,8 +16,8 @@ from benchnav.scenario.mesh_section import SIMPLIFY, THIN, mesh_solids
 
 pytest.importorskip("fcl")
 trimesh = pytest.importorskip("trimesh")
+from benchnav_baselines.checker import PlanarChecker  # noqa: E402
 from benchnav_baselines.mesh_checker import MeshChecker, winding_number  # noqa: E402
-from benchnav_baselines.ompl.checker import PlanarChecker  # noqa: E402
 
 DATA = Path(os.environ.get("BENCHNAV_DATA", Path(__file__).parents[2] / ".." / "shared" / "data"))
 EXACT = 2e-5  # [m] what FCL's solver leaves open

@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from benchnav_baselines.mppi.controller import Mppi
-from benchnav_baselines.mppi.cost import cost_of
+from benchnav_baselines.mppi.cost import cost_of, edge_distances
 from benchnav_baselines.mppi.kernel import control
 from benchnav_baselines.mppi.weights import disturbed, moved_on, weigh
 
@@ -92,12 +92,12 @@ def test_noise_runs_straight_between_knots_and_stays_within_limits():
     np.testing.assert_allclose(out[:, 1], [0.5, 2.5, 3.0, 2.5, 0.5])
 
 
-WEIGHTS = np.array([8.0, 1.5, 0.7, 0.3, 0.4, 2.5])
+WEIGHTS = np.array([8.0, 1.5, 0.7, 0.3, 0.4, 2.5, 1.1])
 
 
 def slow_cost(plan, tick, place, heading, last, goal, final, body, margin, near, edges):
     """The twin of the cost: the whole way first, then each term as a sum over it."""
-    contact, probability, close, smooth, clearance, back = WEIGHTS
+    contact, probability, close, smooth, clearance, back, close_edges = WEIGHTS
     position, velocity, radius, kind = near
     H, way, course = len(plan), [np.array(place)], heading
     courses = []
@@ -113,16 +113,17 @@ def slow_cost(plan, tick, place, heading, last, goal, final, body, margin, near,
         cost += smooth * (change[t] ** 2).sum()
         x = way[t + 1]
         others = position + (t + 1) * tick * velocity
+        walls = []
         gaps = list(np.hypot(*(others - x).T) - radius - body[0])
         for a, b in zip(*edges, strict=True):
             s = np.clip((x - a) @ (b - a) / ((b - a) @ (b - a)), 0, 1)
-            gaps.append(np.hypot(*(a + s * (b - a) - x)) - body[0])
-        gap = min(gaps, default=np.inf)
+            walls.append(np.hypot(*(a + s * (b - a) - x)) - body[0])
+        gap, wall = min(gaps, default=np.inf), min(walls, default=np.inf)
         back_at = (position - (t + 1) * tick * velocity)[movers]
         if not turned and (np.hypot(*(back_at - x).T) - radius[movers] - body[0] < margin).any():
             turned = True
             cost += back * (H - t) / H
-        if gap < margin:
+        if gap < margin or wall < 0.5 * margin:
             return cost + contact * (1 + (H - t) / H) + left * (H - t) / H, True
         risk = 0.0
         moving = plan[t, 0] * np.array([np.cos(courses[t]), np.sin(courses[t])])
@@ -134,6 +135,7 @@ def slow_cost(plan, tick, place, heading, last, goal, final, body, margin, near,
                 risk = max(risk, min(1.0, 1.0 / max(times[hit[0], 0], 1e-9)))
         cost += probability * risk / H
         cost += close * max(1 - gap / clearance, 0) / H
+        cost += close_edges * max(1 - wall / clearance, 0) / H
         if passed:
             left -= plan[t, 0] * tick
         else:
@@ -155,9 +157,11 @@ def test_the_cost_equals_its_slow_twin():
         kind = np.array([int(Kind.AGENT), int(Kind.DYNAMIC), int(Kind.DYNAMIC)], np.int8)
         edges = rng.uniform(-4, 4, (2, 2, 2))
         goal, last, final = rng.uniform(-2, 2, 2), rng.normal(0, 1, 2), bool(trial % 2)
+        far = np.empty(2)
+        edge_distances(0.1, -0.2, *edges, 2, far)
         fast = cost_of(
             plan, 0.2, 0.1, -0.2, 0.3, last, *goal, final, body, 0.05, *near, kind, 3,
-            *edges, 2, WEIGHTS,
+            *edges, far, 2, WEIGHTS,
         )  # fmt: skip
         slow = slow_cost(
             plan, 0.2, (0.1, -0.2), 0.3, last, goal, final, body, 0.05, (*near, kind), edges
@@ -207,7 +211,7 @@ def test_where_the_mean_touches_the_best_sample_is_taken():
     noise = np.zeros((1, 4, 2, 2))
     noise[0, :, 0, 1], noise[0, :, 1, 1] = turns, -turns
     post = np.array([[[1.2, 0.0]]]), np.zeros((1, 1, 2)), np.array([[0.2]])
-    weights = np.array([8.0, 0, 0, 0, 0.1, 0])
+    weights = np.array([8.0, 0, 0, 0, 0.1, 0, 0])
     nothing = np.zeros((1, 0, 2))
     out = np.zeros((1, 8, 2))
     control(

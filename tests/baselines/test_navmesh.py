@@ -4,11 +4,11 @@ import sys
 import numpy as np
 import pytest
 import shapely
+from benchnav_baselines.checker import PlanarChecker
 from benchnav_baselines.disc_planner import Query, frame_of
 from benchnav_baselines.navmesh.free_polygon import capsule_polygons, free_polygons
 from benchnav_baselines.navmesh.funnel import pulled
 from benchnav_baselines.navmesh.mesh import mesh_of
-from benchnav_baselines.ompl.checker import PlanarChecker
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 

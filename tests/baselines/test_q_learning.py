@@ -11,8 +11,9 @@ from benchnav_baselines.q_learning.encoder import (
 )
 from benchnav_baselines.q_learning.learner import Learner, chosen
 from benchnav_baselines.q_learning.moves import MOVES, twists
-from benchnav_baselines.q_learning.navigator import SHIPPED, QLearning
+from benchnav_baselines.q_learning.navigator import QLearning
 from benchnav_baselines.q_learning.table import Table, load, save
+from benchnav_baselines.q_learning.table_pilot import SHIPPED
 from benchnav_baselines.q_learning.train import Recipe, main, train
 from benchnav_baselines.tensor_file import read_tensors, write_tensors
 

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 import yaml
 from benchnav_baselines.recurrent_ppo.foresight import foresee
-from benchnav_baselines.recurrent_ppo.navigator import SHIPPED, RecurrentPPO
+from benchnav_baselines.recurrent_ppo.navigator import RecurrentPPO
+from benchnav_baselines.recurrent_ppo.policy_pilot import SHIPPED
 
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder

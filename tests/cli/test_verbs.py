@@ -104,6 +104,14 @@ def test_show_says_parameters_units_needs_and_source(call):
     assert "baselines/orca/navigator.py:" in stdout
 
 
+def test_show_describes_a_navigator_named_by_its_parts(call):
+    stdout = call("show", "mapping+grid.astar+orca")[1]
+    assert "needs       edges, neighbours, rays" in stdout
+    assert "grid.astar\n  is          a planner" in stdout
+    assert "orca\n  is          a controller" in stdout
+    assert "Did you mean 'orca'" in call("show", "grid.astar+orcaa")[2]
+
+
 def test_show_describes_metrics_scenarios_and_suites(call):
     assert "Anderson" in call("show", "spl")[1]
     assert "higher" in call("show", "spl")[1]
@@ -203,3 +211,8 @@ def test_a_reader_that_has_seen_enough_is_no_error():
     done = subprocess.run(["bash", "-c", command], capture_output=True, text=True)
     assert done.stdout == "{\n"
     assert done.stderr == ""
+
+
+def test_show_says_what_a_learned_navigator_needs(call):
+    assert "  needs       rays\n" in call("show", "recurrent-ppo")[1]
+    assert "  needs       edges, neighbours\n" in call("show", "recurrent-ppo-plus")[1]

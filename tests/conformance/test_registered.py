@@ -38,8 +38,8 @@ def test_nothing_that_ships_is_missing_or_broken():
 @pytest.mark.parametrize(
     "spec",
     [
-        {"type": "hierarchical", "planner": planner, "controller": controller}
-        for planner in ("ompl.rrt-connect", "ompl.prm")
+        f"{planner}+{controller}"
+        for planner in ("ompl.rrt-connect", "ompl.prm", "none", "mapping+ompl.rrt-connect")
         for controller in CONTROLLERS.names()
     ],
 )

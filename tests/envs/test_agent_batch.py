@@ -12,7 +12,6 @@ from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder
-from benchnav.envs.making import driver_specs
 from benchnav.envs.others import Instead
 from benchnav.envs.relay import KINDS, Relay
 from benchnav.envs.reward import RewardWeights
@@ -258,7 +257,7 @@ def test_what_learners_command_may_be_corrected():
 
 def test_agents_with_a_driver_learn_nothing_and_are_driven():
     worlds = drawn("crowd/circle-crossing", 3)
-    batch = batch_of(worlds, 2, drivers=driver_specs(find("crowd/circle-crossing")))
+    batch = batch_of(worlds, 2, drivers=find("crowd/circle-crossing").driver_specs)
     batch.reset(np.array([0, 1]))
     assert batch.active.tolist() == [[True] + 5 * [False]] * 2
     start = batch.simulation.position.copy()
@@ -301,7 +300,7 @@ def remembering():
 def test_strict_success_is_what_the_runner_records(tensors, scenario, tmp_path):
     path, worlds = tmp_path / "w.safetensors", drawn(scenario, 12, "validation")
     write_weights(path, tensors, {"encoder": "ego", "progress": {"decisions": 0, "seconds": 0.0}})
-    drivers = driver_specs(find(scenario))
+    drivers = find(scenario).driver_specs
     arrived = evaluate(Actor(tensors), batch_of(worlds, 12, drivers=drivers))
     spec = {"type": "recurrent-ppo", "weights": str(path)}
     run = Assignment(scenario, "hash", "validation", "unknown", "own", spec, drivers)

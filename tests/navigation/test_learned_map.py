@@ -1,5 +1,7 @@
 """What is learned of edges and rays, against sets of points on true outlines."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,6 +12,7 @@ from benchnav.navigation.learned_map import (
     DOUBT,
     GUESSED,
     TOLD,
+    way_is_free,
     with_edge,
     with_guess,
     without_contradicted,
@@ -136,4 +139,22 @@ def test_a_stopped_disc_is_explained_or_guessed_at():
     held.n = with_guess(held.capsules, held.owner, held.n, 0.0, 3.0, 0.0, 1.0, 0.3)
     assert held.owner[: held.n].tolist() == [TOLD, GUESSED]
     assert clearance(0.0, 3.0, held.now) == pytest.approx(0.3)
-    assert with_guess(held.capsules, held.owner, held.n, 0.0, 3.02, 0.1, 1.0, 0.3) == 2
+    assert with_guess(held.capsules, held.owner, held.n, 0.0, 3.0, 0.6, 0.8, 0.3) == 2
+    aside = (0.0, 3.0, 1.0, 0.0, 0.3)  # what is straight ahead explains no stop on the way aside
+    assert with_guess(held.capsules, held.owner, held.n, *aside) == 3
+
+
+def test_a_way_is_free_where_each_of_its_motions_is():
+    rng = np.random.default_rng(3)
+    ends = rng.uniform(-4, 4, (6, 2))
+    capsules = np.hstack([ends, ends + rng.uniform(-1, 1, (6, 2)), rng.uniform(0, 0.5, (6, 1))])
+    found = []
+    for _ in range(200):
+        way = np.cumsum(rng.uniform(-2, 2, (3, 2)), axis=0)
+        share = np.linspace(0, 1, 400)[:, None]
+        points = np.vstack([a + share * (b - a) for a, b in pairwise(way)])
+        least = min(clearance(*point, capsules) for point in points)
+        if abs(least - 0.3) > 0.02:
+            found.append(least > 0.3)
+            assert way_is_free(way, 0.3, capsules) == found[-1]
+    assert 5 < sum(found) < len(found)

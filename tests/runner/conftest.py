@@ -233,7 +233,7 @@ def play(scenario, troubled):
         spec = f"troubled_navigators:{navigator}" if navigator[0].isupper() else navigator
         assignment = Assignment(
             scenario.identity, scenario.hash, "test", track, navigator, spec,
-            tuple({"type": d.type, **d.params} for d in scenario.drivers),
+            scenario.driver_specs,
         )  # fmt: skip
         worlds = worlds or [(seed, build(scenario, "test", seed)) for seed in seeds]
         episodes = rollout(replace(assignment, **changes), worlds, charge)

@@ -58,7 +58,7 @@ def test_it_serves_one_world_for_a_few_decisions(scenario, troubled, monkeypatch
     monkeypatch.setattr(module, "DECISIONS", 5)
     about = Assignment(
         scenario.identity, scenario.hash, "test", "known", "sees", "troubled_navigators:Sees",
-        tuple({"type": d.type, **d.params} for d in scenario.drivers),
+        scenario.driver_specs,
     )  # fmt: skip
     world = (0, build(scenario, "test", 0))
     taken = latency(about, world)

@@ -1,4 +1,4 @@
-"""What a learned navigator and a learned controller share: the policy at work in many rows."""
+"""The policy at work in many rows."""
 
 import math
 from collections.abc import Sequence
@@ -19,6 +19,7 @@ from benchnav.navigation.navigator import Need, PluginConfig, Training
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.row_table import RowTable
 
+from ..pilot import Pilot
 from .actor import Actor
 from .foresight import foresee
 from .weights import read_weights
@@ -27,20 +28,20 @@ SHIPPED = Path(__file__).parent / "weights"
 _LIMITS = ("radius", "max_speed", "max_turn_rate")
 
 
-class PilotConfig(PluginConfig):
+class PolicyConfig(PluginConfig):
     """Which weights."""
 
     weights: str = Field("", description="file that `benchnav train` wrote; its own if empty")
 
 
-class ForesightConfig(PilotConfig):
+class ForesightConfig(PolicyConfig):
     """Which weights, and whether to look ahead."""
 
     foresight: bool = Field(True, description="correct twists that would collide")
 
 
-class Pilot:
-    """Drives agents to the goals of what it is shown, which may be waypoints.
+class PolicyPilot(Pilot):
+    """The actor with its encoder, and what each agent remembers.
 
     Deterministic: the mean of the Gaussian over (forward speed, turn rate).
 
@@ -57,22 +58,18 @@ class Pilot:
 
     @property
     def needs(self) -> frozenset[Need]:
-        """What its encoder reads."""
         return self._encoder.needs
 
     @property
     def training(self) -> Training:
-        """What the weights cost."""
         progress = self.about["progress"]
         return Training(int(progress["decisions"]), float(progress["seconds"]))
 
     @property
     def fingerprint(self) -> str:
-        """Of the weights."""
         return str(self.about["sha256"])
 
     def unfit(self, sensing: Sensing) -> str:
-        """Why it cannot drive agents that sense so; "" where it can."""
         rays = sensing.rays
         if Need.RAYS not in self.needs or rays is None:
             return ""
@@ -86,27 +83,18 @@ class Pilot:
         )
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
-        """Start the worlds ``rows`` (N,) without memory."""
         for row, briefing in zip(rows, briefings, strict=True):
             memory = np.zeros((len(briefing), self._actor.state_size), np.float32)
             limits = {name: getattr(briefing, name) for name in _LIMITS}
             limits["tolerance"] = np.full(len(briefing), briefing.goal_tolerance)
             self._kept.put(int(row), memory=memory, **limits)
 
-    def kept(self, name: str, seen: Observation) -> FloatArray:
-        """(B, A) radius, max_speed, max_turn_rate or tolerance of the agents in sight."""
-        values: FloatArray = self._kept.take(name, seen.rows, seen.active.shape[1])
-        return values
+    def tolerance(self, seen: Observation) -> FloatArray:
+        return self._told("tolerance", seen)
 
     def twists(self, seen: Observation, tolerance: FloatArray) -> FloatArray:
-        """(B, A, 2) forward speed [m/s] and turn rate [rad/s] towards the goals.
-
-        Args:
-            seen: one decision's view.
-            tolerance: (B, A) [m] from a goal within which nothing behind it matters.
-        """
         active, rows = seen.active, seen.rows
-        radius, speed, turn = (self.kept(name, seen) for name in _LIMITS)
+        radius, speed, turn = (self._told(name, seen) for name in _LIMITS)
         bodies = Bodies(radius, speed, turn)
         encoded = self._encoder.encode(seen, bodies)
         memory = self._kept.take("memory", rows, active.shape[1]).copy()
@@ -120,11 +108,15 @@ class Pilot:
         command[..., 1] *= turn
         return foresee(seen, bodies, command, tolerance) if self._foresight else command
 
+    def _told(self, name: str, seen: Observation) -> FloatArray:
+        values: FloatArray = self._kept.take(name, seen.rows, seen.active.shape[1])
+        return values
 
-def pilot_of(config: Any, shipped: str) -> Pilot:
-    """By a `PilotConfig` or `ForesightConfig`; ``shipped`` are its weights where it names none."""
+
+def pilot_of(config: Any, shipped: str) -> PolicyPilot:
+    """By a `PolicyConfig` or `ForesightConfig`; ``shipped`` are its weights where it names none."""
     path = Path(config.weights) if config.weights else SHIPPED / shipped
-    return Pilot(path, getattr(config, "foresight", False))
+    return PolicyPilot(path, getattr(config, "foresight", False))
 
 
 @lru_cache(maxsize=8)

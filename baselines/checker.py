@@ -75,6 +75,6 @@ def checker_for(name: CheckerName, map: Map, radius: float) -> Checker:
     """The named checker of a map, for a disc of ``radius`` [m]."""
     if name == "planar":
         return PlanarChecker(map, radius)
-    from ..mesh_checker import MeshChecker
+    from .mesh_checker import MeshChecker
 
     return MeshChecker(map, radius)

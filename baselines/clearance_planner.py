@@ -1,0 +1,83 @@
+"""What planners for a disc share: how much clearance is tried, and where a blocked goal ends."""
+
+from abc import abstractmethod
+from collections.abc import Iterator
+from weakref import WeakKeyDictionary
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arrays import FloatArray
+from benchnav.geometry.rotation import cos_sin
+from benchnav.navigation.map import Map
+from benchnav.navigation.navigator import PluginConfig
+from benchnav.navigation.planner import Planner
+
+from .checker import Checker
+
+
+class ClearanceConfig(PluginConfig):
+    """Parameters of every planner here."""
+
+    clearance: float = Field(
+        0.05, ge=0, description="[m] kept from obstacles where start, goal and passages allow it"
+    )
+
+
+class ClearancePlanner(Planner):
+    """Plans for the disc enlarged by a clearance, by less of it where that finds nothing.
+
+    The clearance is ½ or ¼ of what is wanted where start or goal are nearer to an
+    obstacle, and 0 where nothing is found with it.
+    """
+
+    class Config(ClearanceConfig):
+        """Parameters."""
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self._checkers: WeakKeyDictionary[Map, dict[float, Checker]] = WeakKeyDictionary()
+
+    @abstractmethod
+    def new_checker(self, map: Map, reach: float) -> Checker:
+        """Of a disc of radius ``reach`` [m]."""
+
+    def checker(self, map: Map, reach: float) -> Checker:
+        """The one of a map and a radius [m]."""
+        known = self._checkers.setdefault(map, {})
+        if reach not in known:
+            known[reach] = self.new_checker(map, reach)
+        return known[reach]
+
+    def clearances(
+        self, map: Map, start: FloatArray, goal: FloatArray, radius: float
+    ) -> Iterator[float]:
+        """The largest clearance that both ends allow, then 0; none where the start is blocked."""
+        wanted = self.config.clearance
+        for extra in (wanted, 0.5 * wanted, 0.25 * wanted):
+            checker = self.checker(map, radius + extra)
+            if extra > 0.0 and all(checker.point_is_free(*p.tolist()) for p in (start, goal)):
+                yield extra
+                break
+        if self.checker(map, radius).point_is_free(*start.tolist()):
+            yield 0.0
+
+
+def problem(start: FloatArray, goal: FloatArray, radius: float, tolerance: float) -> str:
+    """What is wrong with a question; "" if nothing is."""
+    if np.isfinite([*start, *goal, radius, tolerance]).all() and radius >= 0.0:
+        return ""
+    return "start, goal, radius or tolerance is not finite"
+
+
+def free_goal(checker: Checker, goal: FloatArray, tolerance: float) -> FloatArray | None:
+    """The goal (2,), or where it is blocked a free place within the tolerance, near ones first."""
+    if checker.point_is_free(*goal.tolist()):
+        return goal
+    for share in (0.25, 0.5, 0.75, 0.99):
+        for turn in range(16):
+            c, s = cos_sin(turn * np.pi / 8.0)
+            place = goal + share * tolerance * np.array([c, s])
+            if checker.point_is_free(*place.tolist()):
+                return place
+    return None
