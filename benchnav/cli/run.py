@@ -95,7 +95,8 @@ def _announce(suite: "Suite", folder: Path) -> str:
         (len(suite.entries), "navigators"), (len(suite.seeds), "seeds"),
     )  # fmt: skip
     product = " × ".join(f"{n} {what if n != 1 else what[:-1]}" for n, what in sizes)
-    return f"{suite.name}@{suite.version}: {product}, into {folder}"
+    some = f" (in {len(suite.blocks)} blocks of cells)" if suite.blocks else ""
+    return f"{suite.name}@{suite.version}: {product}{some}, into {folder}"
 
 
 def _conclude(summary: "Summary", seconds: float) -> str:

@@ -136,6 +136,22 @@ class Selection:
 
 
 @dataclass(frozen=True)
+class Block:
+    """A part of a suite's product."""
+
+    scenarios: tuple[str, ...]  # identities
+    tracks: tuple[str, ...]
+    navigators: tuple[str, ...]  # labels
+
+    def __contains__(self, cell: Cell) -> bool:
+        return (
+            cell.scenario.identity in self.scenarios
+            and cell.track in self.tracks
+            and cell.entry.label in self.navigators
+        )
+
+
+@dataclass(frozen=True)
 class Suite:
     """What to run."""
 
@@ -147,13 +163,16 @@ class Suite:
     tracks: tuple[str, ...]
     entries: tuple[Entry, ...]
     salt: str = ""  # of navigators' randomness; empty: each new run draws its own
+    blocks: tuple[Block, ...] = ()  # parts of the product that are run; none: all of it
 
     def cells(self) -> Iterator[Cell]:
         """Every cell, n/a ones included: by scenario, track, navigator."""
         for scenario in self.scenarios:
             for track in self.tracks:
                 for entry in self.entries:
-                    yield Cell(scenario, self.split, track, entry)
+                    cell = Cell(scenario, self.split, track, entry)
+                    if not self.blocks or any(cell in block for block in self.blocks):
+                        yield cell
 
     def resolved(self) -> dict[str, Any]:
         """Everything but the salt that has a say in the results, as plain data for the manifest."""
@@ -168,6 +187,7 @@ class Suite:
             ],
             "tracks": list(self.tracks),
             "navigators": [_resolved(entry) for entry in self.entries],
+            **({"blocks": [asdict(block) for block in self.blocks]} if self.blocks else {}),
         }
 
 
@@ -198,7 +218,44 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     _refuse_twice("navigator label", [e.label for e in entries], path)
     seeds = _seeds(selection.seeds or str(said.seeds))
     salt = _salt(selection.salt)
-    return Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries, salt)
+    suite = Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries, salt)
+    return replace(suite, blocks=_blocks(said, suite, path)) if said.blocks else suite
+
+
+def _blocks(said: SuiteFile, suite: Suite, path: Path) -> tuple[Block, ...]:
+    """The file's blocks; what was selected and is not in the file belongs to each of them."""
+    identities = {name: find(name, path.parent).identity for name in said.scenarios}
+    labels = tuple(_label(spec) for spec in said.navigators)
+    added = (
+        tuple(s.identity for s in suite.scenarios if s.identity not in identities.values()),
+        tuple(track for track in suite.tracks if track not in said.tracks),
+        tuple(entry.label for entry in suite.entries if entry.label not in labels),
+    )
+    blocks = []
+    for i, block in enumerate(said.blocks):
+        at = f"{path}: blocks[{i}]"
+        scenarios = _known(block.scenarios, said.scenarios, f"{at}.scenarios")
+        tracks = _known(block.tracks, said.tracks, f"{at}.tracks")
+        navigators = _known(block.navigators, labels, f"{at}.navigators")
+        blocks.append(
+            Block(
+                tuple(identities[name] for name in scenarios) + added[0],
+                tracks + added[1],
+                navigators + added[2],
+            )
+        )
+    return tuple(blocks)
+
+
+def _known(chosen: tuple[str, ...] | None, own: tuple[str, ...], where: str) -> tuple[str, ...]:
+    """What a block takes of the suite's own. Raises ScenarioError where that has it not."""
+    for name in chosen or ():
+        if name not in own:
+            raise ScenarioError(
+                f"{where} must be among the suite's own. Got {name!r} instead."
+                f"{did_you_mean(name, own)}"
+            )
+    return own if chosen is None else chosen
 
 
 def _wanted_navigators(said: SuiteFile, selected: Sequence[str]) -> list[tuple[int | None, Spec]]:

@@ -18,6 +18,20 @@ _SUFFIXES = (".yaml", ".yml")
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 
 
+class BlockFile(BaseModel):
+    """A part of the product; of what it does not name it takes all."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    scenarios: tuple[Name, ...] | None = Field(
+        None, min_length=1, description="Of the suite's scenarios, as they are written there."
+    )
+    tracks: tuple[Track, ...] | None = Field(None, min_length=1, description="Of its tracks.")
+    navigators: tuple[Name, ...] | None = Field(
+        None, min_length=1, description="Of its navigators, by name or label."
+    )
+
+
 class SuiteFile(BaseModel):
     """Scenarios × tracks × navigators × seeds."""
 
@@ -37,6 +51,9 @@ class SuiteFile(BaseModel):
     navigators: tuple[Name | dict[str, Any], ...] = Field(
         min_length=1,
         description="Names, or {type: name, label: what tables call it, …its parameters}.",
+    )
+    blocks: tuple[BlockFile, ...] = Field(
+        (), description="Where given, only these parts of the product are run."
     )
     seeds: int | str = Field(20, description="N for seeds 0 … N-1, or 'a:b' for seeds a … b-1.")
     split: Literal["train", "validation", "test"] = Field(

@@ -147,3 +147,31 @@ def test_full_has_every_scenario_that_ships():
     shipped = {name for name in names() if (SHIPPED / f"{name}.yaml").is_file()}
     assert shipped
     assert {scenario.name for scenario in load_suite("full").scenarios} == shipped
+
+
+BLOCKS = "[{tracks: [known], navigators: [orca]}, {tracks: [unknown]}]"
+
+
+def test_blocks_are_the_parts_of_the_product_that_are_run(write):
+    suite = load_suite(write(blocks=BLOCKS))
+    assert [(c.track, c.entry.label) for c in suite.cells()] == [
+        ("known", "orca"), ("unknown", "straight-line"), ("unknown", "orca"),
+    ]  # fmt: skip
+    assert suite.resolved()["blocks"][0]["navigators"] == ("orca",)
+    assert "blocks" not in load_suite(write()).resolved()
+
+
+def test_what_is_selected_from_outside_the_file_is_in_every_block(write):
+    chosen = Selection(navigators=("orca", "random-walk"), tracks=("known", "partial"))
+    suite = load_suite(write(blocks=BLOCKS), chosen)
+    cells = [(c.track, c.entry.label) for c in suite.cells()]
+    assert cells == [
+        ("known", "orca"), ("known", "random-walk"),
+        ("partial", "orca"), ("partial", "random-walk"),
+    ]  # fmt: skip
+
+
+def test_a_block_names_what_the_suite_has(write):
+    path = write(blocks="[{navigators: [orka]}]")
+    with pytest.raises(ScenarioError, match=r"blocks\[0\]\.navigators must be among.*'orka'.*orca"):
+        load_suite(path)
