@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchnav.arrays import AnyArray, FloatArray
+from benchnav.arrays import AnyArray, BoolArray, FloatArray
 from benchnav.episode.episode import Episode, Identity, Timings
 from benchnav.store.digest import digest
 from benchnav.world.simulation import Simulation
@@ -22,6 +22,7 @@ class Recorder:
         self._requested: list[FloatArray] = []
         self._executed: list[FloatArray] = []
         self._seconds: list[float] = []
+        self._twist = np.zeros((simulation.B, simulation.A), np.bool_)
 
     @property
     def seconds(self) -> FloatArray:
@@ -32,6 +33,10 @@ class Recorder:
         """Keep the state of now."""
         for name, kept in self._state.items():
             kept.append(getattr(self.simulation, name).copy())
+
+    def record_kinds(self, twist: BoolArray) -> None:
+        """Keep whose commands are twists (B, A)."""
+        self._twist = twist.copy()
 
     def record_commands(self, requested: FloatArray, executed: FloatArray, seconds: float) -> None:
         """Keep what was asked and done in one decision, and its seconds per world."""
@@ -85,6 +90,7 @@ class Recorder:
                 failure=failure,
                 reproducible=reproducible,
                 remarks=remarks[b],
+                twist=self._twist[b, :agents].copy(),
             )
             episodes.append(replace(episode, digest=digest(episode)))
         return episodes

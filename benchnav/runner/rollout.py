@@ -76,7 +76,7 @@ def rollout(
         grants: the rehearsals that the evaluated navigator is told of, by seed.
     """
     about = (assignment.salt, assignment.scenario_hash, assignment.split)
-    pending = deque(_batches(sorted(worlds, key=lambda world: place(*about, world[0]))))
+    pending = deque(batches(sorted(worlds, key=lambda world: place(*about, world[0]))))
     while pending:
         batch = pending.popleft()
         try:
@@ -85,8 +85,8 @@ def rollout(
             pending.extendleft(reversed(_split(batch, failed)))
 
 
-def _batches(worlds: Sequence[Seeded]) -> Iterator[list[Seeded]]:
-    """Consecutive worlds that share their terms and fit into memory together."""
+def batches(worlds: Sequence[Seeded]) -> Iterator[list[Seeded]]:
+    """Consecutive worlds that share their terms and fit into memory together when stepped."""
     batch: list[Seeded] = []
     size = 0
     for seed, world in worlds:
@@ -201,6 +201,7 @@ def _run(
     twist = np.zeros(simulation.present.shape, np.bool_)
     for driver in drivers:
         driver.mark_twists(twist)
+    recorder.record_kinds(twist)
     dt = simulation.world(0).clock.dt
     step = 0
     while simulation.running.any() and step != decisions:

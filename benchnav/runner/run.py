@@ -14,6 +14,7 @@ from benchnav.runner.suite import Cell, Suite
 from benchnav.runner.task import Outcome, Task, chunks
 from benchnav.store.manifest import Manifest
 from benchnav.store.run_folder import RunFolder
+from benchnav.store.scenario_files import keep_files
 from benchnav.threads import core_count
 
 
@@ -125,6 +126,8 @@ def _refuse_without_metrics() -> None:
 def _start(suite: Suite, out: Path, cells: list[Cell]) -> RunFolder:
     said = tuple(_said(c) for c in cells)
     folder = RunFolder.start(out, Manifest(suite.resolved(), said, suite.salt or draw_salt()))
+    for scenario in suite.scenarios:
+        keep_files(folder.path, scenario.named_files())
     held = folder.manifest.salt
     if suite.salt not in ("", held):
         raise RunConflictError(

@@ -20,6 +20,7 @@ from benchnav.scenario.catalogue import find
 from benchnav.scenario.sampler import support
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
+from benchnav.store.scenario_files import sha256_of
 from benchnav.world.build import sensing_of
 
 
@@ -182,7 +183,12 @@ class Suite:
             "split": self.split,
             "seeds": [self.seeds.start, self.seeds.stop],
             "scenarios": [
-                {"scenario": s.identity, "hash": s.hash, "says": s.model_dump(mode="json")}
+                {
+                    "scenario": s.identity,
+                    "hash": s.hash,
+                    "says": s.model_dump(mode="json"),
+                    "files": {name: sha256_of(path) for name, path in s.named_files().items()},
+                }  # fmt: skip
                 for s in self.scenarios
             ],
             "tracks": list(self.tracks),

@@ -147,6 +147,15 @@ class Scenario(Spec):
             if isinstance(group.law, RecordedTrack) and group.law.file is not None:
                 yield ("dynamic", i, "law", "file"), self._folder / group.law.file
 
+    def named_files(self) -> dict[str, Path]:
+        """Its files by their names relative to `folder`; by the whole path where that is given."""
+        return {
+            (
+                path.relative_to(self._folder) if path.is_relative_to(self._folder) else path
+            ).as_posix(): path
+            for _, path in self.files()
+        }
+
     @model_validator(mode="after")
     def _check(self) -> "Scenario":
         for path, problem in _problems(self):

@@ -11,10 +11,12 @@ def digest(episode: Episode) -> str:
     """sha256 over states, commands and events, as little-endian bytes in C order.
 
     Each array is preceded by its name, type and shape, so that no two different
-    episodes share a byte stream. Timings and names are left out: they may differ.
+    episodes share a byte stream. Timings and names are left out: they may differ. The
+    kinds of command enter where somebody answered twists, so that the digests of before
+    kinds were recorded mean the same for ever.
     """
     hashed = hashlib.sha256()
-    contacts = episode.contacts
+    contacts, twist = episode.contacts, episode.twist
     for name, array, dtype in (
         ("position", episode.position, "<f8"),
         ("heading", episode.heading, "<f8"),
@@ -31,6 +33,7 @@ def digest(episode: Episode) -> str:
         ("contacts.penetration", contacts.penetration, "<f8"),
         ("contacts.closing_speed", contacts.closing_speed, "<f8"),
         ("contacts.charged", contacts.charged, "|b1"),
+        *([("twist", twist, "|b1")] if twist is not None and twist.any() else []),
     ):
         fixed = np.ascontiguousarray(array, dtype=np.dtype(dtype))
         hashed.update(f"{name} {dtype} {fixed.shape}\n".encode())

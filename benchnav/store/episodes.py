@@ -60,6 +60,7 @@ EPISODES = pa.schema(
         ("rehearsal_decisions", pa.int64()),
         ("rehearsal_seconds", pa.float64()),
         ("remarks", pa.list_(pa.string())),
+        ("twist", pa.large_list(pa.bool_())),  # of every agent; null: not known
     ]
 )
 LATER = (
@@ -71,6 +72,7 @@ LATER = (
     "rehearsal_decisions",
     "rehearsal_seconds",
     "remarks",
+    "twist",
 )  # columns that older parts lack; null there
 DICTIONARY = [*_IDENTITY, "navigator_hash", "failure"]  # columns whose values repeat
 
@@ -97,6 +99,7 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
     columns["latency_seconds"] = [e.timings.latency for e in episodes]
     columns["memory_bytes"] = [e.timings.memory for e in episodes]
     columns["remarks"] = [list(e.remarks) for e in episodes]
+    columns["twist"] = [e.twist for e in episodes]
     columns["rehearsal_seconds"] = [e.timings.rehearsal for e in episodes]
     arrays = [
         values if isinstance(values, pa.Array) else pa.array(values, type=field.type)
@@ -136,7 +139,7 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
         for name, shape in SHAPES.items()
     }
     contacts = {name: values(f"contact_{name}", _NUMPY[kind]) for name, kind in _CONTACTS.items()}
-    latency = scalar("latency_seconds")
+    latency, twist = scalar("latency_seconds"), scalar("twist")
     timings = Timings(
         values("decision_seconds", np.float64), scalar("planning_seconds"), scalar("batch"),
         None if latency is None else np.array(latency, np.float64), scalar("memory_bytes"),
@@ -156,6 +159,7 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
         rehearsals=scalar("rehearsals") or 0,
         rehearsal_decisions=scalar("rehearsal_decisions") or 0,
         remarks=tuple(scalar("remarks") or ()),
+        twist=None if twist is None else np.array(twist, np.bool_),
         **arrays,
     )
 

@@ -3,7 +3,8 @@
 import hashlib
 import json
 import platform
-from collections.abc import Mapping
+import re
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -12,8 +13,11 @@ from typing import Any
 
 from benchnav.errors import CorruptPartError, StoreError
 
-SCHEMA = 2  # version of the layout of a run folder and of its columns; 2: rehearsals
+SCHEMA = 3  # of a run folder's layout and columns; 2: rehearsals; 3: all that verifying needs
 MANIFEST = "manifest.json"
+DIGESTED = 3  # schema from which on a manifest holds a digest of all that it says
+_KEY = re.compile(r"[A-Za-z0-9@_-][A-Za-z0-9@._-]{0,250}")  # of a cell: the name of its folder
+_OF_A_CELL = ("key", "scenario", "track", "navigator", "reason")
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
 
 
@@ -40,9 +44,15 @@ class Manifest:
         text = json.dumps(self.suite, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
+    @property
+    def digest(self) -> str:
+        """sha256 of everything that the manifest says."""
+        text = json.dumps(asdict(self), sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
+
     def dump(self) -> str:
         """JSON for `MANIFEST`."""
-        said = {**asdict(self), "suite_hash": self.suite_hash}
+        said = {**asdict(self), "suite_hash": self.suite_hash, "digest": self.digest}
         return json.dumps(said, indent=1, ensure_ascii=False) + "\n"
 
 
@@ -62,7 +72,7 @@ def load_manifest(run: Path) -> Manifest:
 
     Raises:
         StoreError: the folder is no run, or a newer benchnav wrote it.
-        CorruptPartError: its manifest is damaged.
+        CorruptPartError: its manifest is damaged, or names a cell that no folder may be called.
     """
     path = run / MANIFEST
     if not path.is_file():
@@ -84,10 +94,26 @@ def load_manifest(run: Path) -> Manifest:
             said["platform"], said["created"],
         )  # fmt: skip
         whole = manifest.suite_hash == said["suite_hash"]
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        untouched = schema < DIGESTED or manifest.digest == said["digest"]
+        _refuse_strange_cells(manifest.cells)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise CorruptPartError(
             f"{path} must be what was written. It cannot be read: {error}."
         ) from error
     if not whole:
         raise CorruptPartError(f"{path} must be what was written. Its suite was changed.")
+    if not untouched:
+        raise CorruptPartError(
+            f"{path} must be what was written. It was changed: its digest does not fit."
+        )
     return manifest
+
+
+def _refuse_strange_cells(cells: Sequence[Mapping[str, Any]]) -> None:
+    """Raise ValueError: keys become paths, and what a stranger wrote must not lead elsewhere."""
+    for i, cell in enumerate(cells):
+        if not _KEY.fullmatch(cell["key"]):
+            raise ValueError(f"cells[{i}].key must be the name of a folder; got {cell['key']!r}")
+        strange = [name for name in _OF_A_CELL if not isinstance(cell.get(name, ""), str)]
+        if strange:
+            raise ValueError(f"cells[{i}].{strange[0]} must be text")

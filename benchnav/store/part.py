@@ -26,6 +26,11 @@ EPISODES_FILE = ".episodes.parquet"
 RESULTS_FILE = ".results.parquet"
 REHEARSALS_FILE = ".rehearsals.parquet"  # only where there were rehearsals
 FILES = (EPISODES_FILE, RESULTS_FILE, REHEARSALS_FILE)
+MOST_SEEDS = 1_000_000  # of a part, whatever its name says
+MOST_BYTES = 8 << 30  # that a file of a part may hold once it is decompressed
+_UNDECODABLE = (
+    KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError, RecursionError,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, order=True)
@@ -78,11 +83,18 @@ class Part:
         if REHEARSALS_FILE in self._seal():
             self._check_size(REHEARSALS_FILE, self._sealed(REHEARSALS_FILE))
 
+    def sealed_episodes(self) -> int:
+        """How many scored episodes its seal speaks of. Raises CorruptPartError."""
+        count = self._seal().get("episodes")
+        if not isinstance(count, int):
+            raise self._corrupt(self.path(SEAL), f"says {count!r} of the number of episodes")
+        return count
+
     def _episodes(self, suffix: str) -> Iterator[Episode]:
         table = self._table(suffix)
         try:
             yield from from_table(table)
-        except (KeyError, TypeError, ValueError) as error:
+        except _UNDECODABLE as error:
             raise self._corrupt(self.path(suffix), f"cannot be decoded ({error})") from error
 
     def _table(self, suffix: str) -> pa.Table:
@@ -95,6 +107,7 @@ class Part:
                 path, f"has sha256 {found[:12]}…, sealed was {sealed['sha256'][:12]}…"
             )
         try:
+            self._refuse_bomb(path)
             table = pq.read_table(path, partitioning=None)
             keys = [
                 (key, "ascending") for key in ("seed", "rehearsal") if key in table.column_names
@@ -102,6 +115,15 @@ class Part:
             return table.take(pc.sort_indices(table, keys))  # stable: batches may be out of order
         except (OSError, pa.ArrowException) as error:
             raise self._corrupt(path, f"is no Parquet file ({error})") from error
+
+    def _refuse_bomb(self, path: Path) -> None:
+        """A small file may decompress to more than memory holds."""
+        found = pq.read_metadata(path)
+        for group in map(found.row_group, range(found.num_row_groups)):
+            columns = [group.column(c) for c in range(group.num_columns)]
+            size = sum(max(c.total_uncompressed_size, 8 * c.num_values) for c in columns)
+            if size > MOST_BYTES:
+                raise self._corrupt(path, f"holds {size} bytes, more than {MOST_BYTES}")
 
     def _sealed(self, suffix: str) -> dict[str, Any]:
         try:
@@ -141,6 +163,6 @@ def parts_of(folder: Path) -> list[Part]:
     found = []
     for seal in folder.glob(f"*{SEAL}"):
         first, _, stop = seal.name.removesuffix(SEAL).partition("-")
-        if first.isdigit() and stop.isdigit():
+        if first.isdecimal() and stop.isdecimal() and 0 < int(stop) - int(first) <= MOST_SEEDS:
             found.append(Part(folder, int(first), int(stop)))
     return sorted(found)

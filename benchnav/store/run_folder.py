@@ -19,6 +19,12 @@ class RunFolder:
 
     path: Path
     manifest: Manifest
+    packed: Path | None = None  # the file that it was unpacked from
+
+    @property
+    def shown(self) -> Path:
+        """What people know it by."""
+        return self.packed or self.path
 
     @classmethod
     def open(cls, path: Path) -> "RunFolder":

@@ -16,6 +16,8 @@ import numpy as np
 
 from benchnav.arena.world import World
 
+_DTYPES = ("<f8", "<i8", "|i1", "|b1")
+
 
 def world_to_json(world: World) -> str:
     """The world as one line of JSON (infinities are written as Python does: ``Infinity``)."""
@@ -52,6 +54,8 @@ def decode(kind: Any, value: Any) -> Any:
     origin = get_origin(kind)
     if origin is np.ndarray:
         dtype, shape, items = value
+        if dtype not in _DTYPES:
+            raise ValueError(f"an array must be of {', '.join(_DTYPES)}; got {str(dtype)[:20]!r}")
         return np.array(items, dtype=np.dtype(dtype)).reshape(shape)
     if origin in (Union, UnionType):
         if value is None:
