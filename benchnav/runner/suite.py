@@ -188,7 +188,7 @@ class Suite:
                     "hash": s.hash,
                     "says": s.model_dump(mode="json"),
                     "files": {name: sha256_of(path) for name, path in s.named_files().items()},
-                }  # fmt: skip
+                }
                 for s in self.scenarios
             ],
             "tracks": list(self.tracks),
