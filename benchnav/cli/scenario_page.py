@@ -97,8 +97,9 @@ def _static(group: "StaticGroup") -> str:
     text = f"{_count(group)} × {_shape(group.shape)}, {_where(group)}"
     if group.gap:
         text += f", {group.gap:g} m or more from all else"
-    if group.moved:
-        text += "; moved since the stale map was made"
+    if group.was_moved:
+        by = "" if group.moved is True else f" by {group.moved:g} m"
+        text += f"; moved{by} since the stale map was made"
     if group.relocate_at is not None:
         text += f"; each re-placed once, after {number(group.relocate_at)} s"
     return text

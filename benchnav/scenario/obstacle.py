@@ -24,8 +24,10 @@ class StaticGroup(Spec):
         0.0,
         description="least distance [m] to walls, to other obstacles, to fixed starts and goals",
     )
-    moved: bool = Field(
-        False, description="re-placed before the episode: the stale map shows where they stood"
+    moved: bool | Distance = Field(
+        False,
+        description="re-placed before the episode, anywhere in the region or by so many [m] in"
+        " any direction: the stale map shows where they stood",
     )
     relocate_at: NonNegativeScalar | None = Field(
         None, description="[s] when each is re-placed, once, within the episode"
@@ -38,12 +40,17 @@ class StaticGroup(Spec):
         if self.at is not None:
             if self.count is not None:
                 raise FieldError(("count",), "must not be given with `at`: it has one per point")
-            if self.moved or self.relocate_at is not None:
-                key = "moved" if self.moved else "relocate_at"
+            if self.was_moved or self.relocate_at is not None:
+                key = "moved" if self.was_moved else "relocate_at"
                 raise FieldError((key,), "needs a `region` to re-place obstacles in, not `at`")
-        if self.moved and self.relocate_at is not None:
+        if self.was_moved and self.relocate_at is not None:
             raise FieldError(("moved",), "must not be given with `relocate_at`: choose one")
         return self
+
+    @property
+    def was_moved(self) -> bool:
+        """True where the stale map may show another place, also where that is 0 m away."""
+        return self.moved is not False
 
     @property
     def fixed(self) -> bool:

@@ -124,7 +124,7 @@ class Scenario(Spec):
         """Knowledge tracks in which the scenario may be run; stale only where anything moves."""
         if self.tracks is not None:
             return self.tracks
-        moves = any(group.moved or group.relocate_at is not None for group in self.static)
+        moves = any(group.was_moved or group.relocate_at is not None for group in self.static)
         return (
             ("known", "stale", "partial", "unknown") if moves else ("known", "partial", "unknown")
         )

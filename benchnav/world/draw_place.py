@@ -30,17 +30,32 @@ def draw_points(region: Region, bounds: Bounds, count: int, rng: np.random.Gener
     return np.array(region.center) + _in_ring(inner, outer, count, rng)
 
 
-def _in_ring(inner: float, outer: float, count: int, rng: np.random.Generator) -> FloatArray:
-    """Directions by rejection from a square: no sine or cosine, so the same bits everywhere."""
+def within(bounds: Bounds, points: FloatArray) -> BoolArray:
+    """(N,) which of the points (N, 2) lie within ``bounds``, edges included."""
+    x0, y0, x1, y1 = bounds
+    found: BoolArray = np.all((points >= (x0, y0)) & (points <= (x1, y1)), axis=1)
+    return found
+
+
+def directions(count: int, rng: np.random.Generator) -> FloatArray:
+    """(count, 2) unit vectors, by rejection from a square.
+
+    Without sine and cosine they have the same bits everywhere.
+    """
     out = np.empty((0, 2))
     while len(out) < count:
         ways = 2.0 * rng.random((2 * count + 8, 2)) - 1.0
         squared = np.sum(ways * ways, axis=1)
         good = (squared <= 1.0) & (squared > 1e-12)
         out = np.vstack([out, ways[good] / np.sqrt(squared[good])[:, None]])
+    return out[:count]
+
+
+def _in_ring(inner: float, outer: float, count: int, rng: np.random.Generator) -> FloatArray:
+    out = directions(count, rng)
     share = rng.random(count)
     radius = np.sqrt(inner * inner + share * (outer * outer - inner * inner))
-    return out[:count] * radius[:, None]
+    return out * radius[:, None]
 
 
 def find_place(

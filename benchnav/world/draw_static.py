@@ -14,9 +14,10 @@ from benchnav.scenario.obstacle import StaticGroup
 from benchnav.scenario.region import Region
 from benchnav.scenario.sampler import sample
 from benchnav.world.draw_gap import Barrier, added, clear, joined, shifted
-from benchnav.world.draw_place import draw_points, find_place
+from benchnav.world.draw_place import NoPlaceError, directions, draw_points, find_place, within
 from benchnav.world.draw_solid import draw_solid
 
+ARRANGEMENTS = 50  # of old places that are tried before the world is drawn again
 Bounds = tuple[float, float, float, float]
 Streams = Sequence[np.random.Generator]
 
@@ -85,12 +86,12 @@ def draw_pieces(
         pieces.append(drawn)
     past = walls
     for group, drawn in zip(groups, pieces, strict=True):
-        for piece in () if group.moved else drawn:
+        for piece in () if group.was_moved else drawn:
             past = added(past, piece.solid.capsules)
     for i, (group, rng) in enumerate(zip(groups, others, strict=True)):
         if group.relocate_at is not None:
             pieces[i], standing = search.later(group, f"static[{i}]", pieces[i], standing, rng)
-        elif group.moved:
+        elif group.was_moved:
             pieces[i], past = search.before(group, f"static[{i}]", pieces[i], past, rng)
     return [piece for drawn in pieces for piece in drawn]
 
@@ -149,11 +150,31 @@ class _Search:
         past: Barrier,
         rng: np.random.Generator,
     ) -> tuple[list[Piece], Barrier]:
-        """With places where they stood before, clear of all else that stood then."""
+        """With places where they stood before, clear of all else that stood then.
+
+        Cubes moved by a distance each have few places, and one may take another's: then
+        all are drawn again, so that the world of a seed seldom depends on the distance.
+        """
+        for _ in range(0 if isinstance(group.moved, bool) else ARRANGEMENTS - 1):
+            try:
+                return self._before(group, name, pieces, past, rng)
+            except NoPlaceError:
+                continue
+        return self._before(group, name, pieces, past, rng)
+
+    def _before(
+        self,
+        group: StaticGroup,
+        name: str,
+        pieces: list[Piece],
+        past: Barrier,
+        rng: np.random.Generator,
+    ) -> tuple[list[Piece], Barrier]:
         result = []
         for k, piece in enumerate(pieces):
             what = f"the old place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
-            result.append(replace(piece, before=self._place(piece.shape, group, past, what, rng)))
+            before = self._place(piece.shape, group, past, what, rng, away=piece.place)
+            result.append(replace(piece, before=before))
             past = added(past, result[k].before_solid.capsules)
         return result, past
 
@@ -164,11 +185,19 @@ class _Search:
         standing: Barrier,
         what: str,
         rng: np.random.Generator,
+        away: FloatArray | None = None,
     ) -> FloatArray:
+        """In the group's region; or as far from ``away`` (2,) as the group was moved."""
         region: Region = group.region  # type: ignore[assignment] # groups without it have `at`
         around = joined(standing, self.keep_free)
 
-        def accept(points: FloatArray) -> BoolArray:
-            return clear(shifted(shape.capsules, points), around, group.gap)
+        def propose(count: int) -> FloatArray:
+            if away is None or isinstance(group.moved, bool):
+                return draw_points(region, self.bounds, count, rng)
+            return away + group.moved * directions(count, rng)
 
-        return find_place(lambda n: draw_points(region, self.bounds, n, rng), accept, what)
+        def accept(points: FloatArray) -> BoolArray:
+            free = clear(shifted(shape.capsules, points), around, group.gap)
+            return free if away is None else free & within(self.bounds, points)
+
+        return find_place(propose, accept, what)

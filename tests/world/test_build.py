@@ -1,5 +1,7 @@
 """Worlds: pure, disjoint between splits, free of overlaps, and solvable."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -8,11 +10,14 @@ from hypothesis import strategies as st
 from benchnav.arena.body import LawKind
 from benchnav.arena.solid import Kind
 from benchnav.errors import InputError, ScenarioError, UnsolvableError, UsageError
+from benchnav.navigation.tracks import TRACKS
+from benchnav.scenario.catalogue import find
 from benchnav.scenario.load import load_scenario, scenario_from_text
 from benchnav.scenario.yaml_reader import read_yaml_text
 from benchnav.world import draw_prepared
 from benchnav.world.build import SPLITS, build
 from benchnav.world.draw_digest import coincidences, is_random, world_digest
+from benchnav.world.draw_gap import barrier, clear
 from benchnav.world.draw_law import place_at_start, swept
 from tests.reference import clearance as slow
 from tests.scenario.files import SHIPPED, SMALL
@@ -125,6 +130,24 @@ def test_moved_obstacles_stood_elsewhere():
         same = np.array_equal(now.capsules, then.capsules)
         assert same == (now.kind == Kind.WALL)
     assert build(SCENARIOS["leaders/static"], "test", 0).stale_solids is None
+
+
+@pytest.mark.parametrize("distance", [0, 0.5, 1.5, 4])
+def test_displaced_obstacles_stood_as_far_away_as_is_said(distance):
+    displaced = find(f"leaders/displaced:displacement={distance}")
+    there = find("leaders/displaced:displacement=0")
+    assert displaced.granted_tracks == there.granted_tracks == TRACKS
+    for seed in range(8):
+        world, same = build(displaced, "test", seed), build(there, "test", seed)
+        pairs = list(zip(world.solids, world.stale_solids, strict=True))
+        furniture = [(now, then) for now, then in pairs if now.kind == Kind.STATIC]
+        apart = [np.hypot(*np.subtract(now.center, then.center)) for now, then in furniture]
+        assert apart == pytest.approx([distance] * len(furniture))
+        old = barrier([then for _, then in furniture[1:]])
+        assert clear(furniture[0][1].capsules[None], old, 1.5 - 1e-9).all()
+        assert world_digest(replace(world, stale_solids=None)) == world_digest(
+            replace(same, stale_solids=None)
+        )
 
 
 def test_relocated_obstacles_are_bodies():
