@@ -1,0 +1,1 @@
+"""What the paper shows, measured: ``docs/paper.md`` from a run of the suite ``paper``."""

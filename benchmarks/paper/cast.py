@@ -1,0 +1,18 @@
+"""Who plays which part, by their labels in the suite ``paper``."""
+
+BLIND = "straight-line"  # what a planner is whose map is empty
+PLANNER = "navmesh+path-following"
+ONCE = "navmesh+path-following once"  # never plans again
+MAPPER = "mapping+visibility+path-following"
+LOCAL = "orca"
+BOTH = "navmesh+orca"
+MAPPING_BOTH = "mapping+visibility+orca"
+TABULAR = "q-learning"
+GRID = "q-learning-grid"
+PAPER = "recurrent-ppo"
+PLUS = "recurrent-ppo-plus"
+GUIDED = "guided by recurrent-ppo"
+GUIDED_PLUS = "guided by recurrent-ppo-plus"
+
+STATIC, MOVED, FURNITURE = "leaders/static", "leaders/moved", "leaders/moving-furniture"
+DYNAMIC, TRAP, MAZE, GROUPS = "leaders/dynamic", "trap/u", "maze/grid", "groups/diagonal"
