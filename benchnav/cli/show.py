@@ -1,7 +1,6 @@
 """`benchnav show`: one thing by name, with its parameters, units and source."""
 
 import inspect
-import re
 from collections.abc import Iterator
 from typing import Annotated, Any
 
@@ -9,12 +8,11 @@ import typer
 
 from benchnav.cli.console import columns, put
 from benchnav.cli.listing import REGISTRIES, Kind, sentence
+from benchnav.cli.parameters import needs, parameters
 from benchnav.cli.scenario_page import scenario_page
-from benchnav.errors import BenchnavError, UsageError, did_you_mean
+from benchnav.errors import UsageError, did_you_mean
 from benchnav.navigation.pair import MAPPING, NO_PLANNER, is_pair
 from benchnav.plugins import CONTROLLERS, NAVIGATORS, PLANNERS, Registry
-
-WIDEST = 40  # characters of a type
 
 
 def show(
@@ -53,22 +51,11 @@ def _plugin(kind: Kind, registry: Registry, name: str) -> str:
     if kind == Kind.METRICS:
         facts += _metric_facts(thing)
     if kind in (Kind.NAVIGATORS, Kind.CONTROLLERS):
-        facts.append(("needs", _needs(registry, name)))
+        facts.append(("needs", needs(registry, name)))
     if isinstance(getattr(thing, "command", None), str):
         facts.append(("answers", f"a {thing.command} per agent"))
     text = f"{name}\n" + columns([("  " + key, value) for key, value in facts])
     return f"{text}\n  parameters\n{_parameters(thing)}" if hasattr(thing, "Config") else text
-
-
-def _needs(registry: Registry, name: str) -> str:
-    """What it needs as it is made without parameters."""
-    from benchnav.navigation.configure import make
-
-    try:
-        required = make(registry, name).required
-    except BenchnavError as error:
-        return f"what it says once it can be made: {error}"
-    return ", ".join(sorted(required)) or "nothing beyond its own state and goal"
 
 
 def _pair(name: str) -> Iterator[str]:
@@ -82,7 +69,7 @@ def _pair(name: str) -> Iterator[str]:
     facts = [
         ("is", f"a navigator: {sentence(type(navigator))}"),
         ("comes from", ", ".join(distributions)),
-        ("needs", _needs(NAVIGATORS, name)),
+        ("needs", needs(NAVIGATORS, name)),
         ("answers", f"a {navigator.command} per agent"),
     ]
     head = f"{name}\n" + columns([("  " + key, value) for key, value in facts])
@@ -108,25 +95,8 @@ def _metric_facts(metric: Any) -> list[tuple[str, str]]:
 
 def _parameters(plugin: Any, named: tuple[str, ...] = ()) -> str:
     """One line each, without those ``named`` elsewhere."""
-    rows = [
-        ("    " + key, _type(field.annotation), _default(field), field.description or "")
-        for key, field in plugin.Config.model_fields.items()
-        if key not in named
-    ]
+    rows = [("    " + row[0], *row[1:]) for row in parameters(plugin) if row[0] not in named]
     return columns(rows) if rows else "    none"
-
-
-def _type(annotation: Any) -> str:
-    if isinstance(annotation, type):
-        return annotation.__name__
-    text = re.sub(r"\b(?:\w+\.)+(?=\w)", "", str(annotation)).replace("NoneType", "None")
-    return text if len(text) <= WIDEST else "one of several"  # which, its description says
-
-
-def _default(field: Any) -> str:
-    if field.is_required():
-        return "must be given"
-    return f"= {field.get_default(call_default_factory=True)!r}"
 
 
 def _place(thing: Any) -> str:
