@@ -28,7 +28,12 @@ class OrcaConfig(PluginConfig):
     time_horizon_obstacle: float = Field(
         1.0, gt=0, description="[s] for which velocities are safe with respect to edges"
     )
-    margin: float = Field(0.05, ge=0, description="[m] by which every disc is taken to be larger")
+    margin: float = Field(
+        0.05, ge=0, description="[m] by which every disc is taken to be larger among neighbours"
+    )
+    edge_margin: float = Field(
+        0.05, ge=0, description="[m] by which an agent takes itself to be larger among edges"
+    )
     neighbours: int = Field(10, ge=0, description="nearest neighbours that are considered")
     perturbation: float = Field(
         0.005,
@@ -73,7 +78,7 @@ class Avoidance:
         config = self.config
         run_rows(
             avoid, rows, own, *_flat(rows, (observation.active, *_sensed(observation))),
-            config.neighbours, config.margin, 1.0 / config.time_horizon,
+            config.neighbours, config.margin, config.edge_margin, 1.0 / config.time_horizon,
             1.0 / config.time_horizon_obstacle, answer, least=LEAST,
         )  # fmt: skip
         return answer.reshape(worlds, agents, 2)

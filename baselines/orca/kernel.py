@@ -90,7 +90,8 @@ def avoid(
     count: IntArray,
     start: FloatArray, end: FloatArray, before: FloatArray, after: FloatArray,
     start_convex: BoolArray, end_convex: BoolArray, edge_count: IntArray,
-    most: int, margin: float, rate: float, edge_rate: float, answer: FloatArray,
+    most: int, margin: float, edge_margin: float, rate: float, edge_rate: float,
+    answer: FloatArray,
 ) -> None:  # fmt: skip
     """Write new velocities [m/s] into rows low … high - 1 of ``answer`` (N, 2).
 
@@ -114,7 +115,8 @@ def avoid(
         end_convex: (N, E).
         edge_count: (N,) valid edges.
         most: neighbours that are used.
-        margin: by which every disc is taken to be larger [m].
+        margin: by which every disc is taken to be larger [m] among neighbours.
+        edge_margin: the same of the agent's own disc among edges [m].
         rate: 1 / time horizon for neighbours [1/s].
         edge_rate: 1 / time horizon for edges [1/s].
         answer: (N, 2).
@@ -125,19 +127,20 @@ def avoid(
         if not active[i]:
             continue
         px, py, vx, vy, wx, wy = own[i, 0], own[i, 1], own[i, 2], own[i, 3], own[i, 4], own[i, 5]
-        disc, speed, step_rate = own[i, 6] + margin, own[i, 7], own[i, 8]
+        own_radius, speed, step_rate = own[i, 6], own[i, 7], own[i, 8]
         fixed = 0
         if edge_count[i] > 0:
             fixed = edge_rows(
-                i, px, py, vx, vy, disc, edge_rate, start, end, before, after,
-                start_convex, end_convex, edge_count[i], planes,
+                i, px, py, vx, vy, own_radius + edge_margin, edge_rate, start, end, before,
+                after, start_convex, end_convex, edge_count[i], planes,
             )  # fmt: skip
         n = fixed
         for k in range(min(count[i], most)):
             row = neighbour_half_plane(
                 position[i, k, 0] - px, position[i, k, 1] - py,
                 vx - velocity[i, k, 0], vy - velocity[i, k, 1], vx, vy,
-                disc + margin + radius[i, k], rate, step_rate, 1.0 if kind[i, k] == _MOVER else 0.5,
+                own_radius + margin + margin + radius[i, k], rate, step_rate,
+                1.0 if kind[i, k] == _MOVER else 0.5,
             )  # fmt: skip
             planes[n, 0], planes[n, 1], planes[n, 2], planes[n, 3] = row
             n += 1

@@ -42,8 +42,8 @@ def step(position, velocity, goal, setting, dt):
         position[order], velocity[order], np.full(order.shape, setting["radius"] * 1.0),
         np.ones(order.shape, np.int8), count,
         nothing, nothing, nothing, nothing, flag, flag, np.zeros(agents, np.int64),
-        setting["maxNeighbors"], 0.0, 1 / setting["timeHorizon"], 1 / setting["timeHorizonObst"],
-        answer,
+        setting["maxNeighbors"], 0.0, 0.0, 1 / setting["timeHorizon"],
+        1 / setting["timeHorizonObst"], answer,
     )  # fmt: skip
     return position + dt * answer, answer
 
