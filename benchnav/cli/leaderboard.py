@@ -1,16 +1,19 @@
 """`benchnav leaderboard`: the table of one or more runs."""
 
 from enum import StrEnum
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from benchnav.cli.console import one_of, put, say, write
+from benchnav.cli.console import one_of, put, say, spans, write
 from benchnav.errors import UsageError
 
 if TYPE_CHECKING:
     from benchnav.store.run_folder import RunFolder
+
+_SHOWN = 10  # cells that are named of those that lack episodes
 
 
 class Format(StrEnum):
@@ -79,12 +82,17 @@ def leaderboard(
 
 
 def _warn_if_unfinished(folder: "RunFolder") -> None:
+    missing = dict(folder.missing())
+    if not missing:
+        return
     first, stop = folder.manifest.suite["seeds"]
-    cells = [cell for cell in folder.manifest.cells if not cell["reason"]]
-    total = len(cells) * (stop - first)
-    stored = sum(len(folder.done(cell["key"])) for cell in cells)
-    if stored < total:
-        say(
-            f"{folder.path} holds {stored} of {total} episodes:"
-            f" run the same suite with --out {folder.path} to finish it."
-        )
+    total = (stop - first) * sum(not cell["reason"] for cell in folder.manifest.cells)
+    stored = total - sum(map(len, missing.values()))
+    say(
+        f"{folder.path} holds {stored} of {total} episodes:"
+        f" run the same suite with --out {folder.path} to finish it."
+    )
+    for key, seeds in islice(missing.items(), _SHOWN):
+        say(f"  missing: {spans(seeds)} of {key}")
+    if len(missing) > _SHOWN:
+        say(f"  … and of {len(missing) - _SHOWN} more cells")

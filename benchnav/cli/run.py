@@ -30,6 +30,19 @@ def run(
         int | None,
         typer.Option(metavar="N", min=0, max=1024, help="Processes. [default: one per core]"),
     ] = None,
+    timeout: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            help="A call of a navigator that lasts longer fails its episode. [default: 300]",
+        ),
+    ] = None,
+    memory: Annotated[
+        float | None,
+        typer.Option(
+            metavar="GB", help="So does one whose process holds more memory. [default: 4]"
+        ),
+    ] = None,
     seeds: Annotated[
         str | None, typer.Option(metavar="N|A:B", help="Seeds 0 … N-1, or A … B-1.")
     ] = None,
@@ -76,7 +89,10 @@ def run(
         say(_announce(asked, folder))
     summary, began = Summary(), perf_counter()
     try:
-        run_suite(asked, folder, workers=workers, progress=progress(quiet), summary=summary)
+        run_suite(
+            asked, folder, workers=workers, timeout=timeout, memory=memory,
+            progress=progress(quiet), summary=summary,
+        )  # fmt: skip
     except KeyboardInterrupt:
         say(
             f"Interrupted: {summary.stored} of {summary.total} episodes are stored."
@@ -119,6 +135,10 @@ def _conclude(summary: "Summary", seconds: float) -> str:
     ]
     if len(summary.failures) > 10:
         lines.append(f"… and for {len(summary.failures) - 10} more reasons")
+    lines += [
+        f"the metric {metric} failed for {n} {'value' if n == 1 else 'values'}: {why}"
+        for (metric, why), n in summary.missing.most_common(5)
+    ]
     lines += [
         f"warning: {who}: the leader of {team!r} succeeded in no rehearsal in {n}"
         f" {'world' if n == 1 else 'worlds'} of {scenario}"

@@ -174,6 +174,12 @@ class _Table:
         notes = [
             f"{r.navigator} is not ranked: {r.note}." for r in leaders if r.note and r.episodes
         ]
+        notes += [
+            f"{metric} of {name} {self.at[name, metric].fault}."
+            for name in names
+            for metric in self.metrics
+            if (name, metric) in self.at and self.at[name, metric].fault
+        ]
         if self.rehearsed:
             notes.append(
                 f"Granted {self.rehearsed} rehearsals of each world before it was scored; ranked"

@@ -51,6 +51,7 @@ class Record:
     rehearsal: int = 0  # rehearsals of each world that the navigator was granted
     rehearsal_decisions: float = math.nan  # in them, mean over worlds; NaN without a grant
     rehearsal_seconds: float = math.nan  # of the navigator that led, mean over worlds
+    fault: str = ""  # where and how the metric failed; "" if it did not
 
 
 @dataclass(frozen=True)

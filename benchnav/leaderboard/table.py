@@ -18,6 +18,7 @@ from benchnav.leaderboard.estimate import (
     interquartile_mean_over,
     mean_over,
 )
+from benchnav.leaderboard.fault import faults, with_fault
 from benchnav.leaderboard.grid import Stratum, strata
 from benchnav.leaderboard.interval import resample
 from benchnav.leaderboard.label import require_one_navigator_per_label
@@ -61,7 +62,8 @@ def leaderboard(
         aligned = _align(list(group))
         records += _group(aligned, metrics)
         records += _missing(aligned, _belonging(aligned, found, not_applicable), metrics)
-    records = [_with_training(record, training) for record in records]
+    failed = faults(results)
+    records = [with_fault(_with_training(record, training), failed) for record in records]
     order = {name: place for place, name in enumerate(metrics)}
     names = sorted(
         {r.metric for r in records}, key=lambda name: (order.get(name, len(order)), name)

@@ -1,5 +1,6 @@
 """Episodes in, rows of the results table out."""
 
+import math
 from collections.abc import Sequence
 from functools import cache
 from typing import Any
@@ -46,8 +47,8 @@ def _no_metrics_twice(names: tuple[str, ...]) -> None:
 def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]:
     """Rows of `benchnav.store.results.RESULTS`: each metric for each role that is evaluated.
 
-    Background agents are in the world, but never scored. Raises PluginError, naming the
-    metric and the episode, where a metric raises or answers another shape.
+    Background agents are in the world, but never scored. A metric that raises or answers
+    another shape costs its own value: it is missing (NaN), with the reason.
     """
     _no_metrics_twice(tuple(metric.name for metric in metrics))
     agents, who, clock = episode.world.agents, episode.identity, episode.world.clock
@@ -66,12 +67,20 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
             "rehearsal_seconds": episode.timings.rehearsal,
         }  # fmt: skip
         for metric in metrics:
+            value, defined, missing = math.nan, 0, ""
             try:
                 value, defined = evaluate(metric, episode, members)
-            except Exception as error:
-                raise PluginError(
-                    f"The metric {metric.name!r} failed on {who.scenario} seed {who.seed} of"
-                    f" {who.navigator!r}: {type(error).__name__}: {error}."
-                ) from error
-            rows.append({**common, "metric": metric.name, "value": value, "defined": defined})
+            except (Exception, SystemExit) as error:
+                missing = _said(error)
+            rows.append(
+                {
+                    **common, "metric": metric.name, "value": value, "defined": defined,
+                    "missing": missing,
+                }
+            )  # fmt: skip
     return rows
+
+
+def _said(error: BaseException) -> str:
+    text = " ".join(f"{type(error).__name__}: {error}".split())
+    return text if len(text) <= 200 else text[:197] + "..."

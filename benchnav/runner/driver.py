@@ -15,6 +15,7 @@ from benchnav.navigation.observation import Observation
 from benchnav.navigation.rehearsal import Rehearsal, copied
 from benchnav.navigation.tracks import granted_map
 from benchnav.runner.answer import CallFailed, checked
+from benchnav.runner.watch import calling
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
 
@@ -66,7 +67,8 @@ class Driver:
         rows = np.arange(len(worlds))
         began = perf_counter()
         try:
-            self.navigator.reset(briefings, rows)
+            with calling("reset"):
+                self.navigator.reset(briefings, rows)
         except MissingExtraError:
             raise  # what is not installed is no failure of the navigator
         except (Exception, SystemExit) as error:
@@ -92,9 +94,10 @@ class Driver:
         active = self._active[observation.rows]
         began = perf_counter()
         try:
-            answer = self.navigator.act(observation)
-            seconds = perf_counter() - began
-            told = checked(answer, active)
+            with calling("act", time):
+                answer = self.navigator.act(observation)
+                seconds = perf_counter() - began
+                told = checked(answer, active)
         except CallFailed as failed:
             raise CallFailed(self._at(failed.reason, time), failed.suspects) from None
         except MissingExtraError:
@@ -109,8 +112,9 @@ class Driver:
     def remarks(self, row: int) -> tuple[str, ...]:
         """What it has to tell of the world in ``row``; what it cannot tell is lost."""
         try:
-            told = [str(remark) for remark in self.navigator.remarks(row)]
-        except Exception as error:
+            with calling("remarks"):
+                told = [str(remark) for remark in self.navigator.remarks(row)]
+        except (Exception, SystemExit) as error:
             return (f"remarks raised {_said(error)}",)
         return tuple(_short(text) for text in told[:_REMARKS])
 

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pyarrow as pa
+import pyarrow.compute as pc
 
 from benchnav.episode.episode import Episode
 from benchnav.metrics.measure import measure
@@ -16,6 +17,12 @@ def measured(episodes: Iterable[Episode], metrics: Sequence[Metric]) -> pa.Table
     """The table of `RESULTS` of these episodes."""
     rows = [row for episode in episodes for row in measure(episode, metrics)]
     return pa.Table.from_pylist(rows, schema=RESULTS)
+
+
+def failed_metrics(results: pa.Table) -> list[tuple[str, str]]:
+    """(metric, how it failed) of every value of `RESULTS` that is missing for that."""
+    gaps = results.filter(pc.not_equal(results["missing"], ""))
+    return list(zip(gaps["metric"].to_pylist(), gaps["missing"].to_pylist(), strict=True))
 
 
 def measure_again(run: Path, metrics: Sequence[Metric]) -> pa.Table:

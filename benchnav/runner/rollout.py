@@ -10,6 +10,7 @@ import numpy as np
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import Clock, Rules, World
 from benchnav.episode.episode import Episode, Identity
+from benchnav.errors import BrokenPluginError
 from benchnav.navigation.configure import Spec, make, split
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.rehearsal import Rehearsal
@@ -18,6 +19,7 @@ from benchnav.runner.answer import CallFailed
 from benchnav.runner.driver import Driver
 from benchnav.runner.generators import generator, place
 from benchnav.runner.recorder import Recorder
+from benchnav.runner.watch import calling
 from benchnav.world.simulation import Simulation
 
 MAX_WORLDS = 64  # of a batch: more gains little speed and holds more in memory
@@ -124,22 +126,21 @@ def _lockstep(
     simulation = Simulation([world for _, world in batch])
     recorder = Recorder(simulation)
     recorder.record_state()
-    planning, failure, reproducible = 0.0, charge, True
-    remarks: list[tuple[str, ...]] = [()] * len(batch)
+    planning, failure, drivers = 0.0, charge, list[Driver]()
     if charge:
         _charge(simulation, recorder)
     else:
         told = [grants.get(seed, ()) for seed, _ in batch]
-        drivers = drivers_of(assignment, simulation, told)
-        reproducible = all(driver.navigator.reproducible for driver in drivers)
         try:
+            drivers = drivers_of(assignment, simulation, told)
             planning = drive(assignment, drivers, recorder, [seed for seed, _ in batch])
         except CallFailed as failed:
             if len(batch) > 1:
                 raise
             failure = failed.reason
             _charge(simulation, recorder)
-        remarks = [drivers[0].remarks(row) for row in range(len(batch))]
+    reproducible = all(driver.navigator.reproducible for driver in drivers)
+    remarks = [drivers[0].remarks(row) if drivers else () for row in range(len(batch))]
     identities = [assignment.identity(seed) for seed, _ in batch]
     return recorder.episodes(identities, planning, failure, reproducible, remarks)
 
@@ -174,14 +175,24 @@ def drivers_of(
 ) -> list[Driver]:
     """The evaluated navigator, then the background ones, which know the scenario's map.
 
-    ``rehearsals`` (B,) are what the first is told of, none where there are none.
+    ``rehearsals`` (B,) are what the first is told of, none where there are none. Raises
+    CallFailed where one cannot be made.
     """
-    chosen: Navigator = make(NAVIGATORS, assignment.navigator)
+    chosen = _made(assignment.navigator, "")
     drivers = [Driver(chosen, simulation, 0, assignment.track, rehearsals=rehearsals)]
     for which, spec in enumerate(assignment.background, start=1):
         blame = f"the scenario's background navigator {split(NAVIGATORS, spec)[0]!r}: "
-        drivers.append(Driver(make(NAVIGATORS, spec), simulation, which, "known", blame))
+        drivers.append(Driver(_made(spec, blame), simulation, which, "known", blame))
     return [driver for driver in drivers if driver.chosen.size]
+
+
+def _made(spec: Spec, blame: str) -> Navigator:
+    try:
+        with calling("__init__"):
+            navigator: Navigator = make(NAVIGATORS, spec)
+    except BrokenPluginError as error:
+        raise CallFailed(f"{blame}{error}") from error
+    return navigator
 
 
 def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) -> float:

@@ -9,6 +9,8 @@ from benchnav.errors import RunConflictError, UsageError
 from benchnav.plugins import METRICS
 from benchnav.runner.executor import execute
 from benchnav.runner.generators import draw_salt
+from benchnav.runner.limits import Limits
+from benchnav.runner.process_tree import tells_memory
 from benchnav.runner.progress import Progress
 from benchnav.runner.suite import Cell, Suite
 from benchnav.runner.task import Outcome, Task, chunks
@@ -32,6 +34,8 @@ class Summary:
     """Worlds by (navigator, scenario, team) in which a leader succeeded in no rehearsal."""
     remarks: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     """Worlds by (navigator, scenario, what it tells of them)."""
+    missing: Counter[tuple[str, str]] = field(default_factory=Counter)
+    """Values by (metric, why it failed)."""
 
     def count(self, task: Task, outcome: Outcome) -> None:
         """A task is finished."""
@@ -42,6 +46,7 @@ class Summary:
         scenario = task.cell.scenario.identity
         self.unled.update((label, scenario, team) for _, team in outcome.unled)
         self.remarks.update((label, scenario, text) for _, text in outcome.remarks)
+        self.missing.update(outcome.missing)
         if outcome.lacks:
             self.total -= len(task.seeds)
             if all(cell != task.cell for cell, _ in self.not_applicable):
@@ -58,6 +63,8 @@ def run_suite(
     out: Path,
     *,
     workers: int | None = None,
+    timeout: float | None = None,
+    memory: float | None = None,
     progress: Progress | None = None,
     summary: Summary | None = None,
 ) -> Summary:
@@ -66,13 +73,17 @@ def run_suite(
     Args:
         suite: what to run.
         out: the run folder; missing, empty, or one of the same suite (resumed).
-        workers: processes; None: as many as there are cores; 0: in this process.
+        workers: processes; None: as many as there are cores; 0: in this process, where nothing
+            is limited.
+        timeout: [s] that a call of a navigator may last; None: as in ``out``, or as in `Limits`.
+        memory: [GB] that a worker may hold; None: likewise.
         progress: who is told; None: nobody.
         summary: filled while the run goes on; None: a new one.
 
     Raises:
-        UsageError: no metric is registered.
-        RunConflictError: ``out`` holds another suite, salt or thing, or another process writes it.
+        UsageError: no metric is registered, or a limit cannot be kept.
+        RunConflictError: ``out`` holds another suite, salt, limit or thing, or another process
+            writes it.
         StoreError: the disk refuses, or a stored part is damaged.
         UnsolvableError: a scenario cannot be drawn.
     """
@@ -80,14 +91,16 @@ def run_suite(
     told = progress if progress is not None else Progress()
     summary = summary if summary is not None else Summary()
     cells = list(suite.cells())
-    folder = _start(suite, out, cells)
+    count = _count(workers)
+    _refuse_limits(count, timeout, memory)
+    folder, limits = _start(suite, out, cells, timeout, memory)
     with folder.writing():
         reasons = {cell.key: cell.reason for cell in cells}
         folder = folder.amend(reasons)  # what was not installed then may be now
         tasks = _tasks(suite, folder, cells, summary)
         told.begin(summary.total, summary.stored)
         try:
-            with closing(execute(tasks, _count(workers), told)) as finished:
+            with closing(execute(tasks, count, told, limits)) as finished:
                 for task, outcome in finished:
                     summary.count(task, outcome)
         finally:
@@ -123,9 +136,25 @@ def _refuse_without_metrics() -> None:
         )
 
 
-def _start(suite: Suite, out: Path, cells: list[Cell]) -> RunFolder:
+def _refuse_limits(workers: int, timeout: float | None, memory: float | None) -> None:
+    if workers == 0 and (timeout, memory) != (None, None):
+        raise UsageError(
+            "A limit must have a worker process to hold in. Got --workers 0, which has none."
+        )
+    if memory is not None and not tells_memory():
+        raise UsageError(
+            "--memory must stand on a system that tells how much memory a process holds."
+            " This one does not; leave it out."
+        )
+
+
+def _start(
+    suite: Suite, out: Path, cells: list[Cell], timeout: float | None, memory: float | None
+) -> tuple[RunFolder, Limits]:
     said = tuple(_said(c) for c in cells)
-    folder = RunFolder.start(out, Manifest(suite.resolved(), said, suite.salt or draw_salt()))
+    asked = _limits(Limits(), timeout, memory)
+    salt = suite.salt or draw_salt()
+    folder = RunFolder.start(out, Manifest(suite.resolved(), said, salt, asked.said()))
     for scenario in suite.scenarios:
         keep_files(folder.path, scenario.named_files())
     held = folder.manifest.salt
@@ -134,7 +163,24 @@ def _start(suite: Suite, out: Path, cells: list[Cell]) -> RunFolder:
             f"The salt must be that of the run in {folder.path}, {held}. Got {suite.salt} instead."
             " Leave --salt out to go on there, or give another --out."
         )
-    return folder
+    limits = Limits.of(folder.manifest.limits)
+    if _limits(limits, timeout, memory) != limits:
+        raise RunConflictError(
+            f"The limits must be those of the run in {folder.path}, {limits}. Got"
+            f" {_limits(limits, timeout, memory)} instead. Leave --timeout and --memory out to go"
+            " on there, or give another --out."
+        )
+    return folder, limits
+
+
+def _limits(otherwise: Limits, timeout: float | None, memory: float | None) -> Limits:
+    try:
+        return Limits(
+            otherwise.timeout if timeout is None else timeout,
+            otherwise.memory if memory is None else memory,
+        )
+    except ValueError as error:
+        raise UsageError(f"The limit {error}.") from None
 
 
 def _said(cell: Cell) -> dict[str, str]:

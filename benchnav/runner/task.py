@@ -8,7 +8,7 @@ from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.metrics.measure import all_metrics
 from benchnav.runner.latency import latency, peak_memory
-from benchnav.runner.measured import measured
+from benchnav.runner.measured import failed_metrics, measured
 from benchnav.runner.rehearsal import Performance, perform
 from benchnav.runner.rollout import Assignment, Seeded
 from benchnav.runner.suite import Cell
@@ -58,6 +58,7 @@ class Outcome:
         default=()
     )  # (seed, team): its leader never succeeded
     remarks: tuple[tuple[int, str], ...] = field(default=())  # (seed, what the navigator tells)
+    missing: tuple[tuple[str, str], ...] = field(default=())  # (metric, how it failed), by value
     lacks: str = ""  # what is not installed, and how to: then nothing was stored
 
 
@@ -98,18 +99,21 @@ def _work(task: Task, tick: Callable[[int], None]) -> Outcome:
     failures: list[tuple[int, str]] = []
     unled: list[tuple[int, str]] = []
     remarks: list[tuple[int, str]] = []
+    missing: list[tuple[str, str]] = []
     with PartWriter(Part(task.folder, task.first, task.stop)) as writer:
         for batch in perform(task.assignment, worlds, task.charge):
             episodes = _timed(task, batch)
             rehearsals = [e for performance in batch for e in performance.rehearsed.episodes]
-            writer.add(episodes, measured(_ticking(episodes, tick), metrics), rehearsals)
+            results = measured(_ticking(episodes, tick), metrics)
+            writer.add(episodes, results, rehearsals)
+            missing += failed_metrics(results)
             failures += [(e.identity.seed, e.failure) for e in episodes if e.failure]
             remarks += [(e.identity.seed, text) for e in episodes for text in e.remarks]
             unled += [(p.episode.identity.seed, team) for p in batch for team in p.unled]
         writer.seal()
     redraws = sum(world.redraws for _, world in worlds)
     failed, alone, said = (tuple(sorted(found)) for found in (failures, unled, remarks))
-    return Outcome(len(worlds), redraws, failed, alone, said)
+    return Outcome(len(worlds), redraws, failed, alone, said, tuple(missing))
 
 
 def _timed(task: Task, batch: list[Performance]) -> list[Episode]:

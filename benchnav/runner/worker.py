@@ -4,15 +4,20 @@ Messages to the parent: ("ready", None), ("episodes", n), ("done", Outcome),
 ("refused", (name, text)) of a BenchnavError, ("crashed", traceback).
 """
 
+import multiprocessing
 import os
 import signal
 import sys
 import traceback
-from multiprocessing.connection import Connection
+from contextlib import suppress
+from multiprocessing.connection import Connection, wait
+from pathlib import Path
+from threading import Thread
 from typing import Any
 
 from benchnav import errors
 from benchnav.errors import BenchnavError
+from benchnav.runner.watch import Notes, write_to
 
 ONE_THREAD = {  # a worker is one core: more threads would only fight those of other workers
     "BENCHNAV_THREADS": "1",
@@ -23,10 +28,16 @@ ONE_THREAD = {  # a worker is one core: more threads would only fight those of o
 }
 
 
-def serve(pipe: "Connection[Any, Any]") -> None:
-    """Work until the pipe says None or closes. Runs in a process of its own."""
+def serve(pipe: "Connection[Any, Any]", notes: Notes) -> None:
+    """Work until the pipe says None or closes. Runs in a process of its own.
+
+    ``notes`` are shared with the parent, who reads from them which call lasts.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
     os.dup2(2, 1)  # what a navigator prints is talk, and results are the parent's
+    _end_with_parent()
+    _go_first()
+    write_to(notes)
     from benchnav.runner.task import work
 
     pipe.send(("ready", None))
@@ -48,6 +59,25 @@ def refused(name: str, text: str) -> BenchnavError:
     error: BenchnavError = kind.__new__(kind)
     error.args = (text,)
     return error
+
+
+def _end_with_parent() -> None:
+    """Who outlives a parent that was killed would write beside the run that goes on."""
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+
+    def wait_for_its_end() -> None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+    Thread(target=wait_for_its_end, daemon=True).start()
+
+
+def _go_first() -> None:
+    """Where memory ends, Linux shall end a worker and not its parent."""
+    with suppress(OSError):
+        Path("/proc/self/oom_score_adj").write_text("1000")
 
 
 def _next(pipe: "Connection[Any, Any]") -> Any:

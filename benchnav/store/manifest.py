@@ -28,6 +28,7 @@ class Manifest:
     suite: Mapping[str, Any]  # resolved: hashes of scenarios, full configurations, seeds
     cells: tuple[Mapping[str, Any], ...]  # key, scenario, track, navigator, reason it is n/a or ""
     salt: str = ""  # of the randomness that navigators are handed, in hexadecimal digits
+    limits: Mapping[str, float] = field(default_factory=dict)  # beyond which an episode fails
     schema: int = SCHEMA
     versions: Mapping[str, str] = field(default_factory=lambda: versions())
     platform: str = field(default_factory=platform.platform)
@@ -90,11 +91,12 @@ def load_manifest(run: Path) -> Manifest:
                 f" benchnav {said['versions'].get('benchnav')} wrote it; install that one."
             )
         manifest = Manifest(
-            said["suite"], tuple(said["cells"]), said.get("salt", ""), schema, said["versions"],
-            said["platform"], said["created"],
+            said["suite"], tuple(said["cells"]), said.get("salt", ""), said.get("limits", {}),
+            schema, said["versions"], said["platform"], said["created"],
         )  # fmt: skip
         whole = manifest.suite_hash == said["suite_hash"]
-        untouched = schema < DIGESTED or manifest.digest == said["digest"]
+        older = schema < DIGESTED and "digest" not in said
+        untouched = older or manifest.digest == said["digest"]
         _refuse_strange_cells(manifest.cells)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise CorruptPartError(

@@ -6,7 +6,7 @@ killed run left there.
 """
 
 import hashlib
-import json
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +18,7 @@ import pyarrow.parquet as pq
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError
+from benchnav.store import checked_json
 from benchnav.store.episodes import from_table
 from benchnav.store.results import completed
 
@@ -25,6 +26,7 @@ SEAL = ".seal.json"
 EPISODES_FILE = ".episodes.parquet"
 RESULTS_FILE = ".results.parquet"
 REHEARSALS_FILE = ".rehearsals.parquet"  # only where there were rehearsals
+_STEM = re.compile(r"([0-9]{6,9})-([0-9]{6,9})")
 FILES = (EPISODES_FILE, RESULTS_FILE, REHEARSALS_FILE)
 MOST_SEEDS = 1_000_000  # of a part, whatever its name says
 MOST_BYTES = 8 << 30  # that a file of a part may hold once it is decompressed
@@ -135,10 +137,12 @@ class Part:
     def _seal(self) -> dict[str, Any]:
         seal = self.path(SEAL)
         try:
-            said: dict[str, Any] = json.loads(seal.read_text(encoding="utf-8"))
-            return dict(said)
-        except (OSError, ValueError, TypeError) as error:
+            said = checked_json.load(seal.read_text(encoding="utf-8"), (*FILES, "episodes"))
+        except (OSError, ValueError) as error:
             raise self._corrupt(seal, f"cannot be read ({error})") from error
+        if said.get("episodes") != len(self.seeds):
+            raise self._corrupt(seal, f"is of {said.get('episodes')} episodes")
+        return said
 
     def _check_size(self, suffix: str, sealed: dict[str, Any]) -> None:
         path = self.path(suffix)
@@ -160,9 +164,6 @@ class Part:
 
 def parts_of(folder: Path) -> list[Part]:
     """The sealed parts in the folder of one cell, by seed."""
-    found = []
-    for seal in folder.glob(f"*{SEAL}"):
-        first, _, stop = seal.name.removesuffix(SEAL).partition("-")
-        if first.isdecimal() and stop.isdecimal() and 0 < int(stop) - int(first) <= MOST_SEEDS:
-            found.append(Part(folder, int(first), int(stop)))
-    return sorted(found)
+    stems = (_STEM.fullmatch(seal.name.removesuffix(SEAL)) for seal in folder.glob(f"*{SEAL}"))
+    found = sorted(Part(folder, int(stem[1]), int(stem[2])) for stem in stems if stem)
+    return [part for part in found if 0 < len(part.seeds) <= MOST_SEEDS]

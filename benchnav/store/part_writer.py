@@ -1,9 +1,8 @@
 """Writes one part: everything under temporary names, then renamed, the seal last."""
 
 import hashlib
-import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,6 +14,7 @@ import pyarrow.parquet as pq
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import StoreError
+from benchnav.store import checked_json
 from benchnav.store.episodes import DICTIONARY, EPISODES, to_table
 from benchnav.store.part import EPISODES_FILE, FILES, REHEARSALS_FILE, RESULTS_FILE, SEAL, Part
 from benchnav.store.results import RESULTS
@@ -34,9 +34,8 @@ class PartWriter:
     Every method raises StoreError where the disk refuses (full, read-only).
     """
 
-    def __init__(self, part: Part, notes: Mapping[str, Any] | None = None) -> None:
+    def __init__(self, part: Part) -> None:
         self.part = part
-        self._notes = dict(notes or {})
         self._results: list[pa.Table] = []
         self._rows = 0
         self._sealed = False
@@ -76,9 +75,9 @@ class PartWriter:
                 _sync(file)
             written = [suffix for suffix in FILES if suffix in {RESULTS_FILE, *self._streams}]
             sealed = {suffix: _facts(self._temporary(suffix)) for suffix in written}
-            notes = {**sealed, "episodes": self._rows, **self._notes}
+            said = {**sealed, "episodes": self._rows}
             with self._temporary(SEAL).open("wb") as file:
-                file.write(json.dumps(notes, indent=1).encode())
+                file.write(checked_json.dump(said).encode())
                 _sync(file)
             for suffix in (*written, SEAL):
                 self._temporary(suffix).replace(self.part.path(suffix))

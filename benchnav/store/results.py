@@ -29,11 +29,18 @@ RESULTS = pa.schema(
         ("rehearsal", pa.int64()),  # rehearsals granted; 0 in older parts, as the next two
         ("rehearsal_decisions", pa.int64()),  # of agents, in the rehearsals of this world
         ("rehearsal_seconds", pa.float64()),  # of the navigator that led
+        ("missing", pa.string()),  # how the metric failed; "" where it did not, and in older parts
     ]
 )
 
 
-LATER = {"navigator_hash": "", "rehearsal": 0, "rehearsal_decisions": 0, "rehearsal_seconds": 0.0}
+LATER = {
+    "navigator_hash": "",
+    "rehearsal": 0,
+    "rehearsal_decisions": 0,
+    "rehearsal_seconds": 0.0,
+    "missing": "",
+}
 """Columns that older parts lack, and what stands for them."""
 
 

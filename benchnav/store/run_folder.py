@@ -86,6 +86,18 @@ class RunFolder:
             seeds.update(part.seeds)
         return seeds
 
+    def missing(self) -> Iterator[tuple[str, list[int]]]:
+        """(key, seeds) of the cells that could be run and are not stored whole.
+
+        Raises CorruptPartError where a part is damaged.
+        """
+        first, stop = self.manifest.suite["seeds"]
+        for cell in self.manifest.cells:
+            if not cell["reason"]:
+                seeds = sorted(set(range(first, stop)) - self.done(cell["key"]))
+                if seeds:
+                    yield cell["key"], seeds
+
     @contextmanager
     def writing(self) -> Iterator[None]:
         """Hold the folder as its only writer; leftovers are removed before and after.

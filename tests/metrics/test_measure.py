@@ -105,14 +105,26 @@ def test_geodesic_is_undefined_where_walls_move():
         assert math.isnan(measure(episode, [load_metric(name)])[0]["value"])
 
 
-def test_metric_that_raises_is_named_with_its_episode():
+def test_a_metric_that_raises_costs_its_own_value_and_says_why():
     def broken(episode):
-        raise ZeroDivisionError("oh")
+        raise ZeroDivisionError("oh\nno")
 
-    with pytest.raises(PluginError, match=r"'x' failed on synthetic/walks@1 seed 0 of 'walks'"):
-        measure(zoo()["smooth"], [_metric(broken)])
-    with pytest.raises(PluginError, match="'x' failed"):
-        measure(zoo()["smooth"], [_metric(lambda e: np.zeros(1))])
+    rows = measure(zoo()["smooth"], [_metric(broken), load_metric("success")])
+    found = {(r["role"], r["metric"]): r for r in rows}
+    for role in ("leader", "follower"):
+        lost = found[role, "x"]
+        assert math.isnan(lost["value"])
+        assert (lost["defined"], lost["missing"]) == (0, "ZeroDivisionError: oh no")
+        assert found[role, "success"]["missing"] == ""
+    assert found["leader", "success"]["value"] == 0.5
+    (short,) = {r["missing"] for r in measure(zoo()["smooth"], [_metric(lambda e: np.zeros(1))])}
+    assert short.startswith("IndexError: ")
+    with pytest.raises(KeyboardInterrupt):
+        measure(zoo()["smooth"], [_metric(_interrupted)])
+
+
+def _interrupted(episode):
+    raise KeyboardInterrupt
 
 
 def test_names_are_checked():

@@ -43,8 +43,11 @@ clock: {dt: 0.2, substeps: 2, horizon: 8}
 NAVIGATORS = '''
 """Navigators that fail in some worlds only: those whose first agent starts in the east."""
 
+import multiprocessing
 import os
+import signal
 import sys
+import time
 
 import numpy as np
 
@@ -102,6 +105,50 @@ class Leaves(Walk):
 class Dies(Walk):
     def fail(self, command, b):
         os._exit(7)
+
+
+class Crashes(Walk):
+    def fail(self, command, b):
+        os.kill(os.getpid(), signal.SIGSEGV)
+
+
+class Sleeps(Walk):
+    def fail(self, command, b):
+        time.sleep(3600)
+
+
+class Spins(Walk):
+    """Hangs in C and never lets go of the interpreter."""
+
+    def fail(self, command, b):
+        return 7 ** (10**9)
+
+
+class Leaks(Walk):
+    kept = []
+
+    def fail(self, command, b):
+        self.kept.append(np.ones(12_500_000))
+        return command
+
+
+class Hoards(Walk):
+    """Keeps a little of every world that its process ever saw."""
+
+    kept = []
+
+    def reset(self, briefings, rows):
+        super().reset(briefings, rows)
+        self.kept += [np.ones(25_000_000) for _ in briefings]
+
+
+class NotThere(Walk):
+    """Cannot be made in a worker."""
+
+    def __init__(self, config=None):
+        super().__init__(config)
+        if multiprocessing.parent_process() is not None:
+            raise OSError("not there")
 
 
 class ResetRaises(Walk):

@@ -98,6 +98,12 @@ def make_results(episodes):
     return pa.Table.from_pylist(rows, schema=RESULTS)
 
 
+def make_manifest(**changes):
+    suite = {"name": "tiny", "version": 1, "seeds": [0, 20], **changes}
+    cells = ({"key": "cell", "reason": ""}, {"key": "na", "reason": "needs a map"})
+    return Manifest(suite, cells)
+
+
 def assert_same(left, right, path=""):
     """Equal in type and, for floats, in every bit."""
     assert type(left) is type(right) or isinstance(left, float), path
@@ -126,11 +132,7 @@ def tools():
         results = staticmethod(make_results)
         same = staticmethod(assert_same)
 
-        @staticmethod
-        def manifest(**changes):
-            suite = {"name": "tiny", "version": 1, "seeds": [0, 20], **changes}
-            cells = ({"key": "cell", "reason": ""}, {"key": "na", "reason": "needs a map"})
-            return Manifest(suite, cells)
+        manifest = staticmethod(make_manifest)
 
     return Tools
 

@@ -1,0 +1,33 @@
+"""A run that is killed again and again ends as one that nobody disturbed."""
+
+import pytest
+
+from benchmarks.kill_nine import survive
+from benchnav.runner.process_tree import tells_memory
+
+SCENARIO = """
+name: tiny/open
+title: Two discs that change places
+bounds: [-3, -3, 3, 3]
+teams:
+  - name: pair
+    count: 2
+    radius: 0.2
+    max_speed: 1
+    start: {type: circle, radius: 2}
+    goal: {type: antipodal}
+clock: {dt: 0.2, substeps: 2, horizon: 6}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not tells_memory(), reason="without /proc nobody knows who is still there")
+@pytest.mark.parametrize("parent_only", [False, True])
+def test_a_run_that_is_killed_ends_as_an_unbroken_one(tmp_path, parent_only):
+    (tmp_path / "open.yaml").write_text(SCENARIO)
+    suite = tmp_path / "suite.yaml"
+    suite.write_text("name: tiny\nscenarios: [open.yaml]\nnavigators: [orca, random-walk]\n")
+    options = ("--seeds", "300", "--workers", "2")
+    tally = survive(str(suite), tmp_path, 2, options=options, parent_only=parent_only, seed=1)
+    assert tally.kills == 2
+    assert tally.finished >= 1
