@@ -6,6 +6,8 @@ import json
 
 import pytest
 
+from benchnav.metrics.metric import Metric
+from benchnav.plugins import METRICS
 from benchnav.store.part import RESULTS_FILE
 from benchnav.store.reading import read_episodes
 
@@ -88,6 +90,7 @@ def test_an_unfinished_run_says_so_and_a_damaged_one_is_refused(call, run):
     code, _, stderr = call("leaderboard", run)
     assert code == 0
     assert f"{run} holds 6 of 8 episodes" in stderr
+    assert f"missing: seeds 0–1 of {parts[0].parent.name}" in stderr
     damaged = next(iter(parts[1].parent.glob(f"*{RESULTS_FILE}")))
     damaged.write_bytes(b"x" * damaged.stat().st_size)
     code, stdout, stderr = call("leaderboard", run)
@@ -140,3 +143,29 @@ def test_failures_and_cells_that_are_n_a_are_told(call, suite, tmp_path, monkeyp
     assert "n/a: rude:Maps needs a map (unknown), 1 cell" in stderr
     table = call("leaderboard", tmp_path / "o")[1]
     assert "n/a (needs a map)" in table
+
+
+def test_a_metric_that_fails_is_told_at_the_end_and_under_the_table(call, suite, tmp_path):
+    def broken(episode):
+        if episode.identity.navigator == "orca":
+            raise ZeroDivisionError("oh")
+        return episode.arrival * 0.0 + 0.5
+
+    METRICS.register("tests_broken")(
+        Metric("tests_broken", "t", "", "higher", 0.0, 1.0, "r", broken)
+    )
+    try:
+        arguments = ("--workers", "0", "--track", "known")
+        code, _, stderr = call("run", suite, "--out", tmp_path / "r", *arguments)
+        assert code == 0
+        assert "the metric tests_broken failed for 2 values: ZeroDivisionError: oh" in stderr
+        for again in ((), ("--recompute",)):
+            _, table, _ = call("leaderboard", tmp_path / "r", "--metric", "tests_broken", *again)
+            assert "tests_broken of orca failed in 2 episodes: ZeroDivisionError: oh." in table
+            assert "orca is not ranked: undefined in every episode" in table
+        _, text, _ = call("leaderboard", tmp_path / "r", "--format", "json")
+    finally:
+        del METRICS._local["tests_broken"]
+    told = {(r["navigator"], r["metric"]): r["fault"] for r in json.loads(text)}
+    assert told["orca", "tests_broken"] == "failed in 2 episodes: ZeroDivisionError: oh"
+    assert {fault for (who, _), fault in told.items() if who != "orca"} == {""}
