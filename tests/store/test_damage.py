@@ -48,7 +48,7 @@ def files(run):
     return sorted(p for p in run.rglob("*") if p.is_file() and p.name != LOCK)
 
 
-@settings(max_examples=300)
+@settings(max_examples=150)
 @given(data=st.data())
 def test_no_flipped_bit_goes_unseen(whole, data):
     run, before = whole
