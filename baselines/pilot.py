@@ -82,6 +82,10 @@ class _Piloted:
 class PilotedNavigator(_Piloted, Navigator):
     """A pilot on its way to the goals."""
 
+    @property
+    def uses_map(self) -> bool:
+        return False
+
     def act(self, observation: Observation) -> FloatArray:
         return self.pilot.twists(observation, self.pilot.tolerance(observation))
 

@@ -31,6 +31,10 @@ class RandomWalk(Navigator):
         super().__init__(config)
         self._walks: dict[int, _Walk] = {}
 
+    @property
+    def uses_map(self) -> bool:
+        return False
+
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):
             self._walks[int(row)] = _Walk(briefing, self.config.turning)

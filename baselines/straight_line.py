@@ -20,6 +20,10 @@ class StraightLine(Navigator):
         super().__init__(config)
         self._told = RowTable()
 
+    @property
+    def uses_map(self) -> bool:
+        return False
+
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):
             step = np.full(len(briefing), briefing.dt)

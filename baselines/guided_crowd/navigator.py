@@ -80,6 +80,10 @@ class GuidedCrowd(Navigator):
         self._flat = _Flat({})
 
     @property
+    def uses_map(self) -> bool:
+        return False
+
+    @property
     def rehearsal(self) -> int:
         return int(self.config.rehearsal)
 

@@ -26,6 +26,10 @@ class Orca(Navigator):
         super().__init__(config)
         self._avoidance = Avoidance(self.config)
 
+    @property
+    def uses_map(self) -> bool:
+        return False
+
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         self._avoidance.reset(briefings, rows)
 

@@ -87,6 +87,10 @@ class Hierarchical(Navigator):
         return known | self.controller.required
 
     @property
+    def uses_map(self) -> bool:
+        return self.planner is not None
+
+    @property
     def reproducible(self) -> bool:
         return self.planner is None or self.planner.reproducible
 

@@ -65,6 +65,14 @@ class Navigator(ABC):
         return self.needs
 
     @property
+    def uses_map(self) -> bool:
+        """False where a map changes nothing that it answers: one run then stands for all tracks.
+
+        It is then granted none.
+        """
+        return True
+
+    @property
     def reproducible(self) -> bool:
         """False where a wall-clock budget decides what it answers."""
         return True

@@ -149,9 +149,23 @@ def check_rows(make: Make) -> None:
     require_same(expected, [np.stack(got)], name, "whatever happens in other rows")
 
 
+def check_map(make: Make) -> None:
+    """Who says that it uses no map needs none, and answers the same with one."""
+    navigator, name = make(), type(make()).__name__
+    if navigator.uses_map or not navigator.reproducible:
+        return
+    require(
+        Need.MAP not in navigator.required,
+        f"{name} must not need a map where it says that it uses none.",
+    )
+    without = answers_of(navigator, _scenes(make))
+    with_map = answers_of(make(), _scenes(make), shown=frozenset({Need.MAP}))
+    require_same(without, with_map, name, "with a map as without, for it says that it uses none")
+
+
 CHECKS: tuple[Callable[[Make], None], ...] = (
     check_declaration, check_answer, check_repeatable, check_batch, check_order_of_agents,
-    check_rows,
+    check_rows, check_map,
 )  # fmt: skip
 
 

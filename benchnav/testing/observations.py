@@ -115,9 +115,14 @@ def answers_of(
     worlds: Sequence[World],
     rows: IntArray | None = None,
     padding: int = 0,
+    shown: frozenset[Need] = frozenset(),
 ) -> list[FloatArray]:
-    """What a navigator commands after a reset: for each world (FRAMES, A, 2), NaN if inactive."""
-    needs, places = navigator.required, np.arange(len(worlds)) if rows is None else rows
+    """What a navigator commands after a reset: for each world (FRAMES, A, 2), NaN if inactive.
+
+    It is told what it needs, and ``shown`` beyond that.
+    """
+    needs = navigator.required | shown
+    places = np.arange(len(worlds)) if rows is None else rows
     navigator.reset(briefings_of(worlds, needs, navigator.rehearsal), places.copy())
     frames = [
         masked(navigator.act(observation), observation)

@@ -148,6 +148,18 @@ class Sideways(Good):
     command = "sideways"
 
 
+class Sly(Good):
+    """Says that it uses no map, and does."""
+
+    uses_map = False
+
+    def reset(self, briefings, rows):
+        self.mapped = any(briefing.map is not None for briefing in briefings)
+
+    def act(self, observation):
+        return super().act(observation) * (0.5 if self.mapped else 1.0)
+
+
 @pytest.mark.parametrize("good", [Good, GoodAgent, lambda: Good()])
 def test_a_sound_navigator_passes(good):
     check_navigator(good)
@@ -171,6 +183,7 @@ def test_a_sound_navigator_passes(good):
         (Positional, "Positional must answer the same for a world alone as in a batch."),
         (Ranked, "Ranked must answer the same whatever the order of agents."),
         (Leaky, "Leaky must answer the same whatever happens in other rows."),
+        (Sly, "Sly must answer the same with a map as without, for it says that it uses none."),
         (Wordless, "Wordless.Config.pace must have a description with its unit."),
         (Lax, "Lax.Config must be frozen and forbid unknown keys: derive it from PluginConfig."),
         (Needy, "Needy must need a frozenset of ['rays', 'neighbours', 'edges', 'map']."),
