@@ -38,10 +38,10 @@ class OrcaPpoConfig(PluginConfig):
         description="[s] for which the policy drives on after a dynamic obstacle was sensed",
     )
     detour: float = Field(
-        1.5,
-        ge=1,
-        description="times the straight way to the goal that a path may be long for the policy to"
-        " be shown the goal itself; beyond it is shown waypoints",
+        0.5,
+        ge=0,
+        description="[m] that a path may be longer than the straight way to the goal for the policy"
+        " to be shown the goal itself; on a longer one it is shown waypoints",
     )
 
 
@@ -108,18 +108,19 @@ class OrcaPpo(Controller):
         """(B, A) who has just sensed a dynamic obstacle."""
         rows, agents = seen.rows, seen.active.shape[1]
         time = seen.time[:, None]
-        until: FloatArray = self._kept.take("wary", rows, agents)
-        if seen.neighbours is not None:
-            listed = np.arange(seen.neighbours.kind.shape[2]) < seen.neighbours.count[..., None]
-            mover = np.any(listed & (seen.neighbours.kind == Kind.DYNAMIC), axis=-1)
-            until = np.where(mover, time + self.config.memory, until)
-            self._kept.write("wary", rows, until)
+        near = seen.neighbours
+        assert near is not None  # noqa: S101 - both parts declare them
+        listed = np.arange(near.kind.shape[2]) < near.count[..., None]
+        mover = np.any(listed & (near.kind == Kind.DYNAMIC), axis=-1)
+        until = self._kept.take("wary", rows, agents)
+        until = np.where(mover, time + self.config.memory, until)
+        self._kept.write("wary", rows, until)
         wary: BoolArray = time <= until
         return wary
 
     def _goals_if_direct(self, seen: Observation, guide: Guide) -> Guide:
-        """The guide with goals for targets, except on detours."""
+        """The guide with goals for targets, but for detours."""
         way = seen.goal - seen.position
         straight = np.sqrt(np.sum(way * way, axis=-1))
-        direct = guide.remaining <= self.config.detour * straight
+        direct = guide.remaining - straight <= self.config.detour
         return replace(guide, target=np.where(direct[..., None], seen.goal, guide.target))
