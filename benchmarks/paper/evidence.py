@@ -126,7 +126,8 @@ class Evidence:
         return [
             part
             for c in self.manifest.cells
-            if (c["scenario"].partition("@")[0], c["track"], c["navigator"]) == cell
+            if (c["scenario"].partition("@")[0], c["navigator"]) == (cell[0], cell[2])
+            and cell[1] in (c["track"], *c.get("also", ()))
             for part in parts_of(folder.cell(c["key"]))
         ]
 

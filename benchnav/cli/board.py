@@ -15,7 +15,7 @@ from benchnav.leaderboard.render import render
 from benchnav.leaderboard.table import leaderboard
 from benchnav.metrics.measure import all_metrics
 from benchnav.metrics.metric import Metric
-from benchnav.store.reading import read_episodes, read_results
+from benchnav.store.reading import read_episodes_in_every_track, read_results
 from benchnav.store.run_folder import RunFolder
 
 TIDY = ("csv", "json")  # hold every metric unless told otherwise
@@ -53,7 +53,7 @@ def comparison(
 def curve(folders: Sequence[RunFolder], format: str) -> str:
     """Success against time, from the stored episodes."""
     _results(folders, {}, recompute=False)  # refuses what must not be merged
-    return render_curves((e for f in folders for e in read_episodes(f.path)), format)
+    return render_curves((e for f in folders for e in read_episodes_in_every_track(f.path)), format)
 
 
 def _metrics() -> dict[str, Metric]:

@@ -9,7 +9,8 @@ import pyarrow.compute as pc
 from benchnav.episode.episode import Episode
 from benchnav.metrics.measure import measure
 from benchnav.metrics.metric import Metric
-from benchnav.store.reading import read_episodes
+from benchnav.store.manifest import load_manifest
+from benchnav.store.reading import in_every_track, read_episodes
 from benchnav.store.results import RESULTS
 
 
@@ -28,6 +29,9 @@ def failed_metrics(results: pa.Table) -> list[tuple[str, str]]:
 def measure_again(run: Path, metrics: Sequence[Metric]) -> pa.Table:
     """The table of `RESULTS` of a stored run, computed from its episodes: nothing is run again.
 
+    In every track that an episode stands for.
+
     Raises what `benchnav.store.reading.read_episodes` raises.
     """
-    return measured(read_episodes(run), metrics)
+    again = measured(read_episodes(run), metrics)
+    return in_every_track(again, load_manifest(run))

@@ -4,6 +4,7 @@ from collections import Counter
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 from benchnav.errors import RunConflictError, UsageError
 from benchnav.plugins import METRICS
@@ -183,13 +184,14 @@ def _limits(otherwise: Limits, timeout: float | None, memory: float | None) -> L
         raise UsageError(f"The limit {error}.") from None
 
 
-def _said(cell: Cell) -> dict[str, str]:
+def _said(cell: Cell) -> dict[str, Any]:
     return {
         "key": cell.key,
         "scenario": cell.scenario.identity,
         "track": cell.track,
         "navigator": cell.entry.label,
         "reason": cell.reason,
+        **({"also": list(cell.also)} if cell.also else {}),
     }
 
 

@@ -37,6 +37,7 @@ class Entry:
     fingerprint: str = ""  # of the files that it reads
     rehearsal: int = 0  # rehearsals before each episode
     leader: "Entry | None" = None  # who drives the leaders in them
+    uses_map: bool = True
 
     @property
     def hash(self) -> str:
@@ -55,6 +56,7 @@ class Cell:
     split: str
     track: str
     entry: Entry
+    also: tuple[str, ...] = ()  # tracks for which it stands too: no map changes anything
 
     @property
     def assignment(self) -> Assignment:
@@ -66,6 +68,16 @@ class Cell:
             navigator_hash=entry.hash, rehearsals=entry.rehearsal,
             leader=entry.leader.spec if entry.leader else None,
         )  # fmt: skip
+
+    @property
+    def once(self) -> bool:
+        """True where the same episodes stand for every track that the scenario has."""
+        return not self.entry.uses_map and self.track in self.scenario.granted_tracks
+
+    @property
+    def contest(self) -> tuple[str, str]:
+        """The scenario, and the navigator's label."""
+        return self.scenario.identity, self.entry.label
 
     @property
     def key(self) -> str:
@@ -167,13 +179,28 @@ class Suite:
     blocks: tuple[Block, ...] = ()  # parts of the product that are run; none: all of it
 
     def cells(self) -> Iterator[Cell]:
-        """Every cell, n/a ones included: by scenario, track, navigator."""
-        for scenario in self.scenarios:
-            for track in self.tracks:
-                for entry in self.entries:
-                    cell = Cell(scenario, self.split, track, entry)
-                    if not self.blocks or any(cell in block for block in self.blocks):
-                        yield cell
+        """Every cell, n/a ones included: by scenario, track, navigator.
+
+        Who uses no map runs once, in the last of a scenario's tracks, for all of them.
+        """
+        whole = [
+            cell
+            for scenario in self.scenarios
+            for track in self.tracks
+            for entry in self.entries
+            if (cell := Cell(scenario, self.split, track, entry)) in self
+        ]
+        stands: dict[tuple[str, str], list[str]] = {}
+        for cell in whole:
+            if cell.once:
+                stands.setdefault(cell.contest, []).append(cell.track)
+        for cell in whole:
+            tracks = stands[cell.contest] if cell.once else [cell.track]
+            if cell.track == tracks[-1]:
+                yield replace(cell, also=tuple(tracks[:-1]))
+
+    def __contains__(self, cell: Cell) -> bool:
+        return not self.blocks or any(cell in block for block in self.blocks)
 
     def resolved(self) -> dict[str, Any]:
         """Everything but the salt that has a say in the results, as plain data for the manifest."""
@@ -304,6 +331,7 @@ def _entry(spec: Spec, where: str) -> Entry:
             label, full, ", ".join(dict.fromkeys(made_of)), navigator.required,
             training=navigator.training or (led.training if led else None),
             fingerprint=navigator.fingerprint, rehearsal=navigator.rehearsal, leader=led,
+            uses_map=navigator.uses_map,
         )  # fmt: skip
     except MissingExtraError as error:
         return Entry(label, full, source, frozenset(), str(error))
@@ -332,6 +360,8 @@ def _resolved(entry: Entry) -> dict[str, Any]:
         said["rehearsal"], said["leader"] = entry.rehearsal, _resolved(entry.leader)
     if entry.training:
         said["training"] = asdict(entry.training)
+    if not entry.uses_map:
+        said["uses_map"] = False
     if entry.fingerprint:
         said["fingerprint"] = entry.fingerprint
     return said

@@ -5,7 +5,7 @@ import json
 import platform
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -26,7 +26,8 @@ class Manifest:
     """The suite that a run executes, and with what."""
 
     suite: Mapping[str, Any]  # resolved: hashes of scenarios, full configurations, seeds
-    cells: tuple[Mapping[str, Any], ...]  # key, scenario, track, navigator, reason it is n/a or ""
+    # key, scenario, track, navigator, reason it is n/a or ""; also: other tracks it stands for
+    cells: tuple[Mapping[str, Any], ...]
     salt: str = ""  # of the randomness that navigators are handed, in hexadecimal digits
     limits: Mapping[str, float] = field(default_factory=dict)  # beyond which an episode fails
     schema: int = SCHEMA
@@ -55,6 +56,9 @@ class Manifest:
         """JSON for `MANIFEST`."""
         said = {**asdict(self), "suite_hash": self.suite_hash, "digest": self.digest}
         return json.dumps(said, indent=1, ensure_ascii=False) + "\n"
+
+
+_SAID = {part.name for part in fields(Manifest)} | {"suite_hash", "digest"}
 
 
 def versions() -> dict[str, str]:
@@ -96,7 +100,7 @@ def load_manifest(run: Path) -> Manifest:
         )  # fmt: skip
         whole = manifest.suite_hash == said["suite_hash"]
         older = schema < DIGESTED and "digest" not in said
-        untouched = older or manifest.digest == said["digest"]
+        untouched = older or (manifest.digest == said["digest"] and set(said) <= _SAID)
         _refuse_strange_cells(manifest.cells)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise CorruptPartError(

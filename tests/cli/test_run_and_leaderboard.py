@@ -18,14 +18,14 @@ def run(call, suite, tmp_path):
     code, stdout, stderr = call("run", suite, "--out", out, "--workers", 0)
     assert (code, stdout) == (0, f"{out}\n")
     assert "tiny@1: 1 scenario × 2 tracks × 2 navigators × 2 seeds" in stderr
-    assert "8 of 8 episodes" in stderr
-    assert "8 episodes stored, 8 of them run in" in stderr
+    assert "4 of 4 episodes" in stderr
+    assert "4 episodes stored, 4 of them run in" in stderr
     return out
 
 
 def test_a_second_run_finds_everything_and_a_quiet_one_says_nothing(call, suite, run):
     code, stdout, stderr = call("run", suite, "--out", run, "--workers", 0)
-    assert "8 episodes stored, 0 of them run" in stderr
+    assert "4 episodes stored, 0 of them run" in stderr
     code, stdout, stderr = call("run", suite, "--out", run, "--workers", 0, "--quiet")
     assert (code, stdout, stderr) == (0, f"{run}\n", "")
 
@@ -89,7 +89,7 @@ def test_an_unfinished_run_says_so_and_a_damaged_one_is_refused(call, run):
     parts[0].unlink()
     code, _, stderr = call("leaderboard", run)
     assert code == 0
-    assert f"{run} holds 6 of 8 episodes" in stderr
+    assert f"{run} holds 2 of 4 episodes" in stderr
     assert f"missing: seeds 0–1 of {parts[0].parent.name}" in stderr
     damaged = next(iter(parts[1].parent.glob(f"*{RESULTS_FILE}")))
     damaged.write_bytes(b"x" * damaged.stat().st_size)

@@ -130,7 +130,7 @@ def test_schemas_are_schemas(call, of):
 def test_validate_tells_scenarios_from_suites(call, suite):
     code, stdout, _ = call("validate", suite)
     assert code == 0
-    assert "is a suite, tiny@1: 4 cells, 0 of them n/a, × 2 seeds" in stdout
+    assert "is a suite, tiny@1: 2 cells, 0 of them n/a, × 2 seeds" in stdout
     code, stdout, _ = call("validate", suite.parent / "open.yaml")
     assert code == 0
     assert "is a scenario, tiny/open@1" in stdout

@@ -311,3 +311,22 @@ def test_two_runs_into_one_folder_at_once_are_refused(suite_file, tmp_path):
         pytest.raises(RunConflictError, match="must have one writer"),
     ):
         run_suite(suite, out, workers=0)
+
+
+def test_who_uses_no_map_is_measured_once_and_stands_in_every_track(tmp_path, suite_file):
+    suite = load_suite(
+        str(suite_file), Selection(tracks=("known", "unknown"), navigators=("orca",), seeds="2")
+    )
+    run = tmp_path / "run"
+    assert run_suite(suite, run, workers=0).total == 2
+    assert {e.identity.track for e in read_episodes(run)} == {"unknown"}
+    for results in (read_results(run), measure_again(run, all_metrics())):
+        known, unknown = (
+            [
+                {**row, "track": "", "value": repr(row["value"])}
+                for row in results.to_pylist()
+                if row["track"] == track and not row["metric"].startswith(TIMINGS)
+            ]
+            for track in ("known", "unknown")
+        )
+        assert known == unknown != []

@@ -27,11 +27,14 @@ def write(tmp_path, scenario_file, troubled):
     return write
 
 
+MAPPERS = "[mapping+visibility+orca, mapping+navmesh+orca]"
+ONE, TWO = "mapping+visibility+orca", "mapping+navmesh+orca"
+
+
 def test_cells_are_every_scenario_track_and_navigator(write):
-    cells = list(load_suite(write()).cells())
+    cells = list(load_suite(write(navigators=MAPPERS)).cells())
     assert [(c.track, c.entry.label) for c in cells] == [
-        ("known", "straight-line"), ("known", "orca"),
-        ("unknown", "straight-line"), ("unknown", "orca"),
+        ("known", ONE), ("known", TWO), ("unknown", ONE), ("unknown", TWO),
     ]  # fmt: skip
     assert len({cell.key for cell in cells}) == 4
     assert all(cell.reason == "" for cell in cells)
@@ -149,25 +152,24 @@ def test_full_has_every_scenario_that_ships():
     assert {scenario.name for scenario in load_suite("full").scenarios} == shipped
 
 
-BLOCKS = "[{tracks: [known], navigators: [orca]}, {tracks: [unknown]}]"
+BLOCKS = f"[{{tracks: [known], navigators: [{TWO}]}}, {{tracks: [unknown]}}]"
 
 
 def test_blocks_are_the_parts_of_the_product_that_are_run(write):
-    suite = load_suite(write(blocks=BLOCKS))
+    suite = load_suite(write(navigators=MAPPERS, blocks=BLOCKS))
     assert [(c.track, c.entry.label) for c in suite.cells()] == [
-        ("known", "orca"), ("unknown", "straight-line"), ("unknown", "orca"),
+        ("known", TWO), ("unknown", ONE), ("unknown", TWO),
     ]  # fmt: skip
-    assert suite.resolved()["blocks"][0]["navigators"] == ("orca",)
+    assert suite.resolved()["blocks"][0]["navigators"] == (TWO,)
     assert "blocks" not in load_suite(write()).resolved()
 
 
 def test_what_is_selected_from_outside_the_file_is_in_every_block(write):
-    chosen = Selection(navigators=("orca", "random-walk"), tracks=("known", "partial"))
-    suite = load_suite(write(blocks=BLOCKS), chosen)
+    chosen = Selection(navigators=(TWO, "ompl-orca"), tracks=("known", "partial"))
+    suite = load_suite(write(navigators=MAPPERS, blocks=BLOCKS), chosen)
     cells = [(c.track, c.entry.label) for c in suite.cells()]
     assert cells == [
-        ("known", "orca"), ("known", "random-walk"),
-        ("partial", "orca"), ("partial", "random-walk"),
+        ("known", TWO), ("known", "ompl-orca"), ("partial", TWO), ("partial", "ompl-orca"),
     ]  # fmt: skip
 
 
@@ -175,3 +177,16 @@ def test_a_block_names_what_the_suite_has(write):
     path = write(blocks="[{navigators: [orka]}]")
     with pytest.raises(ScenarioError, match=r"blocks\[0\]\.navigators must be among.*'orka'.*orca"):
         load_suite(path)
+
+
+def test_who_uses_no_map_runs_once_for_all_tracks(write):
+    suite = load_suite(write(navigators="[orca, ompl-pure]", tracks="[known, stale, unknown]"))
+    cells = [(c.track, c.entry.label, c.also, bool(c.reason)) for c in suite.cells()]
+    assert cells == [
+        ("known", "ompl-pure", (), False),
+        ("stale", "orca", (), True),
+        ("stale", "ompl-pure", (), True),
+        ("unknown", "orca", ("known",), False),
+        ("unknown", "ompl-pure", (), True),
+    ]
+    assert suite.resolved()["navigators"][0]["uses_map"] is False
