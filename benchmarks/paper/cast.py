@@ -11,6 +11,7 @@ TABULAR = "q-learning"
 GRID = "q-learning-grid"
 PAPER = "recurrent-ppo"
 PLUS = "recurrent-ppo-plus"
+HYBRID = "map-orca-ppo"
 GUIDED = "guided by recurrent-ppo"
 GUIDED_PLUS = "guided by recurrent-ppo-plus"
 

@@ -147,14 +147,13 @@ def _any_goal(m: Material) -> Finding:
 
 
 def _reaches(m: Material) -> Finding:
-    cells = [(scenario, "unknown", cast.PAPER) for scenario in (cast.TRAP, cast.MAZE)]
-    values = [m.evidence.value("arrival", cell) for cell in cells]
-    verdict = CONFIRMED if min(v.mean for v in values) >= GOOD else CONTRADICTED
-    return verdict, (
-        f"`{cast.PAPER}` arrives in {values[0].text(100)} % of `{cast.TRAP}` and"
-        f" {values[1].text(100)} % of `{cast.MAZE}`, `{cast.MAPPING_BOTH}` in"
-        f" {_percent(m, 'arrival', (cast.TRAP, 'unknown', cast.MAPPING_BOTH))} and"
-        f" {_percent(m, 'arrival', (cast.MAZE, 'unknown', cast.MAPPING_BOTH))}"
+    ends = {
+        who: [m.evidence.value("arrival", (at, "unknown", who)) for at in (cast.TRAP, cast.MAZE)]
+        for who in (cast.PAPER, cast.MAPPING_BOTH, cast.HYBRID)
+    }
+    verdict = CONFIRMED if min(v.mean for v in ends[cast.PAPER]) >= GOOD else CONTRADICTED
+    return verdict, f"arrival in `{cast.TRAP}` and `{cast.MAZE}`: " + "; ".join(
+        f"`{who}` {trap.text(100)} % and {maze.text(100)} %" for who, (trap, maze) in ends.items()
     )
 
 

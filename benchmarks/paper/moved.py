@@ -9,6 +9,7 @@ from .markdown import table
 ROWS = (  # who, and the tracks after the move
     (cast.PAPER, ("unknown",)),
     (cast.PLUS, ("unknown",)),
+    (cast.HYBRID, ("unknown",)),
     (cast.TABULAR, ("unknown",)),
     (cast.PLANNER, ("stale", "known")),
     (cast.BOTH, ("stale", "known")),

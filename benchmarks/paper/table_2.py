@@ -38,6 +38,7 @@ ROWS = (
     Row("… over grid cells", cast.GRID, "known"),
     Row("the paper's method", cast.PAPER, "unknown"),
     Row("seeing all round, looking ahead", cast.PLUS, "unknown"),
+    Row("… with a map made online and ORCA", cast.HYBRID, "unknown"),
 )
 
 
