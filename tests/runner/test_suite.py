@@ -1,5 +1,6 @@
 """A suite is a lazy product, and says beforehand which of its cells cannot be."""
 
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,7 @@ from benchnav.runner.suite import Selection, load_suite
 from benchnav.runner.suite_file import suite_names
 from benchnav.scenario.catalogue import names
 
+STANDARD_1 = "2924b1be7b8dcdae"
 SHIPPED = Path(__file__).parents[2] / "scenarios"
 
 
@@ -190,3 +192,12 @@ def test_who_uses_no_map_runs_once_for_all_tracks(write):
         ("unknown", "ompl-pure", (), True),
     ]
     assert suite.resolved()["navigators"][0]["uses_map"] is False
+
+
+def test_the_worlds_of_the_standard_suite_are_those_of_its_version():
+    suite = load_suite("standard")
+    worlds = [*((s.identity, s.hash) for s in suite.scenarios), suite.tracks, suite.split]
+    assert suite.version == 1
+    assert sha256(repr(worlds).encode()).hexdigest()[:16] == STANDARD_1, (
+        "the worlds of the suite changed: raise its version, say so in the changelog"
+    )
