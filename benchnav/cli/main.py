@@ -14,11 +14,13 @@ from benchnav.cli.imports import import_app
 from benchnav.cli.leaderboard import leaderboard
 from benchnav.cli.listing import list_
 from benchnav.cli.new import new_app
+from benchnav.cli.pack import pack
 from benchnav.cli.run import run
 from benchnav.cli.schema import schema
 from benchnav.cli.show import show
 from benchnav.cli.train import train
 from benchnav.cli.validate import validate
+from benchnav.cli.verify import verify
 from benchnav.errors import (
     BenchnavError,
     InputError,
@@ -44,6 +46,8 @@ app = typer.Typer(
 )
 app.command("run")(run)
 app.command("leaderboard")(leaderboard)
+app.command("verify")(verify)
+app.command("pack")(pack)
 app.command("train")(train)
 app.command("list")(list_)
 app.command("show")(show)

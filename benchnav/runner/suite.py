@@ -237,7 +237,7 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     said = validate(SuiteFile, document)
     wanted = _wanted_navigators(said, selection.navigators)
     entries = tuple(
-        _entry(spec, "--navigator" if i is None else document.where(("navigators", i)))
+        entry_of(spec, "--navigator" if i is None else document.where(("navigators", i)))
         for i, spec in wanted
     )
     if selection.scenarios:
@@ -313,7 +313,13 @@ def _label(spec: Spec) -> str:
     return str(spec.get("label", spec.get("type", "")))
 
 
-def _entry(spec: Spec, where: str) -> Entry:
+def entry_of(spec: Spec, where: str) -> Entry:
+    """The navigator of a spec, resolved, as it is installed here; ``where`` is for messages.
+
+    Raises:
+        ScenarioError: a label or a leader that cannot be.
+        PluginError: it cannot be used.
+    """
     label = _label(spec)
     if not isinstance(spec, str):
         spec = {key: value for key, value in spec.items() if key != "label"}
@@ -344,7 +350,7 @@ def _leader(navigator: Navigator, where: str) -> Entry | None:
     spec = navigator.leader
     if spec is None:
         raise ScenarioError(f"{where}: who asks for rehearsals must name who leads in them.")
-    led = _entry(spec if isinstance(spec, str) else dict(spec), f"{where} leader")
+    led = entry_of(spec if isinstance(spec, str) else dict(spec), f"{where} leader")
     if led.rehearsal:
         raise ScenarioError(
             f"{where}: who leads in rehearsals must need none itself. Got {led.label!r}."

@@ -1,0 +1,43 @@
+"""Which parts a run must have, and which it has."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+from benchnav.runner.suite import Cell
+from benchnav.runner.verify.finding import Report
+from benchnav.runner.verify.restored import Restored
+from benchnav.store.part import Part, parts_of
+from benchnav.store.run_folder import RunFolder
+
+
+def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[Cell, Part]]:
+    """Every part with the cell that it is of; the report says what lacks or is too much."""
+    reasons = {str(c["key"]): str(c.get("reason", "")) for c in run.manifest.cells}
+    for cell in suite.cells:
+        where = f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
+        parts = parts_of(run.cell(cell.key))
+        if reasons.get(cell.key):
+            if parts:
+                report.find("coverage", where, f"is n/a ({reasons[cell.key]}), and has episodes")
+            report.counts["n/a cells"] += 1
+            continue
+        _check_seeds(parts, suite.seeds, where, report)
+        for part in parts:
+            yield cell, part
+    known = {cell.key for cell in suite.cells}
+    for path in sorted((run.path / "parts").glob("*")):
+        if path.name not in known:
+            report.find("coverage", str(run.shown / "parts" / path.name), "is no cell of the suite")
+
+
+def _check_seeds(parts: list[Part], seeds: range, where: str, report: Report) -> None:
+    held = Counter(seed for part in parts for seed in part.seeds)
+    missing = [seed for seed in seeds if seed not in held]
+    twice = [seed for seed, count in sorted(held.items()) if count > 1]
+    strange = sorted(held.keys() - set(seeds))
+    for text, found in (
+        ("lack", missing), ("are there twice", twice), ("are not of the suite", strange)
+    ):  # fmt: skip
+        if found:
+            few = ", ".join(map(str, found[:10])) + (", …" if len(found) > 10 else "")
+            report.find("coverage", where, f"{len(found)} seeds {text}: {few}")

@@ -1,0 +1,30 @@
+"""Everything that is wanted of one part."""
+
+from dataclasses import dataclass
+
+from benchnav.runner.verify.finding import Report
+from benchnav.runner.verify.part_check import PartCheck, check_part
+from benchnav.runner.verify.rerun import rerun
+from benchnav.runner.verify.twin_check import check_twin
+
+
+@dataclass(frozen=True)
+class Examination:
+    """A part, and what to do with it."""
+
+    check: PartCheck
+    twin: tuple[int, ...]  # seeds of the episodes that the slow twin replays
+    referee: bool
+    rerun: bool
+    packed: bool  # it came in a pack: from somebody else
+
+
+def examine(task: Examination) -> Report:
+    """Re-simulate the part, and what else is wanted."""
+    report, scored, rehearsed = check_part(task.check)
+    for pair in scored + rehearsed:
+        if pair.stored.identity.seed in task.twin:
+            check_twin(pair.again.world, pair.again, pair.where, report)
+    if task.rerun:
+        rerun(task.check, scored, rehearsed, task.packed, report)
+    return report

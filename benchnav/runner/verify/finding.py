@@ -1,0 +1,109 @@
+"""What verifying a run finds, and what it counted on the way."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+from itertools import zip_longest
+
+KINDS = {  # what a finding is about → what must hold there
+    "manifest": "the suite, its cells and hashes fit each other",
+    "scenario": "a scenario is what its hash says, and its files are there",
+    "coverage": "every cell has every seed once, and nothing else is there",
+    "seal": "files have the size and sha256 that their part was sealed with",
+    "identity": "episodes say which cell and seed they are of",
+    "world": "the stored world is the one that scenario, split and seed draw",
+    "command": "commands are such as a navigator may have given",
+    "state": "re-simulated commands lead to the stored states, bit for bit",
+    "event": "and to the stored collision events",
+    "digest": "digests are those of what is stored",
+    "rehearsal": "what was granted and charged is what was rehearsed",
+    "metric": "values are those measured on the re-simulated episode, within 1e-9",
+    "timing": "timings are possible ones",
+    "twin": "the slow twin of the kernels agrees",
+    "referee": "trimesh and python-fcl judge every contact alike",
+    "rerun": "the navigators, run again, answer the same",
+}
+
+
+@dataclass(frozen=True, order=True)
+class Finding:
+    """Something stored that does not agree with the rest."""
+
+    kind: str  # of KINDS
+    where: str  # file, cell, seed
+    what: str  # what is stored, and what must be there
+
+
+@dataclass
+class Report:
+    """Findings, and what was looked at; reports of parts add up."""
+
+    findings: list[Finding] = field(default_factory=list)
+    counts: Counter[str] = field(default_factory=Counter)
+    notes: Counter[str] = field(default_factory=Counter)  # what was not checked, and how often
+    unknown: set[str] = field(default_factory=set)  # metrics that are not installed here
+    versions: list[str] = field(default_factory=list)  # of packages that differ from the run's
+
+    @property
+    def clean(self) -> bool:
+        """True where nothing disagrees."""
+        return not self.findings
+
+    def find(self, kind: str, where: str, what: str) -> None:
+        """Add a finding."""
+        self.findings.append(Finding(kind, where, what))
+
+    def add(self, other: "Report") -> None:
+        """Take over what another one holds."""
+        self.findings += other.findings
+        self.counts += other.counts
+        self.notes += other.notes
+        self.unknown |= other.unknown
+
+    def sort(self) -> None:
+        """Findings by kind, causes before what follows from them."""
+        order = list(KINDS)
+        self.findings.sort(key=lambda f: (order.index(f.kind), f.where, f.what))
+
+    def few(self, most: int) -> list[Finding]:
+        """At most so many findings, some of every kind."""
+        kinds = [[f for f in self.findings if f.kind == kind] for kind in KINDS]
+        chosen = [f for turn in zip_longest(*kinds) for f in turn if f is not None][:most]
+        return [f for f in self.findings if any(f is other for other in chosen)]
+
+    @property
+    def checked(self) -> list[str]:
+        """What was checked, in words."""
+        c = self.counts
+        lines = [
+            f"{c['episodes']} episodes and {c['rehearsals']} rehearsals: worlds drawn again,"
+            f" commands re-simulated, {c['states']} states of agents and {c['events']} events bit"
+            f" for bit; {c['values']} values within 1e-9"
+        ]
+        if c["twin episodes"]:
+            lines.append(
+                f"{c['twin episodes']} episodes by the slow twin of the kernels:"
+                f" {c['twin decisions']} decisions, {c['twin events']} events"
+            )
+        if c["judged instants"]:
+            lines.append(
+                f"{c['judged contacts']} contacts by trimesh and python-fcl, and"
+                f" {c['judged instants']} instants for contacts that lack"
+            )
+        if c["rerun"]:
+            lines.append(f"{c['rerun']} episodes by running their navigators again")
+        return lines
+
+    @property
+    def unchecked(self) -> list[str]:
+        """What was not, in words."""
+        c = self.counts
+        lines = [
+            f"timings, which nobody can verify: {c['values of timings']} values follow from the"
+            " stored seconds, and that is all there is to say"
+        ]
+        if not c["rerun"]:
+            lines.append("whether the navigators gave these commands (--rerun asks them)")
+        if c["n/a cells"] and not c["rerun n/a"]:
+            lines.append(f"why {c['n/a cells']} cells are n/a, which navigators say (--rerun)")
+        lines += [f"{n} × {text}" for text, n in sorted(self.notes.items())]
+        return lines

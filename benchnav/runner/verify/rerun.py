@@ -1,0 +1,116 @@
+"""Runs the navigators of a run again: only this finds commands that were replaced."""
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from benchnav.episode.episode import Episode
+from benchnav.errors import BenchnavError
+from benchnav.runner.rehearsal import Performance, perform
+from benchnav.runner.suite import Cell, Entry, entry_of
+from benchnav.runner.verify.finding import Report
+from benchnav.runner.verify.part_check import Pair, PartCheck
+from benchnav.store.run_folder import RunFolder
+
+_BY_MODULE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
+_TOLD = ("act ", "reset ", "in rehearsal ", "the scenario's background ")  # raised or answered
+
+
+def rerun(
+    task: PartCheck, scored: Sequence[Pair], rehearsed: Sequence[Pair], packed: bool, report: Report
+) -> None:
+    """Report every episode that its navigator, run again, does not repeat to the last bit."""
+    entry, why = installed(task.cell.entry, packed)
+    if entry is None:
+        report.notes[f"episode not run again: {why}"] += len(scored)
+        return
+    chosen = [pair for pair in scored if _repeatable(pair.stored, report)]
+    kept = {(_seed(p), p.stored.identity.rehearsal): p for p in (*chosen, *rehearsed)}
+    worlds = [(_seed(pair), pair.again.world) for pair in chosen]
+    for batch in perform(task.assignment, worlds):
+        for performance in batch:
+            _compare(performance, kept, report)
+            report.counts["rerun"] += 1
+
+
+def _seed(pair: Pair) -> int:
+    return pair.stored.identity.seed
+
+
+def _repeatable(episode: Episode, report: Report) -> bool:
+    if not episode.reproducible:
+        report.notes["episode not run again: a clock decides what its navigator does"] += 1
+        return False
+    if episode.failure and not episode.failure.startswith(_TOLD):
+        report.notes[f"episode not run again: it failed because {episode.failure}"] += 1
+        return False
+    return True
+
+
+def _compare(
+    performance: Performance, kept: Mapping[tuple[int, int], Pair], report: Report
+) -> None:
+    for new in (performance.episode, *performance.rehearsed.episodes):
+        pair = kept.get((new.identity.seed, new.identity.rehearsal))
+        if pair is None:
+            continue  # that a rehearsal lacks is found without running anybody
+        old = pair.stored
+        for name in ("digest", "failure", "reproducible", "remarks"):
+            left, right = getattr(old, name), getattr(new, name)
+            if left != right:
+                text = f"{name} is {_short(left)}, run again {_short(right)}"
+                report.find("rerun", pair.where, text)
+
+
+def installed(entry: Entry, packed: bool) -> tuple[Entry | None, str]:
+    """(the same navigator as it is installed here, ""), or (None, why there is none).
+
+    Nothing that a stranger names by module is imported: only what is registered here.
+    """
+    if packed and _by_module(entry.spec):
+        return None, f"{entry.label} is named by its module, in somebody else's pack"
+    try:
+        found = entry_of({**entry.spec, "label": entry.label}, f"the navigator {entry.label!r}")
+    except BenchnavError as error:
+        return None, f"{entry.label} cannot be made here: {_short(str(error))}"
+    if found.lacks:
+        return None, f"{entry.label} cannot be made here: {found.lacks}"
+    if found.hash != entry.hash:
+        return None, f"{entry.label} is another one here ({found.source} instead of {entry.source})"
+    return found, ""
+
+
+def _by_module(said: Any) -> bool:
+    if isinstance(said, Mapping):
+        return any(_by_module(value) for value in said.values())
+    if isinstance(said, list | tuple):
+        return any(_by_module(value) for value in said)
+    return isinstance(said, str) and _BY_MODULE.fullmatch(said) is not None
+
+
+def check_reasons(run: RunFolder, cells: Sequence[Cell], report: Report) -> None:
+    """Report cells that are n/a and need not be, or the other way round."""
+    entries: dict[str, tuple[Entry | None, str]] = {}
+    said = {str(c["key"]): str(c.get("reason", "")) for c in run.manifest.cells}
+    for cell in cells:
+        label = cell.entry.label
+        if label not in entries:
+            entries[label] = installed(cell.entry, run.packed is not None)
+        entry, why = entries[label]
+        stored = said.get(cell.key, "")
+        if entry is None:
+            if stored:
+                report.notes[f"reason of a cell that is n/a: {why}"] += 1
+            continue
+        right = replace(cell, entry=entry).reason
+        report.counts["rerun n/a"] += bool(stored)
+        if right != stored:
+            where = f"{cell.scenario.identity}, {cell.track}, {label}"
+            report.find("rerun", where, f"n/a: {stored!r}, but the navigator says {right!r}")
+
+
+def _short(value: Any) -> str:
+    text = value if isinstance(value, str) else repr(value)
+    text = re.sub(r"\s+", " ", text)
+    return text if len(text) <= 120 else text[:117] + "..."

@@ -1,0 +1,133 @@
+"""The suite that a manifest tells of, made anew without any of its navigators."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from benchnav.errors import BenchnavError
+from benchnav.navigation.navigator import Training
+from benchnav.runner.suite import Block, Cell, Entry, Suite
+from benchnav.runner.suite_file import MAX_SEEDS
+from benchnav.runner.verify.finding import Report
+from benchnav.scenario.parameters import split_parameters
+from benchnav.scenario.scenario import Scenario
+from benchnav.store.run_folder import RunFolder
+from benchnav.store.scenario_files import stage_files
+
+_MALFORMED = (KeyError, TypeError, ValueError, AttributeError, IndexError, RecursionError)
+_SPLITS = ("train", "validation", "test")
+
+
+@dataclass(frozen=True)
+class Restored:
+    """What a run is a run of."""
+
+    seeds: range
+    cells: tuple[Cell, ...]  # every cell, n/a ones included, in the order of the manifest
+
+
+def restore(run: RunFolder, root: Path, report: Report) -> Restored | None:
+    """The suite of ``run``; None where it cannot be made, which the report then says.
+
+    Args:
+        run: whose manifest tells.
+        root: an empty folder for the files that scenarios name.
+        report: gets every disagreement within the manifest.
+    """
+    suite = run.manifest.suite
+    where = str(run.shown / "manifest.json")
+    try:
+        first, stop = suite["seeds"]
+        split, tracks = suite["split"], tuple(map(str, suite["tracks"]))
+        blocks = tuple(Block(**_tuples(said)) for said in suite.get("blocks", ()))
+        whole = all(type(seed) is int and seed >= 0 for seed in (first, stop))
+        if not whole or not 1 <= stop - first <= MAX_SEEDS or split not in _SPLITS:
+            raise ValueError(f"seeds {suite['seeds']!r} of split {split!r}")
+        entries = [_entry(said) for said in suite["navigators"]]
+        known = len(report.findings)
+        scenarios = [
+            _scenario(run, root / str(i), said, report) for i, said in enumerate(suite["scenarios"])
+        ]
+    except _MALFORMED as error:
+        report.find("manifest", where, f"the suite cannot be read: {type(error).__name__}: {error}")
+        return None
+    if len(report.findings) > known:
+        return None
+    found = tuple(s for s in scenarios if s is not None)
+    whole_suite = Suite(
+        str(suite["name"]), suite["version"], split, range(first, stop), found, tracks,
+        tuple(entries), blocks=blocks,
+    )  # fmt: skip
+    cells = list(whole_suite.cells())
+    _compare_cells(run, cells, where, report)
+    return Restored(whole_suite.seeds, tuple(cells))
+
+
+def _scenario(
+    run: RunFolder, root: Path, said: Mapping[str, Any], report: Report
+) -> Scenario | None:
+    identity = str(said["scenario"])
+    try:
+        _, chosen = split_parameters(identity)
+        scenario = Scenario.model_validate(said["says"])
+        scenario = scenario.placed_in(stage_files(run.path, said["files"], root), chosen)
+        named = {n for n in scenario.named_files() if n not in said["files"]}
+        if named:
+            report.find("scenario", identity, f"names {min(named)!r}, which the run does not hold")
+            return None
+        found = scenario.hash
+    except (BenchnavError, ValidationError, OSError) as error:
+        report.find("scenario", identity, f"cannot be made again: {_short(error)}")
+        return None
+    if scenario.identity != identity:
+        report.find("scenario", identity, f"says of itself that it is {scenario.identity}")
+    if found != said["hash"]:
+        report.find("scenario", identity, f"has the hash {found}, not {said['hash']}")
+    return scenario
+
+
+def _tuples(said: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
+    return {name: tuple(map(str, listed)) for name, listed in said.items()}
+
+
+def _entry(said: Mapping[str, Any]) -> Entry:
+    led = _entry(said["leader"]) if "leader" in said else None
+    training = Training(**said["training"]) if "training" in said else None
+    return Entry(
+        str(said["label"]), dict(said["says"]), str(said["source"]), frozenset(),
+        training=training, fingerprint=str(said.get("fingerprint", "")),
+        rehearsal=int(said.get("rehearsal", 0)), leader=led,
+    )  # fmt: skip
+
+
+def _compare_cells(run: RunFolder, cells: list[Cell], where: str, report: Report) -> None:
+    """The manifest's cells must be the product of its suite, under the keys that follow."""
+    stored = run.manifest.cells
+    if len(stored) != len(cells):
+        report.find("manifest", where, f"there are {len(stored)} cells, not {len(cells)}")
+    for i, (said, cell) in enumerate(zip(stored, cells, strict=False)):
+        expected = {
+            "key": cell.key, "scenario": cell.scenario.identity, "track": cell.track,
+            "navigator": cell.entry.label,
+        }  # fmt: skip
+        for name, value in expected.items():
+            if said.get(name) != value:
+                report.find(
+                    "manifest", where, f"cells[{i}].{name} is {said.get(name)!r}, not {value!r}"
+                )
+        absent = f"the scenario has no track {cell.track!r}"
+        granted = cell.track in cell.scenario.granted_tracks
+        if granted == (said.get("reason") == absent):
+            has = "a" if granted else "no"
+            report.find(
+                "manifest", where,
+                f"cells[{i}].reason is {said.get('reason')!r}; there is {has} track {cell.track!r}",
+            )  # fmt: skip
+
+
+def _short(error: Exception) -> str:
+    return re.sub(r"\s+", " ", str(error))[:300]

@@ -1,0 +1,57 @@
+"""The slow twin's ledger of collision events."""
+
+from dataclasses import dataclass, field
+
+RELEASE = 0.01  # [m] a contact lasts until the gap is wider
+MOST_OPEN = 8  # contacts of one agent at once; one more closes the oldest
+
+Partner = tuple[str, int]  # ("agent" | "solid" | "body", index)
+
+
+@dataclass
+class Event:
+    """A contact of one agent with one partner."""
+
+    agent: int
+    partner: Partner
+    start: float
+    closing: float
+    charged: bool
+    penetration: float = 0.0
+    end: float = float("nan")
+
+
+@dataclass
+class Ledger:
+    """Events that go on, and those that are over."""
+
+    opened: dict[tuple[int, Partner], Event] = field(default_factory=dict)
+    closed: list[Event] = field(default_factory=list)
+
+    def record(
+        self, agent: int, partner: Partner, time: float, closing: float, charged: bool
+    ) -> None:
+        """A touch: a new event, unless it belongs to one that goes on."""
+        if (agent, partner) in self.opened:
+            return
+        own = [event for event in self.opened.values() if event.agent == agent]
+        if len(own) == MOST_OPEN:
+            self.close(min(own, key=lambda event: event.start), time)
+        self.opened[agent, partner] = Event(agent, partner, time, closing, charged)
+
+    def close(self, event: Event, time: float) -> None:
+        """It is over."""
+        event.end = time
+        self.closed.append(self.opened.pop((event.agent, event.partner)))
+
+    def close_all(self, agent: int, time: float) -> None:
+        """The attempt of ``agent`` is over."""
+        for event in [event for event in self.opened.values() if event.agent == agent]:
+            self.close(event, time)
+
+    def follow_up(self, event: Event, gap: float, time: float) -> None:
+        """After a substep: a contact that lasts deepens, another is over."""
+        if gap > RELEASE:
+            self.close(event, time)
+        else:
+            event.penetration = max(event.penetration, -gap)

@@ -1,0 +1,138 @@
+"""Checks a whole run, part by part, in worker processes."""
+
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from benchnav.errors import BenchnavError, StoreError
+from benchnav.runner.progress import Progress
+from benchnav.runner.verify.coverage import covered
+from benchnav.runner.verify.examine import Examination, examine
+from benchnav.runner.verify.finding import Report
+from benchnav.runner.verify.part_check import PartCheck
+from benchnav.runner.verify.rerun import check_reasons
+from benchnav.runner.verify.restored import restore
+from benchnav.runner.verify.sampled import sampled
+from benchnav.store.manifest import versions
+from benchnav.store.run_folder import RunFolder
+from benchnav.threads import core_count
+
+VERIFIABLE = 3  # schema from which on a run holds all that this needs
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What to do beyond re-simulating."""
+
+    twin: int = 20  # episodes to be replayed through the slow twin
+    referee: bool = False  # judge every contact again with trimesh and python-fcl
+    rerun: bool = False  # run the navigators again
+
+
+def verify(
+    run: RunFolder,
+    wanted: Wanted = Wanted(),
+    *,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Report:
+    """Re-simulate a run and check everything in it.
+
+    Args:
+        run: the run; it is only read.
+        wanted: what to do beyond that.
+        workers: processes; None: as many as there are cores; 0: in this process.
+        progress: is told of every finished episode.
+
+    Raises:
+        StoreError: an older benchnav made the run, which did not keep what this needs.
+        MissingExtraError: the referee is wanted and not installed.
+    """
+    if run.manifest.schema < VERIFIABLE:
+        raise StoreError(
+            f"A run must be of schema {VERIFIABLE} or later to be verified. {run.shown} is of"
+            f" schema {run.manifest.schema}: benchnav kept too little then. Run the suite again."
+        )
+    told = progress if progress is not None else Progress()
+    report = Report()
+    _note_versions(run, report)
+    with TemporaryDirectory(prefix="benchnav-verify-") as root:
+        tasks = _tasks(run, Path(root), wanted, report)
+        episodes = sum(len(task.check.part.seeds) for task in tasks)
+        told.begin(episodes, 0)
+        try:
+            for task, part in _done(tasks, core_count() if workers is None else workers):
+                report.add(part)
+                told.advance(len(task.check.part.seeds))
+        finally:
+            told.end()
+    report.sort()
+    return report
+
+
+def _tasks(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[Examination]:
+    suite = restore(run, root, report)
+    if suite is None:
+        return []
+    if wanted.rerun:
+        check_reasons(run, suite.cells, report)
+    version = str(run.manifest.versions.get("benchnav", ""))
+    checks = [
+        PartCheck(cell, part, run.manifest.salt, suite.seeds.start, version)
+        for cell, part in covered(run, suite, report)
+    ]
+    checks.sort(key=lambda c: (c.cell.scenario.identity, c.part.first))  # they share worlds
+    chosen = sampled(checks, wanted.twin)
+    packed = run.packed is not None
+    return [
+        Examination(check, tuple(seeds), wanted.referee, wanted.rerun, packed)
+        for check, seeds in zip(checks, chosen, strict=True)
+    ]
+
+
+def _note_versions(run: RunFolder, report: Report) -> None:
+    here = versions()
+    for name, said in run.manifest.versions.items():
+        if name in here and here[name] != said:
+            report.versions.append(f"{name} {said} made the run; {here[name]} is here")
+
+
+def _done(tasks: Sequence[Examination], workers: int) -> Iterator[tuple[Examination, Report]]:
+    if workers == 0:
+        for task in tasks:
+            yield task, examine(task)
+        return
+    context = get_context("spawn")
+    with ProcessPoolExecutor(min(workers, max(len(tasks), 1)), context, _begin) as pool:
+        try:
+            yield from _collected(pool, tasks)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+
+
+def _collected(
+    pool: Executor, tasks: Sequence[Examination]
+) -> Iterator[tuple[Examination, Report]]:
+    running: dict[Future[Report], Examination] = {pool.submit(examine, t): t for t in tasks}
+    try:
+        for future in as_completed(running):
+            yield running[future], future.result()
+    except BrokenProcessPool as error:
+        raise BenchnavError(
+            "Worker processes must stay alive; one was killed (stderr may say why, and memory"
+            " may be short). Try --workers 1."
+        ) from error
+
+
+def _begin() -> None:
+    """Of a worker: one core, Ctrl-C is the parent's, and what is printed is talk."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.environ["BENCHNAV_THREADS"] = "1"
+    os.dup2(2, 1)

@@ -1,0 +1,93 @@
+"""What only running the navigators again finds, and what it does not touch."""
+
+import dataclasses
+import json
+import shutil
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from benchnav.metrics.measure import all_metrics
+from benchnav.runner.measured import measured
+from benchnav.runner.verify.resimulate import resimulate
+from benchnav.store.episodes import from_table, to_table
+from benchnav.store.pack import pack
+from benchnav.store.part import EPISODES_FILE, RESULTS_FILE
+from benchnav.store.run_folder import RunFolder
+
+
+@pytest.fixture
+def replaced(forger):
+    """Commands of a navigator replaced by others, and everything made to follow from them."""
+    (stem,) = forger.stems("walk")
+    old = list(from_table(pq.read_table(stem + EPISODES_FILE)))
+    gentle = dataclasses.replace(old[0], requested=0.99 * old[0].requested)
+    steps = len(gentle.requested)
+    ((new, wrong),) = resimulate([(gentle.world, gentle)])
+    if wrong:  # it would go on: hold still to the horizon
+        more = np.zeros((gentle.world.clock.steps - steps, *gentle.requested.shape[1:]))
+        longer = dataclasses.replace(gentle, requested=np.concatenate([gentle.requested, more]))
+        ((new, wrong),) = resimulate([(gentle.world, longer)])
+    assert not wrong
+    seconds = np.full(len(new.requested), 1e-4)
+    new = dataclasses.replace(new, timings=dataclasses.replace(old[0].timings, decision=seconds))
+    pq.write_table(to_table([new, *old[1:]]), stem + EPISODES_FILE)
+    pq.write_table(measured([new, *old[1:]], all_metrics()), stem + RESULTS_FILE)
+    forger.seal(stem)
+    return forger.run
+
+
+def test_a_genuine_run_is_repeated(genuine, findings):
+    kinds, report = findings(genuine, rerun=True)
+    assert kinds == set()
+    assert report.counts["rerun"] == 12
+    assert report.counts["rerun n/a"] == 4
+    assert report.notes == {}
+
+
+def test_commands_that_were_replaced_consistently(replaced, findings):
+    assert findings(replaced)[0] == set()
+    kinds, report = findings(replaced, rerun=True)
+    assert kinds == {"rerun"}
+    assert len({f.where for f in report.findings}) == 1
+    assert report.findings[0].where.startswith("tiny/crossing@1, known, walk, seed ")
+
+
+@pytest.mark.parametrize(
+    ("change", "kind"),
+    [
+        (lambda said: said["suite"]["navigators"][1].update(source="benchnav 9.9"), "note"),
+        (lambda said: said.update(salt="ab" * 16), "rerun"),
+        (lambda said: said["cells"][4].update(reason="needs wings"), "manifest"),
+    ],
+    ids=["source", "salt", "reason"],
+)
+def test_what_a_manifest_says(forger, findings, change, kind):
+    forger.manifest(change)
+    kinds, report = findings(forger.run, rerun=True)
+    if kind == "note":
+        assert any("rotor is another one here" in note for note in report.notes)
+    else:
+        assert kind in kinds
+
+
+def test_a_cell_that_need_not_be_n_a(forger, findings):
+    def change(said):
+        said["cells"][1]["reason"] = "needs a map"
+
+    forger.manifest(change)
+    key = json.loads((forger.run / "manifest.json").read_text())["cells"][1]["key"]
+    shutil.rmtree(forger.run / "parts" / key)
+    assert findings(forger.run)[0] == set()  # only the navigator knows what it needs
+    kinds, report = findings(forger.run, rerun=True)
+    assert kinds == {"rerun"}
+    assert "but the navigator says ''" in report.findings[0].what
+
+
+def test_nothing_that_a_strangers_pack_names_by_module_is_imported(genuine, findings, tmp_path):
+    pack(RunFolder.open(genuine), tmp_path / "theirs.bnrun")
+    kinds, report = findings(tmp_path / "theirs.bnrun", rerun=True)
+    assert kinds == set()
+    assert report.counts["rerun"] == 3  # those of the navigator that is registered
+    assert sum(n for note, n in report.notes.items() if "named by its module" in note) >= 9
