@@ -1,5 +1,6 @@
 """What all tests share."""
 
+import pytest
 from hypothesis import HealthCheck, settings
 
 # the first example of a test may compile a kernel
@@ -7,3 +8,11 @@ settings.register_profile(
     "benchnav", deadline=None, suppress_health_check=[HealthCheck.too_slow], print_blob=True
 )
 settings.load_profile("benchnav")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def receipts(tmp_path_factory):
+    """Verifying in a test leaves its receipt to the test."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
+        yield

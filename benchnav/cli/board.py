@@ -1,6 +1,6 @@
 """Runs → the text of a table, a comparison or a curve. Imported once a verb needs it."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -22,9 +22,13 @@ TIDY = ("csv", "json")  # hold every metric unless told otherwise
 
 
 def table(
-    folders: Sequence[RunFolder], format: str, metric: Sequence[str] | None, recompute: bool
+    folders: Sequence[RunFolder],
+    format: str,
+    metric: Sequence[str] | None,
+    recompute: bool,
+    verified: Collection[str] = (),
 ) -> str:
-    """The leaderboard; only what is shown is computed."""
+    """The leaderboard; only what is shown is computed. ``verified`` are labels to be marked."""
     metrics = _metrics()
     results = _results(folders, metrics, recompute)
     held = _held(results, metrics)
@@ -32,7 +36,8 @@ def table(
     results = results.filter(pc.is_in(results["metric"], pa.array(shown)))
     missing = [gap for folder in folders for gap in _not_applicable(folder)]
     learned = {label: cost for folder in folders for label, cost in _training(folder)}
-    return render(leaderboard(results, metrics, missing, learned), format, shown)
+    made = leaderboard(results, metrics, missing, learned, verified)
+    return render(made, format, shown)
 
 
 def comparison(
@@ -62,7 +67,7 @@ def _metrics() -> dict[str, Metric]:
 
 def _results(folders: Sequence[RunFolder], metrics: dict[str, Metric], recompute: bool) -> pa.Table:
     """Measured values of all runs, in which a label must stand for one navigator."""
-    stored = {str(f.path): read_results(f.path) for f in folders}
+    stored = {str(f.shown): read_results(f.path) for f in folders}
     require_one_navigator_per_label(stored)
     tables = list(stored.values())
     if recompute:
@@ -72,7 +77,7 @@ def _results(folders: Sequence[RunFolder], metrics: dict[str, Metric], recompute
     joined = pa.concat_tables(tables, promote_options="default")
     if not len(joined):
         raise StoreError(
-            f"There must be episodes to make a table of. {folders[0].path} holds none."
+            f"There must be episodes to make a table of. {folders[0].shown} holds none."
         )
     return joined
 

@@ -1,5 +1,6 @@
 """`benchnav leaderboard`: the table of one or more runs."""
 
+from contextlib import ExitStack
 from enum import StrEnum
 from itertools import islice
 from pathlib import Path
@@ -33,7 +34,7 @@ class Curve(StrEnum):
 
 
 def leaderboard(
-    runs: Annotated[list[Path], typer.Argument(metavar="RUN…", help="Run folders.")],
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN…", help="Run folders or packs.")],
     format: Annotated[
         str, typer.Option(help="markdown, csv, latex, html or json.")
     ] = Format.MARKDOWN.value,
@@ -53,27 +54,35 @@ def leaderboard(
     curve: Annotated[
         str | None, typer.Option(help="Show this against time instead: success.")
     ] = None,
+    verify: Annotated[
+        bool,
+        typer.Option("--verify", help="Verify the runs first that were not verified here before."),
+    ] = False,
 ) -> None:
     """Print the table of one or more runs.
 
-    Means, 95 % intervals, and ties shown as ties.
+    Means, 95 % intervals, and ties shown as ties. Entries whose runs were verified on this
+    machine are marked.
     """
     from benchnav.cli import board
-    from benchnav.store.run_folder import RunFolder
+    from benchnav.cli.vouched import vouched
+    from benchnav.store.unpack import opened
 
     wanted = one_of(Format, "--format", format).value
-    folders = [RunFolder.open(run) for run in runs]
-    for folder in folders:
-        _warn_if_unfinished(folder)
-    if curve is not None:
-        one_of(Curve, "--curve", curve)
-        if compare is not None or metric or recompute:
-            raise UsageError("--curve must stand without --compare, --metric and --recompute.")
-        text = board.curve(folders, wanted)
-    elif compare is not None:
-        text = board.comparison(folders, wanted, compare, metric or ["success"], recompute)
-    else:
-        text = board.table(folders, wanted, metric or None, recompute)
+    with ExitStack() as stack:
+        folders = [stack.enter_context(opened(run)) for run in runs]
+        for folder in folders:
+            _warn_if_unfinished(folder)
+        if curve is not None:
+            one_of(Curve, "--curve", curve)
+            if compare is not None or metric or recompute:
+                raise UsageError("--curve must stand without --compare, --metric and --recompute.")
+            text = board.curve(folders, wanted)
+        elif compare is not None:
+            text = board.comparison(folders, wanted, compare, metric or ["success"], recompute)
+        else:
+            marked = vouched(folders, verify)
+            text = board.table(folders, wanted, metric or None, recompute, marked)
     if out is None:
         put(text.rstrip("\n"))
     else:
@@ -88,10 +97,8 @@ def _warn_if_unfinished(folder: "RunFolder") -> None:
     first, stop = folder.manifest.suite["seeds"]
     total = (stop - first) * sum(not cell["reason"] for cell in folder.manifest.cells)
     stored = total - sum(map(len, missing.values()))
-    say(
-        f"{folder.path} holds {stored} of {total} episodes:"
-        f" run the same suite with --out {folder.path} to finish it."
-    )
+    advice = f": run the same suite with --out {folder.path} to finish it."
+    say(f"{folder.shown} holds {stored} of {total} episodes{'.' if folder.packed else advice}")
     for key, seeds in islice(missing.items(), _SHOWN):
         say(f"  missing: {spans(seeds)} of {key}")
     if len(missing) > _SHOWN:

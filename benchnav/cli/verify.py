@@ -94,7 +94,7 @@ def as_json(run: Path, report: "Report", seconds: float) -> str:
 def as_text(run: Path, report: "Report", seconds: float) -> str:
     """For people: the verdict, findings, what was checked and what was not."""
     count = len(report.findings)
-    verdict = "verified" if report.clean else f"NOT verified: {count} findings"
+    verdict = "verified" if report.clean else f"NOT verified: {count} finding{'s' * (count > 1)}"
     lines = [f"{run}: {verdict}, in {seconds:.1f} s"]
     if count:
         few = report.few(SHOWN)

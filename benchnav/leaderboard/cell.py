@@ -73,6 +73,11 @@ def rehearsal(r: Record) -> Cell:
     return Cell(f"{r.rehearsal_decisions:.0f} decisions, {seconds} {unit}")
 
 
+def verified(r: Record) -> Cell:
+    """Whether it was re-simulated here; empty for what was not run."""
+    return Cell(("yes" if r.verified else "no") if r.episodes else "")
+
+
 def heading(r: Record) -> Cell:
     """A metric and its direction."""
     return Cell(r.metric + {"higher": " ↑", "lower": " ↓", None: ""}[r.better])

@@ -6,7 +6,16 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from benchnav.errors import UsageError, did_you_mean
-from benchnav.leaderboard.cell import Cell, cell, entrant, heading, rank, rehearsal, training
+from benchnav.leaderboard.cell import (
+    Cell,
+    cell,
+    entrant,
+    heading,
+    rank,
+    rehearsal,
+    training,
+    verified,
+)
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Leaderboard, Record
 
 DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
@@ -107,6 +116,7 @@ class _Table:
         self.decided = {r.metric for r in records if (r.rank_low or 0) > 1}
         self.learned = any(not math.isnan(r.training_decisions) for r in records)
         self.rehearsed = records[0].rehearsal
+        self.verified = any(r.verified for r in records)
 
     def sections(self, title: str) -> Iterator[Section]:
         """A row for each navigator, or for each metric where those are many."""
@@ -122,6 +132,9 @@ class _Table:
             if self.learned:
                 costs = (training(self.at[name, self.leading]) for name in block)
                 rows.insert(0, (Cell("training"), *costs))
+            if self.verified:
+                marks = (verified(self.at[name, self.leading]) for name in block)
+                rows.insert(0, (Cell("verified"), *marks))
             if self.rehearsed:
                 spent = (rehearsal(self.at[name, self.leading]) for name in block)
                 rows.insert(0, (Cell("rehearsal"), *spent))
@@ -138,12 +151,14 @@ class _Table:
                 yield Cell("training")  # decisions and time
             if self.rehearsed and metric == self.leading:
                 yield Cell("rehearsal")  # decisions and time in one world
+            if self.verified and metric == self.leading:
+                yield Cell("verified")  # re-simulated here
 
     def _navigator(self, name: str) -> tuple[Cell, ...]:
         leader = self.at[name, self.leading]
         row = [entrant(leader), rank(leader)]
         if not leader.episodes:
-            extra = bool(self.middle) + self.learned + bool(self.rehearsed)
+            extra = bool(self.middle) + self.learned + bool(self.rehearsed) + self.verified
             blank = [Cell("")] * (len(self.metrics) - 1 + extra)
             return (*row, Cell(leader.note), *blank)
         wide = len(self.metrics) > NARROW
@@ -157,6 +172,8 @@ class _Table:
                 row.append(training(leader))
             if self.rehearsed and metric == self.leading:
                 row.append(rehearsal(leader))
+            if self.verified and metric == self.leading:
+                row.append(verified(leader))
         return tuple(row)
 
     def _metric(self, metric: str, block: list[str]) -> tuple[Cell, ...]:
@@ -180,6 +197,8 @@ class _Table:
             for metric in self.metrics
             if (name, metric) in self.at and self.at[name, metric].fault
         ]
+        if self.verified:
+            notes.append("verified: its runs were re-simulated here; timings cannot be verified.")
         if self.rehearsed:
             notes.append(
                 f"Granted {self.rehearsed} rehearsals of each world before it was scored; ranked"

@@ -52,6 +52,7 @@ class Record:
     rehearsal_decisions: float = math.nan  # in them, mean over worlds; NaN without a grant
     rehearsal_seconds: float = math.nan  # of the navigator that led, mean over worlds
     fault: str = ""  # where and how the metric failed; "" if it did not
+    verified: bool = False  # its runs were verified here, and it is no timing
 
 
 @dataclass(frozen=True)

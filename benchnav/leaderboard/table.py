@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TYPE_CHECKING, Any
@@ -43,6 +43,7 @@ def leaderboard(
     metrics: Mapping[str, Metric],
     not_applicable: Sequence[NotApplicable] = (),
     training: Mapping[str, tuple[float, float]] = {},
+    verified: Collection[str] = (),
 ) -> Leaderboard:
     """Every navigator × scenario × track × role × metric, with interval and rank.
 
@@ -50,7 +51,8 @@ def leaderboard(
     ``results`` has the schema `benchnav.store.results.RESULTS` and may join several
     runs; the order of its rows changes nothing. ``metrics`` maps names to definitions;
     a metric that it lacks is shown and not ranked. ``not_applicable`` are cells that
-    were not run. ``training`` maps labels to the decisions and seconds of their training.
+    were not run. ``training`` maps labels to the decisions and seconds of their training;
+    ``verified`` are the labels whose runs were verified here.
     Raises UsageError where one label stands for two navigators, or has two
     values in one world.
     """
@@ -64,6 +66,7 @@ def leaderboard(
         records += _missing(aligned, _belonging(aligned, found, not_applicable), metrics)
     failed = faults(results)
     records = [with_fault(_with_training(record, training), failed) for record in records]
+    records = [replace(r, verified=_is_verified(r, verified, metrics)) for r in records]
     order = {name: place for place, name in enumerate(metrics)}
     names = sorted(
         {r.metric for r in records}, key=lambda name: (order.get(name, len(order)), name)
@@ -76,6 +79,12 @@ def _with_training(record: Record, training: Mapping[str, tuple[float, float]]) 
         return record
     decisions, seconds = training[record.navigator]
     return replace(record, training_decisions=decisions, training_seconds=seconds)
+
+
+def _is_verified(r: Record, verified: Collection[str], metrics: Mapping[str, Metric]) -> bool:
+    """Nobody can verify a timing, nor a value whose metric is not installed."""
+    known = r.metric in metrics and metrics[r.metric].verifiable
+    return known and r.navigator in verified and r.episodes > 0
 
 
 def _contest(s: Stratum) -> tuple[str, str, str, int]:

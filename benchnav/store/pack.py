@@ -45,7 +45,9 @@ def members(run: RunFolder) -> Iterator[str]:
 def suite_files(run: RunFolder) -> set[str]:
     """The sha256 of the files that the scenarios of a run name."""
     return {
-        sha for said in run.manifest.suite.get("scenarios", ()) for sha in said["files"].values()
+        sha
+        for said in run.manifest.suite.get("scenarios", ())
+        for sha in said.get("files", {}).values()
     }
 
 

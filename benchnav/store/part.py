@@ -85,13 +85,6 @@ class Part:
         if REHEARSALS_FILE in self._seal():
             self._check_size(REHEARSALS_FILE, self._sealed(REHEARSALS_FILE))
 
-    def sealed_episodes(self) -> int:
-        """How many scored episodes its seal speaks of. Raises CorruptPartError."""
-        count = self._seal().get("episodes")
-        if not isinstance(count, int):
-            raise self._corrupt(self.path(SEAL), f"says {count!r} of the number of episodes")
-        return count
-
     def _episodes(self, suffix: str) -> Iterator[Episode]:
         table = self._table(suffix)
         try:
@@ -138,7 +131,7 @@ class Part:
         seal = self.path(SEAL)
         try:
             said = checked_json.load(seal.read_text(encoding="utf-8"), (*FILES, "episodes"))
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, RecursionError) as error:
             raise self._corrupt(seal, f"cannot be read ({error})") from error
         if said.get("episodes") != len(self.seeds):
             raise self._corrupt(seal, f"is of {said.get('episodes')} episodes")

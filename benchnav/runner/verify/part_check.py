@@ -64,7 +64,6 @@ def check_part(task: PartCheck) -> tuple[Report, list[Pair], list[Pair]]:
         scored = list(task.part.episodes())
         rehearsed = list(task.part.rehearsals())
         rows = task.part.results().to_pylist()
-        _check_seal(task, len(scored), report)
     except CorruptPartError as error:
         report.find("seal", task.shown, str(error).split(" Delete ")[0])
         return report, [], []
@@ -84,12 +83,6 @@ def check_part(task: PartCheck) -> tuple[Report, list[Pair], list[Pair]]:
     report.counts["episodes"] += len(pairs)
     report.counts["rehearsals"] += len(practice)
     return report, pairs, practice
-
-
-def _check_seal(task: PartCheck, episodes: int, report: Report) -> None:
-    said = task.part.sealed_episodes()
-    if said != episodes:
-        report.find("seal", task.shown, f"{said} episodes were sealed; there are {episodes}")
 
 
 def _identified(task: PartCheck, episode: Episode, report: Report) -> bool:

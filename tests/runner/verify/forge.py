@@ -10,6 +10,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
+from benchnav.store import checked_json
 from benchnav.store.digest import digest
 from benchnav.store.episodes import from_table, to_table
 from benchnav.store.manifest import Manifest
@@ -31,13 +32,14 @@ class Forger:
     def seal(self, stem):
         """Let the seal of a part be that of its files."""
         said = json.loads(Path(stem + SEAL).read_text())
+        del said["sha256"]
         for suffix in FILES:
             if suffix in said:
                 content = Path(stem + suffix).read_bytes()
                 said[suffix] = {
                     "bytes": len(content), "sha256": hashlib.sha256(content).hexdigest(),
                 }  # fmt: skip
-        Path(stem + SEAL).write_text(json.dumps(said))
+        Path(stem + SEAL).write_text(checked_json.dump(said))
 
     def column(self, stem, suffix, name, change, row=0):
         """Change one value of a column."""

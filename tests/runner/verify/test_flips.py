@@ -11,6 +11,7 @@ import pyarrow.parquet as pq
 import pytest
 
 from benchnav.metrics.measure import all_metrics
+from benchnav.store import checked_json
 from benchnav.store.episodes import EPISODES, from_table
 from benchnav.store.part import EPISODES_FILE, REHEARSALS_FILE, RESULTS_FILE, SEAL
 from benchnav.store.results import RESULTS
@@ -230,16 +231,16 @@ def test_a_timing_that_is_far_off_or_impossible(forger, findings):
 def test_seals(forger, findings):
     (stem,) = forger.stems("walk")
     genuine = Path(stem + SEAL).read_text()
-    said = json.loads(genuine)
+    said = checked_json.load(genuine, ())
     facts = said[RESULTS_FILE]
     for changed in (
         {**said, RESULTS_FILE: {**facts, "bytes": facts["bytes"] + 1}},
         {**said, RESULTS_FILE: {**facts, "sha256": "0" * 64}},
         {**said, "episodes": 4},
         {k: v for k, v in said.items() if k != RESULTS_FILE},
-        [],
+        {},
     ):
-        Path(stem + SEAL).write_text(json.dumps(changed))
+        Path(stem + SEAL).write_text(checked_json.dump(changed))
         assert "seal" in findings(forger.run)[0], changed
     Path(stem + SEAL).write_text(genuine)
     assert findings(forger.run)[0] == set()
