@@ -103,6 +103,10 @@ def check_reasons(run: RunFolder, cells: Sequence[Cell], report: Report) -> None
             if stored:
                 report.notes[f"reason of a cell that is n/a: {why}"] += 1
             continue
+        if entry.uses_map != cell.entry.uses_map:
+            where = f"{cell.scenario.identity}, {label}"
+            says = "uses" if entry.uses_map else "does not use"
+            report.find("rerun", where, f"the navigator says that it {says} the map")
         right = replace(cell, entry=entry).reason
         report.counts["rerun n/a"] += bool(stored)
         if right != stored:

@@ -101,6 +101,7 @@ def _entry(said: Mapping[str, Any]) -> Entry:
         str(said["label"]), dict(said["says"]), str(said["source"]), frozenset(),
         training=training, fingerprint=str(said.get("fingerprint", "")),
         rehearsal=int(said.get("rehearsal", 0)), leader=led,
+        uses_map=bool(said.get("uses_map", True)),
     )  # fmt: skip
 
 
@@ -110,10 +111,12 @@ def _compare_cells(run: RunFolder, cells: list[Cell], where: str, report: Report
     if len(stored) != len(cells):
         report.find("manifest", where, f"there are {len(stored)} cells, not {len(cells)}")
     for i, (said, cell) in enumerate(zip(stored, cells, strict=False)):
-        expected = {
+        expected: dict[str, Any] = {
             "key": cell.key, "scenario": cell.scenario.identity, "track": cell.track,
             "navigator": cell.entry.label,
         }  # fmt: skip
+        if cell.also or "also" in said:
+            expected["also"] = list(cell.also)
         for name, value in expected.items():
             if said.get(name) != value:
                 report.find(

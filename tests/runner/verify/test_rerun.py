@@ -59,9 +59,10 @@ def test_commands_that_were_replaced_consistently(replaced, findings):
     [
         (lambda said: said["suite"]["navigators"][1].update(source="benchnav 9.9"), "note"),
         (lambda said: said.update(salt="ab" * 16), "rerun"),
+        (lambda said: said["suite"]["navigators"][0].update(uses_map=False), "rerun"),
         (lambda said: said["cells"][4].update(reason="needs wings"), "manifest"),
     ],
-    ids=["source", "salt", "reason"],
+    ids=["source", "salt", "map", "reason"],
 )
 def test_what_a_manifest_says(forger, findings, change, kind):
     forger.manifest(change)
