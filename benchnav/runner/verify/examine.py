@@ -14,7 +14,6 @@ class Examination:
 
     check: PartCheck
     twin: tuple[int, ...]  # seeds of the episodes that the slow twin replays
-    referee: bool
     rerun: bool
     packed: bool  # it came in a pack: from somebody else
 

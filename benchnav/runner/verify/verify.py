@@ -31,7 +31,6 @@ class Wanted:
     """What to do beyond re-simulating."""
 
     twin: int = 20  # episodes to be replayed through the slow twin
-    referee: bool = False  # judge every contact again with trimesh and python-fcl
     rerun: bool = False  # run the navigators again
 
 
@@ -52,7 +51,6 @@ def verify(
 
     Raises:
         StoreError: an older benchnav made the run, which did not keep what this needs.
-        MissingExtraError: the referee is wanted and not installed.
     """
     if run.manifest.schema < VERIFIABLE:
         raise StoreError(
@@ -91,7 +89,7 @@ def _tasks(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[E
     chosen = sampled(checks, wanted.twin)
     packed = run.packed is not None
     return [
-        Examination(check, tuple(seeds), wanted.referee, wanted.rerun, packed)
+        Examination(check, tuple(seeds), wanted.rerun, packed)
         for check, seeds in zip(checks, chosen, strict=True)
     ]
 
