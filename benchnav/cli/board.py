@@ -1,13 +1,14 @@
-"""Runs → the text of a table, a comparison or a curve. Imported once a verb needs it."""
+"""Runs → the text of a table, a comparison, a curve. Imported once a verb needs it."""
 
+import re
 from collections.abc import Collection, Iterator, Sequence
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from benchnav.errors import StoreError
-from benchnav.leaderboard.curve import render_curves
-from benchnav.leaderboard.duel import duel, render_duel
+from benchnav.errors import StoreError, UsageError, did_you_mean
+from benchnav.leaderboard.curve import HORIZON, Point, Setting, horizon_curves, parameter_curves
+from benchnav.leaderboard.duel import Duel, duel
 from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.leaderboard.layout import choose
 from benchnav.leaderboard.record import NotApplicable
@@ -15,10 +16,13 @@ from benchnav.leaderboard.render import render
 from benchnav.leaderboard.table import leaderboard
 from benchnav.metrics.measure import all_metrics
 from benchnav.metrics.metric import Metric
+from benchnav.metrics.success import SUCCESS
+from benchnav.scenario.parameters import joined_parameters, split_parameters
 from benchnav.store.reading import read_episodes_in_every_track, read_results
 from benchnav.store.run_folder import RunFolder
 
 TIDY = ("csv", "json")  # hold every metric unless told otherwise
+_COMPARED = ("success", "collided", "spl", "time_to_goal")  # by these unless told otherwise
 
 
 def table(
@@ -36,29 +40,80 @@ def table(
     results = results.filter(pc.is_in(results["metric"], pa.array(shown)))
     missing = [gap for folder in folders for gap in _not_applicable(folder)]
     learned = {label: cost for folder in folders for label, cost in _training(folder)}
-    made = leaderboard(results, metrics, missing, learned, verified)
-    return render(made, format, shown)
+    mapless = {label for folder in folders for label in _mapless(folder)}
+    made = leaderboard(results, metrics, missing, learned, verified, mapless)
+    return render(made, format, shown if metric or format in TIDY else None)
 
 
 def comparison(
     folders: Sequence[RunFolder],
-    format: str,
     pair: tuple[str, str],
-    metric: Sequence[str],
+    metric: Sequence[str] | None,
+    scenario: Sequence[str],
     recompute: bool,
-) -> str:
-    """Two navigators against each other."""
+) -> tuple[Duel, dict[str, Metric]]:
+    """Two navigators against each other, by ``metric`` or the few that matter most."""
     metrics = _metrics()
     results = _results(folders, metrics, recompute)
-    names = choose(_held(results, metrics), metric)
-    found = [c for name in names for c in duel(results, metrics, name, *pair)]
-    return render_duel(found, metrics, format)
+    if scenario:
+        results = _within(results, scenario)
+    held = _held(results, metrics)
+    names = [name for name in choose(held, metric or _COMPARED) if name in metrics]
+    gaps = [gap for folder in folders for gap in _not_applicable(folder)]
+    return duel(results, metrics, names, *pair, gaps), metrics
 
 
-def curve(folders: Sequence[RunFolder], format: str) -> str:
-    """Success against time, from the stored episodes."""
-    _results(folders, {}, recompute=False)  # refuses what must not be merged
-    return render_curves((e for f in folders for e in read_episodes_in_every_track(f.path)), format)
+def curve(
+    folders: Sequence[RunFolder], axis: str, metric: str, recompute: bool
+) -> tuple[Point, ...]:
+    """Success against horizon from the stored episodes; a metric against a parameter."""
+    metrics = _metrics()
+    if axis == HORIZON:
+        _results(folders, {}, recompute=False)  # refuses what must not be merged
+        if metric != SUCCESS.name:
+            raise UsageError(f"Against horizon there is success alone. Got {metric!r} instead.")
+        return horizon_curves(e for f in folders for e in read_episodes_in_every_track(f.path))
+    settings = _settings(folders, axis)
+    results = _results(folders, metrics, recompute)
+    choose(_held(results, metrics), [metric])
+    return parameter_curves(results, metrics[metric], axis, settings)
+
+
+def _within(results: pa.Table, wanted: Sequence[str]) -> pa.Table:
+    """The rows of scenarios that are named: with or without version and parameters."""
+    known = results["scenario"].unique().to_pylist()
+    chosen = set()
+    for name in wanted:
+        found = {k for k in known if name in (k, k.split("@")[0], k.split(":")[0])}
+        if not found:
+            raise UsageError(
+                f"A scenario to compare in must be one that was run. Got {name!r} instead."
+                f"{did_you_mean(name, [k.split('@')[0] for k in known])}"
+            )
+        chosen |= found
+    return results.filter(pc.is_in(results["scenario"], pa.array(sorted(chosen))))
+
+
+def _settings(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
+    """Where the scenarios of some runs stand that have the parameter ``axis``."""
+    found, axes = {}, {HORIZON}
+    for entry in (e for folder in folders for e in folder.manifest.suite["scenarios"]):
+        declared = entry["says"].get("parameters", {})
+        axes |= set(declared)
+        if axis in declared:
+            base, given = split_parameters(entry["scenario"])
+            x = given.pop(axis, declared[axis]["default"])
+            unit = re.search(r"\[([^\]]+)\]$", declared[axis]["description"])
+            found[entry["scenario"]] = Setting(
+                base + joined_parameters(given), x, unit[1] if unit else ""
+            )
+    if not found:
+        raise UsageError(
+            f"--curve must be {HORIZON!r}, or a parameter of a scenario that was run:"
+            f" {', '.join(sorted(axes - {HORIZON})) or 'here is none'}. Got {axis!r} instead."
+            f"{did_you_mean(axis, sorted(axes))}"
+        )
+    return found
 
 
 def _metrics() -> dict[str, Metric]:
@@ -93,6 +148,13 @@ def _training(folder: RunFolder) -> Iterator[tuple[str, tuple[float, float]]]:
     for entry in folder.manifest.suite.get("navigators", ()):
         if "training" in entry:
             yield entry["label"], (entry["training"]["decisions"], entry["training"]["seconds"])
+
+
+def _mapless(folder: RunFolder) -> Iterator[str]:
+    """Labels of navigators that use no map."""
+    for entry in folder.manifest.suite.get("navigators", ()):
+        if entry.get("uses_map") is False:
+            yield entry["label"]
 
 
 def _not_applicable(folder: RunFolder) -> Iterator[NotApplicable]:

@@ -53,6 +53,15 @@ def write(path: Path, text: str) -> None:
         raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
 
 
+def deliver(text: str, out: Path | None) -> None:
+    """A result to stdout, or to a file where one is named."""
+    if out is None:
+        put(text.rstrip("\n"))
+    else:
+        write(out, text)
+        say(f"{out} is written")
+
+
 def one_of(kinds: type[E], what: str, said: str) -> E:
     """The member of ``kinds`` that was said. Raises UsageError where there is none."""
     try:

@@ -1,20 +1,14 @@
 """`benchnav leaderboard`: the table of one or more runs."""
 
-from contextlib import ExitStack
 from enum import StrEnum
-from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from benchnav.cli.console import one_of, put, say, spans, write
+from benchnav.cli.console import deliver, one_of, say
+from benchnav.cli.reading import reading
 from benchnav.errors import UsageError
-
-if TYPE_CHECKING:
-    from benchnav.store.run_folder import RunFolder
-
-_SHOWN = 10  # cells that are named of those that lack episodes
 
 
 class Format(StrEnum):
@@ -27,18 +21,14 @@ class Format(StrEnum):
     JSON = "json"
 
 
-class Curve(StrEnum):
-    """What is shown against time."""
-
-    SUCCESS = "success"
-
-
 def leaderboard(
     runs: Annotated[list[Path], typer.Argument(metavar="RUN…", help="Run folders or packs.")],
     format: Annotated[
         str, typer.Option(help="markdown, csv, latex, html or json.")
     ] = Format.MARKDOWN.value,
-    out: Annotated[Path | None, typer.Option(help="Write it to this file.")] = None,
+    out: Annotated[
+        Path | None, typer.Option(help="Write it to this file; a curve also to .png, .svg or .pdf.")
+    ] = None,
     metric: Annotated[
         list[str] | None,
         typer.Option(help="Show this metric; 'all' for every one. Repeatable. [default: a few]"),
@@ -47,12 +37,12 @@ def leaderboard(
         bool,
         typer.Option("--recompute", help="Measure the stored episodes again, with every metric."),
     ] = False,
-    compare: Annotated[
-        tuple[str, str] | None,
-        typer.Option(metavar="A B", help="Say how much A exceeds B instead. [metric: success]"),
-    ] = None,
     curve: Annotated[
-        str | None, typer.Option(help="Show this against time instead: success.")
+        str | None,
+        typer.Option(
+            metavar="AXIS",
+            help="Show success, or one --metric, against horizon or a parameter of scenarios.",
+        ),
     ] = None,
     verify: Annotated[
         bool,
@@ -66,40 +56,24 @@ def leaderboard(
     """
     from benchnav.cli import board
     from benchnav.cli.vouched import vouched
-    from benchnav.store.unpack import opened
+    from benchnav.leaderboard.curve_table import render_curves
+    from benchnav.viewer.curves import draw_curves
+    from benchnav.viewer.picture import is_picture, save
 
     wanted = one_of(Format, "--format", format).value
-    with ExitStack() as stack:
-        folders = [stack.enter_context(opened(run)) for run in runs]
-        for folder in folders:
-            _warn_if_unfinished(folder)
-        if curve is not None:
-            one_of(Curve, "--curve", curve)
-            if compare is not None or metric or recompute:
-                raise UsageError("--curve must stand without --compare, --metric and --recompute.")
-            text = board.curve(folders, wanted)
-        elif compare is not None:
-            text = board.comparison(folders, wanted, compare, metric or ["success"], recompute)
-        else:
+    if is_picture(out) and curve is None:
+        raise UsageError(f"A table is no picture: {out} must end otherwise, or --curve be given.")
+    if curve is not None and len(metric or ["success"]) > 1:
+        raise UsageError("A curve is of one metric. Got more than one --metric.")
+    with reading(runs) as folders:
+        if curve is None:
             marked = vouched(folders, verify)
             text = board.table(folders, wanted, metric or None, recompute, marked)
-    if out is None:
-        put(text.rstrip("\n"))
-    else:
-        write(out, text)
-        say(f"{out} is written")
-
-
-def _warn_if_unfinished(folder: "RunFolder") -> None:
-    missing = dict(folder.missing())
-    if not missing:
-        return
-    first, stop = folder.manifest.suite["seeds"]
-    total = (stop - first) * sum(not cell["reason"] for cell in folder.manifest.cells)
-    stored = total - sum(map(len, missing.values()))
-    advice = f": run the same suite with --out {folder.path} to finish it."
-    say(f"{folder.shown} holds {stored} of {total} episodes{'.' if folder.packed else advice}")
-    for key, seeds in islice(missing.items(), _SHOWN):
-        say(f"  missing: {spans(seeds)} of {key}")
-    if len(missing) > _SHOWN:
-        say(f"  … and of {len(missing) - _SHOWN} more cells")
+        else:
+            points = board.curve(folders, curve, (metric or ["success"])[0], recompute)
+            if is_picture(out):
+                save(draw_curves(points), out)
+                say(f"{out} is drawn")
+                return
+            text = render_curves(points, wanted)
+    deliver(text, out)

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 import typer
 
 import benchnav
+from benchnav.cli.compare import compare
 from benchnav.cli.console import put, say
 from benchnav.cli.doctor import doctor
 from benchnav.cli.imports import import_app
@@ -48,6 +49,7 @@ app.command("run")(run)
 app.command("leaderboard")(leaderboard)
 app.command("verify")(verify)
 app.command("pack")(pack)
+app.command("compare")(compare)
 app.command("train")(train)
 app.command("list")(list_)
 app.command("show")(show)

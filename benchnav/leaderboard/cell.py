@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from benchnav.leaderboard.record import Record
+from benchnav.leaderboard.record import PRICE, Record
 
 PREFIXES = {  # unit → what it is divided by, and then called
     "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")),
@@ -33,7 +33,8 @@ def cell(r: Record | None, *, interval: bool, decided: bool) -> Cell:
     bounds = (r.low, r.high) if interval and not math.isnan(r.low) else ()
     widest = max(map(abs, (r.value, *bounds)))
     size, name = prefixed(r.unit, widest)
-    text, *ends = (number(x / size, widest / size) for x in (r.value, *bounds))
+    say = signed_number if r.track == PRICE else number
+    text, *ends = (say(x / size, widest / size) for x in (r.value, *bounds))
     if ends:
         text = f"{text} [{', '.join(ends)}]"
     unit = f" {name}" if name else ""
@@ -99,3 +100,9 @@ def number(value: float, scale: float) -> str:
     if size < -4 or size > 5:
         return f"{value:.1e}"
     return f"{value:.{max(0, 2 - max(size, 0)) if size >= -1 else 1 - size}f}"
+
+
+def signed_number(value: float, scale: float) -> str:
+    """The same of a difference: ``+1.25``, ``−0.5``, ``0``."""
+    text = number(value, scale)
+    return f"+{text}" if value > 0 and float(text) != 0.0 else text.replace("-", "−", 1)

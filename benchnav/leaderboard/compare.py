@@ -23,7 +23,8 @@ def sign_flip(differences: FloatArray, flips: int = FLIPS) -> FloatArray:
 
     Under the hypothesis each difference is as likely to have the other sign. Pairs that
     are undefined (NaN) or equal drop out, for flipping them changes nothing. Up to 13
-    pairs all patterns are counted; beyond, ``flips`` random ones and the observed one:
+    pairs all patterns are counted, and where all k have one sign p is 2^(1 − k), for no
+    other sum is as far from zero. Else it is from ``flips`` random ones and the observed one:
     (1 + count)/(1 + flips), B. Phipson and G. K. Smyth, "Permutation p-values should
     never be zero", Stat. Appl. Genet. Mol. Biol. 9 (2010). Where that many flips could
     not tell p from 0, it is Hoeffding's bound instead. Of more than 256 pairs every
@@ -36,10 +37,13 @@ def sign_flip(differences: FloatArray, flips: int = FLIPS) -> FloatArray:
         columns = np.flatnonzero(moved == k)
         part = value[:, columns]
         p[columns] = _exact(part.T[part.T != 0.0].reshape(len(columns), k).T)
+    many = moved > EXACT
+    one_way = many & ((value >= 0.0).all(axis=0) | (value <= 0.0).all(axis=0))
+    p[one_way] = 2.0 ** (1 - moved[one_way])
     bound = _bound(value)
-    clear = (moved > EXACT) & (bound < 1 / (1 + flips))
+    clear = many & ~one_way & (bound < 1 / (1 + flips))
     p[clear] = bound[clear]
-    open_ = np.flatnonzero((moved > EXACT) & ~clear)
+    open_ = np.flatnonzero(many & ~one_way & ~clear)
     if len(open_):
         p[open_] = _sampled(value[:, open_], flips)
     return p
@@ -140,10 +144,9 @@ def ranks(lead: FloatArray, adjusted: FloatArray, navigators: int) -> tuple[IntA
     return low, high
 
 
-def flips_for(navigators: int) -> int:
-    """Enough flips for the smallest p-value to survive Holm over all pairs, twice over."""
-    comparisons = navigators * (navigators - 1) // 2
-    return max(FLIPS, 2 * int(comparisons / ALPHA))
+def flips_for(family: int) -> int:
+    """Enough flips for the smallest p-value to survive Holm over ``family`` tests, twice over."""
+    return max(FLIPS, 2 * int(family / ALPHA))
 
 
 def comparable(attempted: BoolArray) -> BoolArray:

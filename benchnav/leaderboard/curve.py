@@ -1,57 +1,81 @@
-"""Success against time: the share of all agents that have succeeded by then."""
+"""Curves of a metric against a number: success against horizon, or against a parameter."""
 
-from collections.abc import Iterable
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from benchnav.arena.agents import Role
 from benchnav.arrays import FloatArray
-from benchnav.episode.episode import Episode
-from benchnav.errors import UsageError
-from benchnav.leaderboard import escape
-from benchnav.leaderboard.cell import number
-from benchnav.leaderboard.tidy import as_csv, as_json
-from benchnav.metrics.success import success_by_horizon, success_time
+from benchnav.leaderboard.estimate import Sample, columns_of, estimate
+from benchnav.leaderboard.grid import strata
+from benchnav.leaderboard.interval import resample
+from benchnav.metrics.metric import Metric
+from benchnav.metrics.success import SUCCESS, success_by_horizon, success_time
 
-FORMATS = ("markdown", "csv", "json")
-COLUMNS = 10  # times in a table for people
-POINTS = 100  # times in one for machines
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from benchnav.episode.episode import Episode
+
+HORIZON = "horizon"
+"""The axis that is no parameter of a scenario: what if the episodes had ended by then."""
+POINTS = 100  # times of a curve against horizon
 
 
 @dataclass(frozen=True)
 class Point:
-    """A point of one curve: cumulative incidence of success, failures in the denominator."""
+    """A point of one navigator's curve."""
 
     navigator: str
-    scenario: str
+    scenario: str  # without the parameter that is the axis
     track: str
     role: str
-    time: float  # [s]
-    share: float  # of the agents that had succeeded by then
-    agents: int  # of all worlds together
-    worlds: int
+    metric: str
+    axis: str  # "horizon", or a parameter of the scenario
+    axis_unit: str
+    x: float
+    value: float  # mean over worlds; NaN where none defines it
+    low: float  # of its 95 % interval
+    high: float
+    unit: str  # of the value
+    worlds: int  # attempted
     split: str
     scenario_hash: str
-    horizon: float  # [s]
+    horizon: float  # [s] of the episodes
     dt: float  # [s]
     rehearsal: int = 0  # rehearsals of each world that the navigator was granted
 
 
+@dataclass(frozen=True)
+class Setting:
+    """Where on its axis a scenario stands that has a parameter."""
+
+    scenario: str  # without the parameter
+    x: float
+    unit: str  # of x; "" where the scenario does not say
+
+
 Key = tuple[str, str, str, str, str, float, float, int, str]
+Worlds = dict[int, tuple[FloatArray, int]]  # seed → shares at every time, agents
 
 
-def success_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[Point, ...]:
-    """Curves of each navigator × scenario × track × role at ``points`` even times to the horizon.
+def horizon_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[Point, ...]:
+    """Success against horizon at ``points`` even times, from episodes that ran to the last.
 
-    Episodes that differ in split, scenario hash, horizon, time step or rehearsals stand apart;
-    one that occurs twice counts once. Background agents are left out.
+    The cumulative incidence of success: agents that collided, failed or timed out stay in the
+    denominator. One curve for each navigator × scenario × track × role, and apart what
+    differs in split, scenario hash, horizon, time step or rehearsals. An episode that occurs
+    twice counts once. Background agents are left out.
     """
-    times: dict[Key, dict[int, FloatArray]] = {}
+    curves: dict[Key, Worlds] = {}
     for episode in episodes:
         who, clock, agents = episode.identity, episode.world.clock, episode.world.agents
-        succeeded = success_time(episode)
+        times = success_time(episode)
         for role in Role:
             members = agents.evaluated & (agents.role == role)
             if members.any():
@@ -59,57 +83,68 @@ def success_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[P
                     who.split, who.track, who.scenario, role.name.lower(), who.scenario_hash,
                     clock.horizon, clock.dt, episode.rehearsals, who.navigator,
                 )  # fmt: skip
-                times.setdefault(key, {})[who.seed] = succeeded[members]
-    return tuple(point for key in sorted(times) for point in _curve(key, times[key], points))
+                shares = success_by_horizon(times[members], _times(clock.horizon, points))
+                curves.setdefault(key, {})[who.seed] = (shares, int(members.sum()))
+    return tuple(p for key in sorted(curves) for p in _horizon_curve(key, curves[key], points))
 
 
-def _curve(key: Key, worlds: dict[int, FloatArray], points: int) -> list[Point]:
+def _times(horizon: float, points: int) -> FloatArray:
+    """(T,) [s] the ends of equal parts of the episode."""
+    found: FloatArray = np.linspace(0.0, horizon, points + 1)[1:]
+    return found
+
+
+def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
     split, track, scenario, role, digest, horizon, dt, rehearsal, navigator = key
-    every = np.concatenate(list(worlds.values()))
-    at = np.linspace(0.0, horizon, points + 1)[1:]
-    return [
-        Point(
-            navigator, scenario, track, role, float(time), float(share), len(every), len(worlds),
+    value = np.array([worlds[seed][0] for seed in sorted(worlds)])
+    agents = np.array([[float(worlds[seed][1])] * points for seed in sorted(worlds)])
+    weights = resample(len(value), np.random.default_rng(0))
+    found = estimate(Sample(value, agents, weights), columns_of([SUCCESS] * points))
+    for k, time in enumerate(_times(horizon, points)):
+        yield Point(
+            navigator, scenario, track, role, SUCCESS.name, HORIZON, "s", float(time),
+            float(found.value[k]), float(found.low[k]), float(found.high[k]), "", len(value),
             split, digest, horizon, dt, rehearsal,
-        )
-        for time, share in zip(at, success_by_horizon(every, at), strict=True)
-    ]  # fmt: skip
+        )  # fmt: skip
 
 
-def render_curves(episodes: Iterable[Episode], format: str) -> str:
-    """Curves as text that ends with a line break: Markdown tables, or tidy CSV or JSON.
+def parameter_curves(
+    results: pa.Table, metric: Metric, axis: str, settings: Mapping[str, Setting]
+) -> tuple[Point, ...]:
+    """A metric against the parameter ``axis`` of scenarios.
 
-    Raises UsageError for another format.
+    ``settings`` maps a scenario of ``results`` (RESULTS) that has the parameter to where on
+    the axis it stands; other scenarios are left out.
     """
-    if format not in FORMATS:
-        raise UsageError(f"A curve comes as {', '.join(FORMATS)}. Got {format!r} instead.")
-    if format == "json":
-        return as_json(success_curves(episodes))
-    if format == "csv":
-        return as_csv(Point, success_curves(episodes))
-    points = success_curves(episodes, COLUMNS)
-    tables = [_table(list(group)) for _, group in groupby(points, key=_place)]
-    legend = "Share of all agents that had succeeded by then; failures stay in the denominator."
-    return "\n".join([*tables, legend, ""])
+    found = []
+    for s in strata(results, {metric.name: metric}):
+        if s.scenario not in settings or metric.name not in s.metrics:
+            continue
+        m = s.metrics.index(metric.name)
+        sample = Sample(s.value[:, :, m], s.agents[:, :, m], resample(len(s.seeds), s.rng("curve")))
+        mean = estimate(sample, columns_of([metric] * len(s.navigators)))
+        where = settings[s.scenario]
+        found += [
+            Point(
+                navigator, where.scenario, s.track, s.role, metric.name, axis, where.unit, where.x,
+                float(mean.value[n]), float(mean.low[n]), float(mean.high[n]), metric.unit,
+                int(s.attempted[:, n].sum()), s.split, s.scenario_hash, s.horizon, s.dt,
+                s.rehearsal,
+            )
+            for n, navigator in enumerate(s.navigators)
+        ]  # fmt: skip
+    return tuple(sorted(found, key=lambda p: (*place(p), p.navigator, p.x)))
 
 
-def _place(p: Point) -> tuple[str, str, str, str, str, float, float, int]:
-    return p.split, p.track, p.scenario, p.role, p.scenario_hash, p.horizon, p.dt, p.rehearsal
+Place = tuple[str, str, str, str, float, float, int]
 
 
-def _table(points: list[Point]) -> str:
-    """The curves of one scenario, track and role, a row for each navigator."""
-    first = points[0]
-    title = f"{first.scenario}, track {first.track}, {first.role}s, {first.worlds} worlds"
-    title += f", rehearsal: {first.rehearsal}" if first.rehearsal else ""
-    shares: dict[str, list[str]] = {}
-    for p in points:
-        shares.setdefault(p.navigator, []).append(number(p.share, p.share))
-    head = ["navigator", *(f"{p.time:g} s" for p in points[:COLUMNS])]
-    body = [[escape.markdown(name), *row] for name, row in shares.items()]
-    width = [max(3, *map(len, column)) for column in zip(head, *body, strict=True)]
-    lines = [
-        f"| {' | '.join(text.ljust(w) for text, w in zip(row, width, strict=True))} |"
-        for row in (head, ["-" * w for w in width], *body)
-    ]
-    return "\n".join([f"### {escape.markdown(title)}", "", *lines, ""])
+def place(p: Point) -> Place:
+    """What stands in one picture: curves of one scenario, track and role."""
+    return p.split, p.scenario, p.track, p.role, p.horizon, p.dt, p.rehearsal
+
+
+def panels(points: Iterable[Point]) -> Iterator[list[Point]]:
+    """The points of each place."""
+    for _, group in groupby(sorted(points, key=lambda p: (*place(p), p.navigator, p.x)), key=place):
+        yield list(group)

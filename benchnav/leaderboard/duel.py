@@ -1,35 +1,82 @@
-"""Two navigators against each other, in words: paired differences, intervals, p-values."""
+"""Two navigators against each other, on all metrics and places that both were run in."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from benchnav.arrays import IntArray
 from benchnav.errors import UsageError, did_you_mean
-from benchnav.leaderboard import escape
-from benchnav.leaderboard.cell import number, prefixed
-from benchnav.leaderboard.interval import ALPHA
-from benchnav.leaderboard.paired import Comparison, comparisons
-from benchnav.leaderboard.tidy import as_csv, as_json
+from benchnav.leaderboard.absent import absences
+from benchnav.leaderboard.compare import flips_for, sign_flip
+from benchnav.leaderboard.comparison import Comparison, as_family
+from benchnav.leaderboard.difference import difference, spread
+from benchnav.leaderboard.estimate import columns_of, mean_over
+from benchnav.leaderboard.grid import Stratum, strata
+from benchnav.leaderboard.paired import differences, side_by_side
+from benchnav.leaderboard.record import ALL, NotApplicable
+from benchnav.leaderboard.standing import weights_of
 from benchnav.metrics.metric import Metric
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
-FORMATS = ("markdown", "csv", "json")
-SMALLEST = 1e-4  # p below which only that is said
+
+@dataclass(frozen=True)
+class Duel:
+    """What `benchnav compare` says: one family of comparisons, and what it cannot compare."""
+
+    first: str
+    second: str
+    comparisons: tuple[Comparison, ...]  # by metric, then split, track, role and scenario
+    notes: tuple[str, ...]
 
 
 def duel(
-    results: pa.Table, metrics: Mapping[str, Metric], metric: str, first: str, second: str
-) -> tuple[Comparison, ...]:
-    """``first`` − ``second`` in every scenario, track and role that both were run in.
+    results: pa.Table,
+    metrics: Mapping[str, Metric],
+    names: Sequence[str],
+    first: str,
+    second: str,
+    gaps: Sequence[NotApplicable] = (),
+) -> Duel:
+    """``first`` − ``second`` by the metrics ``names``, in every scenario, track and role of both.
 
-    p-values are adjusted over all pairs of navigators there. Raises UsageError where one of
-    the two is not in ``results``, or they met nowhere.
+    Where they met in several scenarios of a track also over all of these, each counting
+    alike. All that is said is one family. ``gaps`` are cells that could not be run.
+    Raises UsageError where one of the two is not in ``results``, or they met nowhere.
     """
+    _require(results, first, second)
+    import pyarrow.compute as pc
+
+    chosen = pc.and_(
+        pc.is_in(results["navigator"], value_set=_strings(first, second)),
+        pc.is_in(results["metric"], value_set=_strings(*names)),
+    )
+    found = strata(results.filter(chosen), metrics, mixed=True)
+    met = [s for s in found if len(s.navigators) == 2 and s.attempted.all(axis=1).any()]
+    notes = absences(found, first, second, gaps)
+    if not met:
+        raise UsageError(
+            f"Two navigators can be compared where both were run in the same worlds. {first!r}"
+            f" and {second!r} never were.{''.join(f' {note}' for note in notes)}"
+        )
+    wanted = [metrics[name] for name in names]
+    family = len(wanted) * 2 * len(met)  # or fewer
+    every = [c for s in met for c in _in_one(s, first, second, wanted, family)]
+    for _, group in groupby(met, key=lambda s: (s.split, s.track, s.role)):
+        every += _over_all(list(group), first, second, wanted, family)
+    order = {name: place for place, name in enumerate(names)}
+    every.sort(key=lambda c: (order[c.metric], c.split, c.track, c.role))  # stable
+    return Duel(first, second, as_family(every, metrics), tuple(notes))
+
+
+def _require(results: pa.Table, first: str, second: str) -> None:
     known = sorted(results["navigator"].unique().to_pylist())
     for name in (first, second):
         if name not in known:
@@ -39,83 +86,48 @@ def duel(
             )
     if first == second:
         raise UsageError(f"Two different navigators can be compared. Got {first!r} twice.")
-    pair = {first, second}
-    every = comparisons(results, metrics, metric)
-    found = [_turned(c, first) for c in every if {c.first, c.second} == pair]
-    if not found:
-        raise UsageError(
-            f"Navigators to compare must have been measured by {metric!r} in the same scenario"
-            f" and track. {first!r} and {second!r} never were."
-        )
-    return tuple(found)
 
 
-def _turned(c: Comparison, first: str) -> Comparison:
-    if c.first == first:
-        return c
-    return replace(
-        c, first=c.second, second=c.first, difference=-c.difference, low=-c.high, high=-c.low,
-        first_rehearsal=c.second_rehearsal, second_rehearsal=c.first_rehearsal,
-    )  # fmt: skip
+def _strings(*values: str) -> pa.Array:
+    import pyarrow as pa
+
+    return pa.array(values, pa.string())
 
 
-def render_duel(
-    found: Sequence[Comparison], metrics: Mapping[str, Metric], format: str = "markdown"
-) -> str:
-    """Comparisons as text that ends with a line break: sentences, or tidy CSV or JSON.
-
-    Raises UsageError for another format.
-    """
-    if format not in FORMATS:
-        raise UsageError(f"A comparison comes as {', '.join(FORMATS)}. Got {format!r} instead.")
-    if format == "json":
-        return as_json(found)
-    if format == "csv":
-        return as_csv(Comparison, found)
-    lines = [f"- {escape.markdown(sentence(c, metrics[c.metric]))}" for c in found]
-    legend = (
-        "Mean of the differences in the worlds of both, its 95 % interval, p by sign flips, and p"
-        " after Holm over all pairs of navigators in that scenario, track and role."
-    )
-    return "\n".join([*lines, "", legend, ""])
+def _sides(s: Stratum, first: str, second: str, count: int) -> tuple[IntArray, IntArray]:
+    """(C,), (C,) their places among the navigators of a stratum."""
+    one, other = s.navigators.index(first), s.navigators.index(second)
+    return np.full(count, one, np.int64), np.full(count, other, np.int64)
 
 
-def sentence(c: Comparison, metric: Metric) -> str:
-    """What one comparison says."""
-    where = f"{c.scenario}, track {c.track}, {c.role}s, {c.metric}"
-    first, second = _named(c.first, c.first_rehearsal), _named(c.second, c.second_rehearsal)
-    if not c.worlds:
-        return f"{where}: no world in which both {first} and {second} have a value."
-    bounds = () if math.isnan(c.low) else (c.low, c.high)
-    widest = max(map(abs, (c.difference, *bounds)))
-    size, unit = prefixed(metric.unit, widest)
-    value, *ends = (_signed(x / size, widest / size) for x in (c.difference, *bounds))
-    interval = f" [{', '.join(ends)}]" if ends else ""
-    worlds = f"{c.worlds} world{'s' if c.worlds > 1 else ''}"
-    return (
-        f"{where}: {first} − {second} = {value}{interval}{' ' if unit else ''}{unit}"
-        f" over {worlds}; p {_chance(c.p)}, after Holm {_chance(c.adjusted)}:"
-        f" {_verdict(c, metric)}."
-    )
+def _in_one(
+    s: Stratum, first: str, second: str, metrics: Sequence[Metric], family: int
+) -> list[Comparison]:
+    """In one scenario, by the metrics that were measured there."""
+    held = [metric for metric in metrics if metric.name in s.metrics]
+    return differences(s, *_sides(s, first, second, len(held)), held, family)
 
 
-def _named(navigator: str, rehearsal: int) -> str:
-    return f"{navigator} (rehearsal: {rehearsal})" if rehearsal else navigator
-
-
-def _verdict(c: Comparison, metric: Metric) -> str:
-    if not c.adjusted < ALPHA:
-        return "no significant difference"
-    if metric.better is None or metric.conditional:
-        return f"{c.first} is significantly {'higher' if c.difference > 0 else 'lower'}"
-    ahead = (c.difference > 0) == (metric.better == "higher")
-    return f"{c.first} is significantly {'better' if ahead else 'worse'}"
-
-
-def _signed(value: float, scale: float) -> str:
-    text = number(value, scale)
-    return f"+{text}" if value > 0 and text != "0" else text.replace("-", "−", 1)
-
-
-def _chance(p: float) -> str:
-    return f"below {SMALLEST:.4f}" if p < SMALLEST else f"= {p:.2g}"
+def _over_all(
+    group: list[Stratum], first: str, second: str, metrics: Sequence[Metric], family: int
+) -> Iterator[Comparison]:
+    """Over the scenarios of one split, track and role, if there are several."""
+    if len(group) < 2:
+        return
+    column = columns_of(metrics)
+    sides = [side_by_side(s, *_sides(s, first, second, len(metrics)), metrics) for s in group]
+    parts = [difference(side, column) for side in sides]
+    mean = mean_over(parts, [side.differences for side in sides], spread(column))
+    apart = np.concatenate([side.differences.value for side in sides])
+    stratum = np.repeat(np.arange(len(group)), [len(s.seeds) for s in group])
+    known = ~np.isnan(apart)
+    weights = np.stack([weights_of(column, stratum) for column in known.T], axis=1)
+    p = sign_flip(apart * weights, flips_for(family))
+    s = group[0]
+    granted = [int(s.granted[s.navigators.index(name)]) for name in (first, second)]
+    for m, metric in enumerate(metrics):
+        yield Comparison(
+            first, second, ALL, s.track, s.role, metric.name, int(known[:, m].sum()),
+            float(mean.value[m]), float(mean.low[m]), float(mean.high[m]), float(p[m]),
+            s.split, "", math.nan, math.nan, granted[0], granted[1],
+        )  # fmt: skip

@@ -1,6 +1,6 @@
 """Value and 95 % interval of every column of a stratum, and of means over strata."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,11 +11,13 @@ from benchnav.leaderboard.interval import (
     cumulants,
     effective_size,
     mean,
+    mid_p,
     recover,
     resampled_means,
     trimmed_mean,
-    wilson,
+    unanimous,
 )
+from benchnav.metrics.metric import Metric
 
 BLOCK = 64  # columns resampled at once
 
@@ -43,6 +45,15 @@ class Column:
     most: FloatArray
 
 
+def columns_of(metrics: Sequence[Metric | None]) -> Column:
+    """What is known of one column for each metric; nothing of one that is not installed."""
+    return Column(
+        np.array([m is not None and m.rate for m in metrics], dtype=np.bool_),
+        np.array([-np.inf if m is None else m.low for m in metrics]),
+        np.array([np.inf if m is None else m.high for m in metrics]),
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class Sample:
     """The columns of one stratum: n worlds."""
@@ -53,23 +64,22 @@ class Sample:
 
 
 def estimate(sample: Sample, column: Column) -> Estimate:
-    """Rates: Wilson's interval at the effective size. Others: the bootstrap over worlds.
+    """Rates: the mid-P interval at the effective size. Others: the bootstrap over worlds.
 
-    Where all values of a bounded metric agree the bootstrap has no width; Wilson's
-    interval, scaled to the metric's range, holds there. Where the range is not bounded,
-    or fewer than two worlds have a value, there is no interval.
+    Where all values of a bounded metric agree the bootstrap has no width; there it is
+    said how far unseen worlds could move the mean. Where the range is not bounded, or
+    fewer than two worlds have a value, there is no interval.
     """
     value = mean(sample.value)
     count = (~np.isnan(sample.value)).sum(axis=0)
     found = _unknown(value)
     rate = column.rate & (count > 0)
     size = effective_size(sample.value[:, rate], sample.agents[:, rate])
-    found.put(rate, *wilson(value[rate], size))
+    found.put(rate, *mid_p(value[rate], size))
     flat = ~rate & (count > 1) & ~_varies(sample.value)
     bounded = flat & np.isfinite(column.least) & np.isfinite(column.most)
-    least, width = column.least[bounded], (column.most - column.least)[bounded]
-    low, high = wilson((value[bounded] - least) / width, count[bounded].astype(np.float64))
-    found.put(bounded, least + low * width, least + high * width)
+    limits = column.least[bounded], column.most[bounded]
+    found.put(bounded, *unanimous(value[bounded], count[bounded], *limits))
     usual = ~rate & (count > 1) & ~flat
     second, third = cumulants(sample.value[:, usual])
     n = count[usual].astype(np.float64)

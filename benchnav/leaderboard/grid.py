@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
@@ -201,3 +201,28 @@ def _charge(
         value[:, :, m][failed] = np.nan
         value[:, :, m][owed] = worst if possible else np.nan
         agents[:, :, m][owed] = np.maximum(agents[:, :, m].max(initial=1.0), 1.0)
+
+
+def align(group: list[Stratum]) -> list[Stratum]:
+    """The same navigators and metrics in every stratum, absent ones unattempted."""
+    navigators = tuple(sorted({name for s in group for name in s.navigators}))
+    metrics = tuple(sorted({name for s in group for name in s.metrics}))
+    aligned = []
+    for s in group:
+        n = np.searchsorted(navigators, s.navigators)
+        m = np.searchsorted(metrics, s.metrics)
+        shape = (len(s.seeds), len(navigators), len(metrics))
+        value, agents = np.full(shape, np.nan), np.zeros(shape)
+        value[:, n[:, None], m], agents[:, n[:, None], m] = s.value, s.agents
+        attempted, failed = np.zeros(shape[:2], bool), np.zeros(shape[:2], bool)
+        attempted[:, n], failed[:, n] = s.attempted, s.failed
+        granted = np.zeros(len(navigators), np.int64)
+        cost = np.full((*shape[:2], s.cost.shape[2]), np.nan)
+        granted[n], cost[:, n] = s.granted, s.cost
+        aligned.append(
+            replace(
+                s, navigators=navigators, metrics=metrics, value=value, agents=agents,
+                attempted=attempted, failed=failed, granted=granted, cost=cost,
+            )
+        )  # fmt: skip
+    return aligned

@@ -1,30 +1,66 @@
-"""95 % intervals: Wilson's for rates, a corrected bootstrap for everything else.
+"""95 % intervals: mid-P for rates, a corrected bootstrap for everything else.
 
 Every function works on columns, so that one call serves all navigators and metrics.
 docs/statistics.md holds the simulation by which the methods were chosen.
 """
 
-import numpy as np
-from scipy.special import ndtr, ndtri, stdtrit  # scipy.stats takes a second to import
+from collections.abc import Callable
 
-from benchnav.arrays import FloatArray
+import numpy as np
+from scipy.special import betainc, ndtr, ndtri, stdtrit  # scipy.stats takes a second to import
+
+from benchnav.arrays import FloatArray, IntArray
 
 ALPHA = 0.05
 RESAMPLES = 2000
+PRIOR = 0.2  # of a world, which the estimate of a correlation begins with
+HALVINGS = 50
 
 
-def wilson(rate: FloatArray, size: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Wilson score interval (C,), (C,) of rates (C,) from ``size`` (C,) independent trials.
+def mid_p(rate: FloatArray, size: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Mid-P interval (C,), (C,) of rates (C,) from ``size`` (C,) independent trials.
 
-    E. B. Wilson, "Probable inference, the law of succession, and statistical
-    inference", JASA 22 (1927). It holds, and is only wider than needed, for the mean of
-    any quantity in [0, 1], whose variance is at most rate·(1 − rate).
+    Its bounds p leave P(X > x) + P(X = x)/2 = α/2 at either side of x = rate·size, the
+    binomial X continued to sizes that are no whole numbers. H. O. Lancaster,
+    "Significance tests in discrete distributions", JASA 56 (1961); as an interval,
+    G. Berry and P. Armitage, "Mid-P confidence intervals: a brief review", The
+    Statistician 44 (1995).
     """
-    z = ndtri(1 - ALPHA / 2)
-    centre = (rate + z * z / (2 * size)) / (1 + z * z / size)
-    half = z / (1 + z * z / size) * np.sqrt(rate * (1 - rate) / size + z * z / (4 * size**2))
-    low = np.where(rate == 0.0, 0.0, np.maximum(centre - half, 0.0))
-    return low, np.where(rate == 1.0, 1.0, np.minimum(centre + half, 1.0))
+    x = rate * size
+    low = _solve(lambda p: _above(p, x, size) - ALPHA / 2, x)
+    high = _solve(lambda p: _above(p, x, size) - (1 - ALPHA / 2), x)
+    return np.where(rate == 0.0, 0.0, low), np.where(rate == 1.0, 1.0, high)
+
+
+def _above(p: FloatArray, x: FloatArray, size: FloatArray) -> FloatArray:
+    """(C,) P(X > x) + P(X = x)/2 of X binomial, by its incomplete beta function."""
+    least, rest = np.finfo(float).tiny, np.maximum(size - x, np.finfo(float).tiny)
+    at_least = np.where(x > 0.0, betainc(np.maximum(x, least), rest + 1.0, p), 1.0)
+    more = np.where(x < size, betainc(x + 1.0, rest, p), 0.0)
+    found: FloatArray = 0.5 * (at_least + more)
+    return found
+
+
+def _solve(rising: Callable[[FloatArray], FloatArray], like: FloatArray) -> FloatArray:
+    """(C,) where ``rising`` passes 0 between 0 and 1, by bisection."""
+    low, high = np.zeros_like(like), np.ones_like(like)
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        beyond = rising(middle) > 0.0
+        low, high = np.where(beyond, low, middle), np.where(beyond, middle, high)
+    return 0.5 * (low + high)
+
+
+def unanimous(
+    value: FloatArray, count: FloatArray, least: FloatArray, most: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Interval (C,), (C,) of means of which all ``count`` (C,) values are the same.
+
+    If a share q of worlds had another value, none of them would show with probability
+    (1 − q)ⁿ, which is α/2 at q = 1 − (α/2)^(1/n); theirs lie from ``least`` to ``most``.
+    """
+    others = 1.0 - (ALPHA / 2) ** (1.0 / count)
+    return value - others * (value - least), value + others * (most - value)
 
 
 def effective_size(rates: FloatArray, agents: FloatArray) -> FloatArray:
@@ -33,8 +69,10 @@ def effective_size(rates: FloatArray, agents: FloatArray) -> FloatArray:
     agents / (1 + (m − 1)·ρ), with m agents a world (L. Kish, "Survey sampling", 1965)
     and ρ the one-way analysis-of-variance estimate of the correlation of agents that
     share a world, held within [0, 1] so that sharing a world never narrows an interval.
-    Where all agents agree ρ cannot be estimated and is taken as 1: the worlds count.
-    Few worlds estimate ρ badly, so the size shrinks by the squared ratio of Student's
+    Few failures estimate ρ badly: a fifth of a world is added to its estimate, half of
+    which all agents succeed and half none (ours). Where all agents agree ρ is 1 by that:
+    the worlds count.
+    Few worlds estimate ρ badly too, so the size shrinks by the squared ratio of Student's
     quantiles at agents − 1 and worlds − 1, but never below the worlds (E. L. Korn and
     B. I. Graubard, "Confidence intervals for proportions with small expected number of
     positive counts estimated from survey data", Survey Methodology 24, 1998; the floor
@@ -42,21 +80,29 @@ def effective_size(rates: FloatArray, agents: FloatArray) -> FloatArray:
     """
     known = ~np.isnan(rates)
     size = np.where(known, agents, 0.0)
-    value = np.where(known, rates, 0.0)
-    worlds = known.sum(axis=0)
-    total = size.sum(axis=0)
+    worlds, total = known.sum(axis=0), size.sum(axis=0)
     with np.errstate(invalid="ignore", divide="ignore"):
-        mean = (size * value).sum(axis=0) / total
-        per_world = (total - (size**2).sum(axis=0) / total) / (worlds - 1)  # m, corrected
-        between = (size * (value - mean) ** 2).sum(axis=0) / (worlds - 1)
-        within = (size * value * (1 - value)).sum(axis=0) / (total - worlds)
-        rho = (between - within) / (between + (per_world - 1) * within)
-    rho = np.clip(np.where(np.isfinite(rho), rho, 1.0), 0.0, 1.0)
-    with np.errstate(invalid="ignore", divide="ignore"):
+        rho = _correlation(np.where(known, rates, 0.0), size, worlds, total)
         worth = total / (1 + (total / worlds - 1) * rho)
         shrink = students(total - 1) / students(worlds - 1)
     effective: FloatArray = np.fmax(worth * shrink**2, worlds)
     return effective
+
+
+def _correlation(
+    value: FloatArray, size: FloatArray, worlds: IntArray, total: FloatArray
+) -> FloatArray:
+    """(C,) of agents that share a world, by analysis of variance; 1 where it has no estimate."""
+    usual = total / worlds  # agents of the part of a world that is added
+    n, agents = worlds + PRIOR, total + PRIOR * usual
+    mean = ((size * value).sum(axis=0) + 0.5 * PRIOR * usual) / agents
+    added = 0.5 * PRIOR * usual * ((1 - mean) ** 2 + mean**2)
+    squares = (size**2).sum(axis=0) + PRIOR * usual**2
+    per_world = (agents - squares / agents) / (n - 1)  # m, corrected
+    between = ((size * (value - mean) ** 2).sum(axis=0) + added) / (n - 1)
+    within = (size * value * (1 - value)).sum(axis=0) / (agents - n)
+    rho = (between - within) / (between + (per_world - 1) * within)
+    return np.clip(np.where(np.isfinite(rho), rho, 1.0), 0.0, 1.0)
 
 
 def students(freedom: FloatArray) -> FloatArray:
@@ -159,8 +205,8 @@ def recover(
 
     G. Y. Zou, W. Huang and X. Zhang, "A note on confidence interval estimation for a
     linear function of binomial proportions", Computational Statistics & Data Analysis 53
-    (2009). So strata in which every episode succeeded, or failed, keep the width that
-    Wilson's interval gives them. Held within the metric's range ``least`` to ``most``.
+    (2009). So strata in which every episode succeeded, or failed, keep the
+    width of their own interval. Held within the metric's range ``least`` to ``most``.
     """
     mean = float(value.mean())
     down = float(np.sqrt(((value - low) ** 2).sum())) / len(value)

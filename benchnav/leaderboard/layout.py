@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import groupby
 
 from benchnav.errors import UsageError, did_you_mean
@@ -16,12 +15,16 @@ from benchnav.leaderboard.cell import (
     training,
     verified,
 )
-from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Leaderboard, Record
+from benchnav.leaderboard.price_table import LEGEND as PRICE_LEGEND
+from benchnav.leaderboard.price_table import price_sections
+from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Leaderboard, Record
+from benchnav.leaderboard.section import Section
 
 DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
 NARROW = 4  # metrics up to which every cell shows its interval
 INTERVALS = 2  # metrics that show it in a wider table
 WIDE = 8  # metrics beyond which a table has a row for each of them
+PRICED = 3  # of the default metrics that have a table of the price of ignorance
 ABREAST = 5  # navigators side by side in such a table
 
 LEGEND = (
@@ -32,16 +35,6 @@ LEGEND = (
     "Paired worlds, sign flips, Holm. Bold: nobody is significantly better."
     " A failed episode counts as the worst: success 0, collided 1.",
 )
-
-
-@dataclass(frozen=True)
-class Section:
-    """One table."""
-
-    title: str
-    headings: tuple[Cell, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-    notes: tuple[str, ...]
 
 
 def choose(held: Sequence[str], metrics: Sequence[str] | None) -> tuple[str, ...]:
@@ -63,9 +56,10 @@ def choose(held: Sequence[str], metrics: Sequence[str] | None) -> tuple[str, ...
 
 
 def sections(board: Leaderboard, metrics: Sequence[str] | None) -> Iterator[Section]:
-    """Tables of a leaderboard, one per track, scenario and role."""
+    """Tables of a leaderboard, one per track, scenario and role, and what ignorance costs."""
     shown = choose(board.metrics, metrics)
-    groups = {key: list(group) for key, group in groupby(board.records, key=_key)}
+    records = [r for r in board.records if r.track != PRICE]
+    groups = {key: list(group) for key, group in groupby(records, key=_key)}
     for key, records in groups.items():
         if key[2] == ALL_INTERQUARTILE:
             continue
@@ -77,6 +71,13 @@ def sections(board: Leaderboard, metrics: Sequence[str] | None) -> Iterator[Sect
             if key[2] == ALL and (k[:3], k[6:]) == ((*key[:2], ALL_INTERQUARTILE), key[6:])
         ]
         yield from _Table(records, middle, shown).sections(_title(records, variants))
+    yield from price_sections(board, shown[:PRICED] if metrics is None else shown)
+
+
+def legend(board: Leaderboard) -> tuple[str, ...]:
+    """What is said below all tables."""
+    priced = any(r.track == PRICE for r in board.records)
+    return (*LEGEND, PRICE_LEGEND) if priced else LEGEND
 
 
 def _key(r: Record) -> tuple[str, ...]:
@@ -117,12 +118,15 @@ class _Table:
         self.learned = any(not math.isnan(r.training_decisions) for r in records)
         self.rehearsed = records[0].rehearsal
         self.verified = any(r.verified for r in records)
+        self.chapter = f"Track {records[0].track}"
 
     def sections(self, title: str) -> Iterator[Section]:
         """A row for each navigator, or for each metric where those are many."""
         if len(self.metrics) <= WIDE:
             wide = tuple(self._navigator(name) for name in self.navigators)
-            yield Section(title, tuple(self._headings()), wide, self._notes(self.navigators))
+            yield Section(
+                self.chapter, title, tuple(self._headings()), wide, self._notes(self.navigators)
+            )
             return
         for start in range(0, len(self.navigators), ABREAST):
             block = self.navigators[start : start + ABREAST]
@@ -139,7 +143,9 @@ class _Table:
                 spent = (rehearsal(self.at[name, self.leading]) for name in block)
                 rows.insert(0, (Cell("rehearsal"), *spent))
             rows.insert(0, (Cell(f"rank ({self.leading})"), *ranks))
-            yield Section(title, (Cell("metric"), *names), tuple(rows), self._notes(block))
+            yield Section(
+                self.chapter, title, (Cell("metric"), *names), tuple(rows), self._notes(block)
+            )
 
     def _headings(self) -> Iterator[Cell]:
         yield from (Cell("navigator"), Cell("rank"))

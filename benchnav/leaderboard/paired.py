@@ -1,16 +1,18 @@
-"""Paired differences between navigators, with intervals and Holm-adjusted p-values."""
+"""Paired differences between navigators in the worlds of a stratum."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from benchnav.arrays import IntArray
 from benchnav.errors import UsageError, did_you_mean
-from benchnav.leaderboard.compare import flips_for, holm, pairs, sign_flip
-from benchnav.leaderboard.estimate import Column, Sample, estimate
+from benchnav.leaderboard.compare import flips_for, pairs, sign_flip
+from benchnav.leaderboard.comparison import Comparison, as_family
+from benchnav.leaderboard.difference import Pairs, difference
+from benchnav.leaderboard.estimate import columns_of
 from benchnav.leaderboard.grid import Stratum, strata
 from benchnav.leaderboard.interval import resample
 from benchnav.leaderboard.label import require_one_navigator_per_label
@@ -20,36 +22,13 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """How much the first navigator's values exceed the second's in the worlds of both."""
-
-    first: str
-    second: str
-    scenario: str
-    track: str
-    role: str
-    metric: str
-    worlds: int  # that both attempted and in which both have a value
-    difference: float  # mean of first − second, in the metric's unit; NaN without such worlds
-    low: float  # of its 95 % interval; NaN where the worlds give none
-    high: float
-    p: float  # of no difference, by sign flips
-    adjusted: float  # after Holm, over all pairs of navigators in this scenario, track and role
-    split: str
-    scenario_hash: str
-    horizon: float  # [s]
-    dt: float  # [s]
-    first_rehearsal: int = 0  # rehearsals of each world that the first was granted
-    second_rehearsal: int = 0
-
-
 def comparisons(
     results: pa.Table, metrics: Mapping[str, Metric], metric: str
 ) -> tuple[Comparison, ...]:
     """Every pair of navigators on one metric, in every scenario, track and role.
 
-    Also pairs of which one rehearsed: each says how many rehearsals both were granted.
+    The pairs in one scenario, track and role are a family. Also pairs of which one
+    rehearsed: each says how many rehearsals both were granted, and is not judged.
     ``results`` has the schema `benchnav.store.results.RESULTS`. Raises UsageError for a
     metric that is not among ``metrics``, or where one label stands for two navigators.
     """
@@ -62,27 +41,40 @@ def comparisons(
     found: list[Comparison] = []
     for s in strata(results, metrics, mixed=True):
         if metric in s.metrics:
-            found += _compare(s, metric)
+            first, second = pairs(len(s.navigators))
+            every = differences(s, first, second, [metrics[metric]] * len(first), len(first))
+            found += as_family(every, metrics)
     return tuple(found)
 
 
-def _compare(s: Stratum, metric: str) -> list[Comparison]:
-    value = s.value[:, :, s.metrics.index(metric)]
-    first, second = pairs(len(s.navigators))
-    difference = value[:, first] - value[:, second]
-    free = np.full(len(first), np.inf)
-    column = Column(rate=np.zeros(len(first), dtype=np.bool_), least=-free, most=free)
-    weights = resample(len(s.seeds), s.rng("difference"))
-    mean = estimate(Sample(difference, np.ones_like(difference), weights), column)
-    p = sign_flip(difference, flips_for(len(s.navigators)))
-    adjusted = holm(p)
-    worlds = (~np.isnan(difference)).sum(axis=0)
+def differences(
+    s: Stratum, first: IntArray, second: IntArray, metrics: Sequence[Metric], family: int
+) -> list[Comparison]:
+    """Column c compares navigators ``first[c]`` and ``second[c]`` of ``s`` by ``metrics[c]``.
+
+    Not judged yet; ``family`` says with how many others they will be.
+    """
+    sides = side_by_side(s, first, second, metrics)
+    mean = difference(sides, columns_of(metrics))
+    apart = sides.differences.value
+    p = sign_flip(apart, flips_for(family))
+    worlds = (~np.isnan(apart)).sum(axis=0)
     return [
         Comparison(
-            s.navigators[i], s.navigators[j], s.scenario, s.track, s.role, metric,
+            s.navigators[i], s.navigators[j], s.scenario, s.track, s.role, metrics[c].name,
             int(worlds[c]), float(mean.value[c]), float(mean.low[c]), float(mean.high[c]),
-            float(p[c]), float(adjusted[c]), s.split, s.scenario_hash, s.horizon, s.dt,
+            float(p[c]), s.split, s.scenario_hash, s.horizon, s.dt,
             int(s.granted[i]), int(s.granted[j]),
         )
         for c, (i, j) in enumerate(zip(first, second, strict=True))
     ]  # fmt: skip
+
+
+def side_by_side(s: Stratum, first: IntArray, second: IntArray, metrics: Sequence[Metric]) -> Pairs:
+    """The columns (n, C) that `differences` compares; NaN where ``s`` lacks a metric."""
+    place = np.array([s.metrics.index(m.name) if m.name in s.metrics else -1 for m in metrics])
+    held = place >= 0
+    one, other = (np.where(held, s.value[:, side, place], np.nan) for side in (first, second))
+    weights = resample(len(s.seeds), s.rng("difference"))
+    agents = s.agents[:, first, place], s.agents[:, second, place]
+    return Pairs(one, other, *agents, weights)

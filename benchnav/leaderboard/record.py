@@ -8,6 +8,10 @@ ALL = "all"
 """Stands where a scenario stands: the mean over scenarios."""
 ALL_INTERQUARTILE = "all (interquartile mean)"
 """Stands where a scenario stands: the interquartile mean over scenarios."""
+PRICE = "known - unknown"
+"""Stands where a track stands: the price of ignorance, a paired difference. It never ranks."""
+NO_MAP = "uses no map"
+"""The note of a price that is 0 because nothing can differ."""
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,15 @@
 """Leaderboard → Markdown, CSV, LaTeX, HTML, JSON."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
 from typing import Literal
 
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard import escape
 from benchnav.leaderboard.cell import Cell
-from benchnav.leaderboard.layout import LEGEND, Section, choose, sections
+from benchnav.leaderboard.layout import choose, legend, sections
 from benchnav.leaderboard.record import Leaderboard, Record
+from benchnav.leaderboard.section import Section
 from benchnav.leaderboard.tidy import as_csv, as_json
 
 Format = Literal["markdown", "csv", "latex", "html", "json"]
@@ -41,9 +43,19 @@ def _csv(board: Leaderboard, metrics: Sequence[str] | None) -> str:
     return as_csv(Record, _chosen(board, metrics))
 
 
+def _chapters(
+    board: Leaderboard, metrics: Sequence[str] | None
+) -> Iterator[tuple[str, list[Section]]]:
+    """The tables of each track, then those of the price of ignorance."""
+    for chapter, tables in groupby(sections(board, metrics), key=lambda s: s.chapter):
+        yield chapter, list(tables)
+
+
 def _markdown(board: Leaderboard, metrics: Sequence[str] | None) -> str:
-    blocks = [_markdown_table(section) for section in sections(board, metrics)]
-    return "\n".join([*blocks, *(f"{line}  " for line in LEGEND), ""])
+    blocks = []
+    for chapter, tables in _chapters(board, metrics):
+        blocks += [f"## {escape.markdown(chapter)}\n", *map(_markdown_table, tables)]
+    return "\n".join([*blocks, *(f"{line}  " for line in legend(board)), ""])
 
 
 def _markdown_table(section: Section) -> str:
@@ -63,10 +75,11 @@ def _markdown_table(section: Section) -> str:
 
 def _latex(board: Leaderboard, metrics: Sequence[str] | None) -> str:
     lines = ["% needs \\usepackage[T1]{fontenc} and \\usepackage{booktabs}"]
-    for section in sections(board, metrics):
-        lines += _latex_table(section)
-    legend = " ".join(escape.latex(line) for line in LEGEND)
-    return "\n".join([*lines, f"\\noindent {{\\footnotesize {legend}}}", ""])
+    for chapter, tables in _chapters(board, metrics):
+        lines.append(f"\\section*{{{escape.latex(chapter)}}}")
+        lines += [line for section in tables for line in _latex_table(section)]
+    said = " ".join(escape.latex(line) for line in legend(board))
+    return "\n".join([*lines, f"\\noindent {{\\footnotesize {said}}}", ""])
 
 
 def _latex_table(section: Section) -> list[str]:
@@ -97,19 +110,22 @@ _STYLE = (
     "color-scheme:light dark}table{border-collapse:collapse;font-variant-numeric:tabular-nums}"
     "div{overflow-x:auto}th,td{padding:.25rem .75rem;text-align:right;white-space:nowrap;"
     "border-bottom:1px solid #8884}th:first-child,td:first-child{text-align:left}"
-    "h2{font-size:1.1rem;margin-top:2rem}p{font-size:.9rem}"
+    "h2{margin-top:2.5rem}h3{font-size:1.05rem;margin-top:1.5rem}p{font-size:.9rem}"
 )
 
 
 def _html(board: Leaderboard, metrics: Sequence[str] | None) -> str:
-    tables = [part for section in sections(board, metrics) for part in _html_table(section)]
-    legend = [f"<p>{escape.html(line)}</p>" for line in LEGEND]
+    body = []
+    for chapter, tables in _chapters(board, metrics):
+        body.append(f"<h2>{escape.html(chapter)}</h2>")
+        body += [part for section in tables for part in _html_table(section)]
+    said = [f"<p>{escape.html(line)}</p>" for line in legend(board)]
     head = (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width">'
         f"<title>Leaderboard</title><style>{_STYLE}</style></head><body>\n<h1>Leaderboard</h1>"
     )
-    return "\n".join([head, *tables, *legend, "</body></html>", ""])
+    return "\n".join([head, *body, *said, "</body></html>", ""])
 
 
 def _html_table(section: Section) -> list[str]:
@@ -119,7 +135,7 @@ def _html_table(section: Section) -> list[str]:
 
     head = "".join(f"<th>{escape.html(heading.text)}</th>" for heading in section.headings)
     return [
-        f"<h2>{escape.html(section.title)}</h2>",
+        f"<h3>{escape.html(section.title)}</h3>",
         f"<div><table><thead><tr>{head}</tr></thead><tbody>",
         *(f"<tr>{''.join(map(cell, row))}</tr>" for row in section.rows),
         "</tbody></table></div>",

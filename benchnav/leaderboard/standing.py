@@ -106,12 +106,12 @@ def _contest(
         return _Contest(index, _NOBODY, _NO_DIFFERENCES, notes)
     first, second = pairs(len(entrants))
     sign = 1.0 if metric.better == "higher" else -1.0
-    entered = sign * value[:, entrants] * _weights(owed, stratum)[:, None]
+    entered = sign * value[:, entrants] * weights_of(owed, stratum)[:, None]
     entered[~owed] = 0.0
     return _Contest(index, entrants, entered[:, first] - entered[:, second], notes)
 
 
-def _weights(owed: BoolArray, stratum: IntArray) -> FloatArray:
+def weights_of(owed: BoolArray, stratum: IntArray) -> FloatArray:
     """(n,) what each world counts for in the mean over strata of means over worlds."""
     size = np.bincount(stratum[owed], minlength=int(stratum.max()) + 1)
     return 1.0 / (np.maximum(size, 1)[stratum] * np.count_nonzero(size))
@@ -122,7 +122,7 @@ def _judge(contests: list[_Contest], navigators: int) -> list[list[Standing]]:
     held = [contest for contest in contests if len(contest.entrants)]
     p = np.zeros(0)
     if held:
-        most = max(len(contest.entrants) for contest in held)
+        most = max(contest.differences.shape[1] for contest in held)
         p = sign_flip(np.hstack([c.differences for c in held]), flips_for(most))
     table, at = [], 0
     for contest in contests:

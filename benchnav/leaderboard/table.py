@@ -11,20 +11,22 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.leaderboard.estimate import (
-    Column,
     Estimate,
     Sample,
+    columns_of,
     estimate,
     interquartile_mean_over,
     mean_over,
 )
 from benchnav.leaderboard.fault import faults, with_fault
-from benchnav.leaderboard.grid import Stratum, strata
+from benchnav.leaderboard.grid import Stratum, align, strata
 from benchnav.leaderboard.interval import resample
 from benchnav.leaderboard.label import require_one_navigator_per_label
+from benchnav.leaderboard.price import prices
 from benchnav.leaderboard.record import (
     ALL,
     ALL_INTERQUARTILE,
+    PRICE,
     Leaderboard,
     NotApplicable,
     Record,
@@ -44,6 +46,7 @@ def leaderboard(
     not_applicable: Sequence[NotApplicable] = (),
     training: Mapping[str, tuple[float, float]] = {},
     verified: Collection[str] = (),
+    mapless: Collection[str] = (),
 ) -> Leaderboard:
     """Every navigator × scenario × track × role × metric, with interval and rank.
 
@@ -52,7 +55,9 @@ def leaderboard(
     runs; the order of its rows changes nothing. ``metrics`` maps names to definitions;
     a metric that it lacks is shown and not ranked. ``not_applicable`` are cells that
     were not run. ``training`` maps labels to the decisions and seconds of their training;
-    ``verified`` are the labels whose runs were verified here.
+    ``verified`` are the labels whose runs were verified here, ``mapless`` those of navigators that
+    use no map. Where there are the tracks known and unknown, the paired difference between them
+    is a record too, in the place of a track.
     Raises UsageError where one label stands for two navigators, or has two
     values in one world.
     """
@@ -61,9 +66,10 @@ def leaderboard(
     found = strata(results, metrics)
     found.sort(key=_contest)  # stable
     for _, group in groupby(found, key=_contest):
-        aligned = _align(list(group))
+        aligned = align(list(group))
         records += _group(aligned, metrics)
         records += _missing(aligned, _belonging(aligned, found, not_applicable), metrics)
+    records += prices(found, metrics, mapless, not_applicable)
     failed = faults(results)
     records = [with_fault(_with_training(record, training), failed) for record in records]
     records = [replace(r, verified=_is_verified(r, verified, metrics)) for r in records]
@@ -100,31 +106,6 @@ def _belonging(
     return [c for c in cells if c.rehearsal == group[0].rehearsal or c.rehearsal not in grants]
 
 
-def _align(group: list[Stratum]) -> list[Stratum]:
-    """The same navigators and metrics in every stratum, absent ones unattempted."""
-    navigators = tuple(sorted({name for s in group for name in s.navigators}))
-    metrics = tuple(sorted({name for s in group for name in s.metrics}))
-    aligned = []
-    for s in group:
-        n = np.searchsorted(navigators, s.navigators)
-        m = np.searchsorted(metrics, s.metrics)
-        shape = (len(s.seeds), len(navigators), len(metrics))
-        value, agents = np.full(shape, np.nan), np.zeros(shape)
-        value[:, n[:, None], m], agents[:, n[:, None], m] = s.value, s.agents
-        attempted, failed = np.zeros(shape[:2], bool), np.zeros(shape[:2], bool)
-        attempted[:, n], failed[:, n] = s.attempted, s.failed
-        granted = np.zeros(len(navigators), np.int64)
-        cost = np.full((*shape[:2], s.cost.shape[2]), np.nan)
-        granted[n], cost[:, n] = s.granted, s.cost
-        aligned.append(
-            replace(s, navigators=navigators, metrics=metrics, value=value, agents=agents)
-        )
-        aligned[-1] = replace(
-            aligned[-1], attempted=attempted, failed=failed, granted=granted, cost=cost
-        )
-    return aligned
-
-
 @dataclass(frozen=True, eq=False)
 class _Body:
     """What the records of one scenario, or of all, are made of: n worlds, N × M columns."""
@@ -142,7 +123,8 @@ class _Body:
 
 def _group(group: list[Stratum], metrics: Mapping[str, Metric]) -> Iterator[Record]:
     """Records of strata that share split, track and role, then those over all of them."""
-    column = _columns(group[0], metrics)
+    known = [metrics.get(name) for name in group[0].metrics]
+    column = columns_of(known * len(group[0].navigators))  # navigator by navigator
     samples = [_sample(s) for s in group]
     parts = [estimate(sample, column) for sample in samples]
     for s, part in zip(group, parts, strict=True):
@@ -176,16 +158,6 @@ def _sample(s: Stratum) -> Sample:
     worlds = len(s.seeds)
     weights = resample(worlds, s.rng("bootstrap"))
     return Sample(s.value.reshape(worlds, -1), s.agents.reshape(worlds, -1), weights)
-
-
-def _columns(s: Stratum, metrics: Mapping[str, Metric]) -> Column:
-    """Of N × M columns, navigator by navigator."""
-    known = [metrics.get(name) for name in s.metrics]
-    rate = np.array([m is not None and m.rate for m in known])
-    least = np.array([-np.inf if m is None else m.low for m in known])
-    most = np.array([np.inf if m is None else m.high for m in known])
-    repeat = len(s.navigators)
-    return Column(np.tile(rate, repeat), np.tile(least, repeat), np.tile(most, repeat))
 
 
 def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:
@@ -250,6 +222,16 @@ def _place(names: Sequence[str]) -> Callable[[Record], tuple[Any, ...]]:
     def key(r: Record) -> tuple[Any, ...]:
         last = aggregates.get(r.scenario, 0)
         variant = () if last else (r.scenario, r.scenario_hash, r.horizon, r.dt)
-        return (r.split, r.track, last, variant, r.role, r.rehearsal, r.navigator, order[r.metric])
+        return (
+            r.split,
+            r.track == PRICE,
+            r.track,
+            last,
+            variant,
+            r.role,
+            r.rehearsal,
+            r.navigator,
+            order[r.metric],
+        )
 
     return key

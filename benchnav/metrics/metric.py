@@ -26,7 +26,7 @@ class Metric:
     scope: Literal["agent", "group"] = "agent"
     conditional: bool = False  # defined only for agents that arrived: shows its n, never ranks
     verifiable: bool = True  # False for timings
-    rate: bool = False  # per-agent 0/1: its interval is a Wilson interval
+    rate: bool = False  # per-agent 0/1: its interval is one of binomials
 
 
 def evaluate(metric: Metric, episode: Episode, members: BoolArray) -> tuple[float, int]:

@@ -14,33 +14,89 @@ def run(call, suite, tmp_path):
 
 
 def test_two_navigators_are_compared_in_words(call, run):
-    code, stdout, stderr = call("leaderboard", run, "--compare", "straight-line", "orca")
+    code, stdout, stderr = call("compare", run, "straight-line", "orca")
     assert (code, stderr) == (0, "")
-    lines = [line for line in stdout.splitlines() if line.startswith("- ")]
-    assert len(lines) == 2
-    assert "track known, leaders, success: straight-line − orca = " in lines[0]
-    code, stdout, _ = call(
-        "leaderboard", run, "--compare", "orca", "straight-line", "--metric", "path_length",
-        "--metric", "spl", "--format", "json",
-    )  # fmt: skip
+    assert stdout.startswith("# straight-line against orca\n\n## success: ")
+    assert (
+        "- tiny/open@1, track known (2 worlds): too few worlds to tell, straight-line − " in stdout
+    )
+    wanted = ["--metric", "path_length", "--metric", "spl", "--format", "json"]
+    code, stdout, _ = call("compare", run, "orca", "straight-line", *wanted)
     assert [r["metric"] for r in json.loads(stdout)] == ["path_length"] * 2 + ["spl"] * 2
-    code, _, stderr = call("leaderboard", run, "--compare", "orca", "straightline")
+    wanted = ["--scenario", "tiny/open", "--metric", "success", "--format", "json"]
+    assert len(json.loads(call("compare", run, run, "orca", "straight-line", *wanted)[1])) == 2
+
+
+@pytest.mark.parametrize(
+    ("wrong", "complaint"),
+    [
+        (("orca", "straightline"), "Did you mean 'straight-line'"),
+        (("orca",), "must be told a run and two navigators"),
+        (("orca", "straight-line", "--scenario", "tiny/opne"), "Did you mean 'tiny/open'"),
+        (("orca", "straight-line", "--metric", "sucess"), "Did you mean 'success'"),
+        (("orca", "straight-line", "--format", "html"), "markdown, csv, json"),
+    ],
+)
+def test_who_compares_wrongly_is_told(call, run, wrong, complaint):
+    code, stdout, stderr = call("compare", run, *wrong)
+    assert (code, stdout) == (2, "")
+    assert complaint in stderr
+
+
+@pytest.mark.parametrize("suffix", ["png", "svg", "pdf"])
+def test_a_comparison_and_a_curve_are_drawn(call, run, tmp_path, suffix):
+    pytest.importorskip("matplotlib")
+    files = [tmp_path / f"{name}.{suffix}" for name in ("compare", "curve")]
+    code, stdout, stderr = call("compare", run, "orca", "straight-line", "--out", files[0])
+    assert (code, stderr) == (0, f"{files[0]} is drawn\n")
+    assert stdout.startswith("# orca against straight-line")
+    code, stdout, stderr = call("leaderboard", run, "--curve", "horizon", "--out", files[1])
+    assert (code, stdout, stderr) == (0, "", f"{files[1]} is drawn\n")
+    magic = {"png": b"\x89PNG", "svg": b"<?xml", "pdf": b"%PDF"}[suffix]
+    assert all(file.read_bytes().startswith(magic) for file in files)
+    code, _, stderr = call("leaderboard", run, "--out", tmp_path / f"table.{suffix}")
     assert code == 2
-    assert "Did you mean 'straight-line'" in stderr
+    assert "A table is no picture" in stderr
 
 
 def test_success_is_shown_against_time(call, run, tmp_path):
-    code, stdout, stderr = call("leaderboard", run, "--curve", "success")
+    code, stdout, stderr = call("leaderboard", run, "--curve", "horizon")
     assert (code, stderr) == (0, "")
     assert stdout.count("| orca") == stdout.count("| straight-line") == 2
     file = tmp_path / "curve.csv"
     code, nothing, _ = call(
-        "leaderboard", run, "--curve", "success", "--format", "csv", "--out", file
+        "leaderboard", run, "--curve", "horizon", "--format", "csv", "--out", file
     )
     assert (code, nothing) == (0, "")
     assert len(file.read_text().splitlines()) == 1 + 4 * 100
-    for wrong in (["--curve", "sucess"], ["--curve", "success", "--metric", "spl"]):
-        assert call("leaderboard", run, *wrong)[0] == 2
+    for wrong, complaint in (
+        (["--curve", "horizn"], "Did you mean 'horizon'"),
+        (["--curve", "horizon", "--metric", "spl"], "there is success alone"),
+        (["--curve", "horizon", "--metric", "spl", "--metric", "success"], "of one metric"),
+    ):
+        code, _, stderr = call("leaderboard", run, *wrong)
+        assert code == 2
+        assert complaint in stderr
+
+
+def test_a_metric_is_shown_against_a_parameter_with_its_default(call, suite, tmp_path):
+    scenario = suite.parent / "open.yaml"
+    declared = (
+        "parameters:\n  size: {default: 0.2, low: 0.1, high: 0.3, description: 'of a disc [m]'}"
+    )
+    text = scenario.read_text().replace("radius: 0.2", "radius: {parameter: size}")
+    scenario.write_text(f"{text}{declared}\n")
+    suite.write_text(suite.read_text().replace("[open.yaml]", "[open.yaml, 'open.yaml:size=0.3']"))
+    out = tmp_path / "out"
+    assert call("run", suite, "--out", out, "--workers", 0, "--quiet")[0] == 0
+    wanted = ["--curve", "size", "--metric", "spl", "--format", "json"]
+    rows = json.loads(call("leaderboard", out, *wanted)[1])
+    assert {(r["scenario"], r["axis_unit"], r["x"], r["metric"]) for r in rows} == {
+        ("tiny/open@1", "m", 0.2, "spl"), ("tiny/open@1", "m", 0.3, "spl"),
+    }  # fmt: skip
+    code, _, stderr = call("leaderboard", out, "--curve", "sise")
+    assert code == 2
+    assert "a parameter of a scenario that was run: size. Got 'sise'" in stderr
 
 
 def test_only_what_is_shown_is_computed(call, run, monkeypatch):

@@ -55,7 +55,7 @@ def test_hoeffdings_bound_is_never_below_the_exact_p(differences):
 
 
 def test_a_clear_difference_is_told_from_zero_in_time():
-    p = sign_flip(np.full((100, 1), 0.25))
+    p = sign_flip(np.append(np.full(99, 0.25), -0.01)[:, None])
     assert 0 < p[0] < 1e-20
 
 
@@ -76,6 +76,20 @@ def test_undefined_and_equal_pairs_drop_out():
 def test_a_column_does_not_feel_its_neighbours():
     table = np.random.default_rng(6).normal(0.4, 1.0, (40, 8))
     assert np.array_equal(sign_flip(table)[[3]], sign_flip(table[:, [3]]))
+
+
+@given(st.lists(st.sampled_from([-1.0, 0.0, 1.0]), min_size=1, max_size=13))
+def test_pairs_that_are_won_or_lost_are_mcnemars(outcomes):
+    """One agent a world: the exact test of discordant pairs."""
+    won, lost = outcomes.count(1.0), outcomes.count(-1.0)
+    known = stats.binomtest(won, won + lost).pvalue if won + lost else 1.0
+    assert sign_flip(np.array(outcomes)[:, None]) == pytest.approx([known])
+
+
+@given(st.lists(st.floats(0.1, 9), min_size=2, max_size=40))
+def test_all_in_one_direction_is_exact_however_many(differences):
+    column = np.array(differences)[:, None]
+    assert sign_flip(-column) == pytest.approx([2.0 ** (1 - len(differences))])
 
 
 def test_thousands_of_pairs_flip_together():
@@ -130,7 +144,8 @@ def test_rank_intervals_hold_together(count, seed):
 
 def test_enough_flips_for_holm():
     for count in (2, 5, 20, 40):
-        assert len(pairs(count)[0]) / (1 + flips_for(count)) < 0.05
+        family = len(pairs(count)[0])
+        assert family / (1 + flips_for(family)) < 0.05
 
 
 def test_most_shared_worlds_rank():

@@ -1,16 +1,19 @@
-"""Two navigators against each other."""
+"""Two navigators against each other: one family, ties, and what cannot be compared."""
 
 import csv
 import io
 import json
 import math
 
+import numpy as np
 import pytest
 
 from benchnav.errors import UsageError
-from benchnav.leaderboard import comparisons
-from benchnav.leaderboard.duel import duel, render_duel
-from tests.leaderboard.tables import METRICS, scores, table
+from benchnav.leaderboard import NotApplicable, comparisons
+from benchnav.leaderboard.compare import holm
+from benchnav.leaderboard.duel import duel
+from benchnav.leaderboard.words import render_duel
+from tests.leaderboard.tables import METRICS, scores, simulated, table
 
 GOOD, FAIR, BAD = [1.0] * 20, [1.0] * 10 + [0.0] * 10, [0.0] * 20
 ROWS = scores({"good": GOOD, "fair": FAIR, "bad": BAD}) + scores(
@@ -18,34 +21,78 @@ ROWS = scores({"good": GOOD, "fair": FAIR, "bad": BAD}) + scores(
 )
 
 
-def _words(rows, metric, first, second):
-    return render_duel(duel(table(rows), METRICS, metric, first, second), METRICS).splitlines()
+def met(rows, first, second, *names, gaps=()):
+    return duel(table(rows), METRICS, names or ("success",), first, second, gaps)
 
 
-def test_a_duel_is_told_in_words():
-    lines = _words(ROWS, "success", "bad", "good")
-    assert lines[0].startswith(
-        "- leaders/static@1, track unknown, leaders, success: bad − good = −1.00 over 20 worlds; p"
+def words(rows, first, second, *names):
+    text = render_duel(met(rows, first, second, *names), METRICS).split("[low, high]: ")[0]
+    return [line for line in text.splitlines() if line.startswith("- ")]
+
+
+def test_a_difference_is_told_in_words():
+    (line,) = words(ROWS, "bad", "good")
+    assert line.startswith(
+        "- leaders/static@1, track unknown (20 worlds): bad succeeds 100.0 points less often [8"
     )
-    assert lines[0].endswith("bad is significantly worse.")
-    assert lines[1] == ""
-    lines = _words(ROWS, "success", "good", "fair")
-    assert len(lines) == 4
-    assert "good − fair = +0.50 [+0.2" in lines[0]
-    assert lines[1].endswith("good is significantly better.")
+    assert line.endswith("; by chance less than once in 10,000 times.")
+    lines = words(ROWS, "good", "fair")
+    assert len(lines) == 3
+    assert "good succeeds 50.0 points more often [2" in lines[0]
+    assert lines[2].startswith("- all scenarios, track unknown (40 worlds): good succeeds 50.0")
+
+
+def test_ties_and_too_few_worlds_are_called_what_they_are():
+    rng = np.random.default_rng(0)
+    tied = {"a": rng.integers(0, 2, 40), "b": rng.integers(0, 2, 40)}
+    (line,) = words(scores(tied), "a", "b")
+    assert ": a tie, a − b = " in line
+    (line,) = words(scores({"a": GOOD, "b": GOOD}), "a", "b")
+    assert line.endswith(": a tie, a − b = 0.0 points [−13.9, +13.9].")
+    (line,) = words(scores({"a": [1.0] * 5, "b": [0.0] * 5}), "a", "b")
+    assert ": too few worlds to tell, a − b = +100.0 points [" in line
+    few = {"a": [1.0] * 6, "b": [0.0] * 6}  # 2⁻⁵ = 0.031: enough alone, and not one of two
+    assert met(scores(few), "a", "b").comparisons[0].verdict == "better"
+    both = scores(few) + scores(few, "spl")
+    assert {c.verdict for c in met(both, "a", "b", "success", "spl").comparisons} == {
+        "too few worlds"
+    }
+
+
+def test_all_that_is_said_is_one_family():
+    rows = simulated(["a", "b"], 3, 12, np.random.default_rng(5), tracks=("known", "unknown"))
+    found = met(rows, "a", "b", "success", "collided", "spl").comparisons
+    assert len(found) == 3 * 2 * (3 + 1)
+    assert {c.family for c in found} == {24}
+    assert [c.adjusted for c in found] == pytest.approx(holm(np.array([c.p for c in found])))
+    assert [c.metric for c in found] == ["success"] * 8 + ["collided"] * 8 + ["spl"] * 8
+
+
+def test_over_all_scenarios_each_counts_alike():
+    rows = scores({"a": [1.0] * 40, "b": [0.0] * 40}) + scores(
+        {"a": [0.0] * 10, "b": [0.0] * 10}, scenario="leaders/other@1"
+    )
+    whole = met(rows, "a", "b").comparisons[-1]
+    assert (whole.scenario, whole.difference, whole.worlds) == ("all", 0.5, 50)
+    assert whole.low < 0.5 < whole.high
 
 
 def test_the_order_asked_for_turns_everything_but_p():
-    (one,) = duel(table(ROWS[:60]), METRICS, "success", "good", "fair")
-    (two,) = duel(table(ROWS[:60]), METRICS, "success", "fair", "good")
-    assert (one.difference, one.low, one.high) == (-two.difference, -two.high, -two.low)
-    assert (one.p, one.adjusted) == (two.p, two.adjusted)
+    rows = simulated(["a", "b"], 2, 15, np.random.default_rng(8))
+    names = ("success", "spl", "turning", "time_to_goal")
+    one, two = (met(rows, *pair, *names).comparisons for pair in (("a", "b"), ("b", "a")))
+    for x, y in zip(one, two, strict=True):
+        assert x.difference == pytest.approx(-y.difference)
+        assert (x.p, x.adjusted, x.worlds) == pytest.approx((y.p, y.adjusted, y.worlds))
+        tolerance = 1e-9 if x.metric == "success" else 0.05 * (x.high - x.low)  # bootstrap
+        assert (x.low, x.high) == pytest.approx((-y.high, -y.low), abs=tolerance)
+        assert {x.verdict, y.verdict} in ({"tie"}, {"better", "worse"}, {"higher", "lower"})
+
+
+def test_every_pair_of_a_table_is_a_family_of_its_own():
     every = comparisons(table(ROWS[:60]), METRICS, "success")
-    assert len(every) == 3
-    assert (
-        one.adjusted == next(c for c in every if {c.first, c.second} == {"fair", "good"}).adjusted
-    )
-    assert one.adjusted > one.p  # the pair is one of three
+    assert [c.family for c in every] == [3, 3, 3]
+    assert all(c.adjusted >= c.p for c in every)
 
 
 def test_conditional_metrics_are_higher_not_better_and_may_share_no_world():
@@ -53,29 +100,52 @@ def test_conditional_metrics_are_higher_not_better_and_may_share_no_world():
         "a": [float(10 + k % 3) for k in range(20)],
         "b": [float(2 + k % 2) for k in range(20)],
     }
-    (line,) = _words(scores(times, "time_to_goal"), "time_to_goal", "a", "b")[:-2]
-    assert line.endswith("a is significantly higher.")
-    assert "] s over 20 worlds" in line
+    (line,) = words(scores(times, "time_to_goal"), "a", "b", "time_to_goal")
+    assert "time_to_goal of a is 8.45 s higher [" in line
+    assert "better" not in line
     apart = scores({"a": [1.0, math.nan], "b": [math.nan, 2.0]}, "time_to_goal")
-    assert (
-        "no world in which both a and b have a value" in _words(apart, "time_to_goal", "a", "b")[0]
-    )
+    (line,) = words(apart, "a", "b", "time_to_goal")
+    assert line.endswith("(0 worlds): no world in which both have a value.")
+    found = met(scores(times, "time_to_goal") + scores(times, "turning"), "a", "b", "turning")
+    assert found.comparisons[0].verdict == "worse"
+
+
+def test_what_cannot_be_compared_is_said():
+    rows = scores({"a": GOOD, "b": FAIR})
+    rows += scores({"a": GOOD}, track="known") + scores({"a": GOOD}, scenario="x@1")
+    rows += scores({"a": GOOD}, scenario="y@1") + scores({"b": GOOD}, scenario="y@1", horizon=9.0)
+    rows += scores({"a": GOOD, "b": [*GOOD[:8], *[None] * 12]}, scenario="z@1")
+    rows[25]["failure"] = "raised ValueError"
+    gaps = [NotApplicable("b", "leaders/static@1", "known", "needs a map")]
+    notes = met(rows, "a", "b", gaps=gaps).notes
+    assert "Only a in leaders/static@1 (known): b needs a map." in notes
+    assert "Only a in x@1 (unknown): b was not run there." in notes
+    other = "ran other worlds: horizon, time step or hash differ"
+    assert f"Only a in y@1 (unknown): b {other}." in notes
+    assert "z@1 (unknown): a in 20 and b in 8 worlds, compared in the 8 of both." in notes
+    assert any("b failed in 1 world" in note for note in notes)
+    text = render_duel(met(rows, "a", "b", gaps=gaps), METRICS)
+    assert all(note in text for note in notes)
 
 
 def test_machines_get_records():
-    found = duel(table(ROWS), METRICS, "success", "good", "fair")
+    found = met(ROWS, "good", "fair")
     rows = json.loads(render_duel(found, METRICS, "json"))
     read = list(csv.DictReader(io.StringIO(render_duel(found, METRICS, "csv"))))
-    assert [r["difference"] for r in rows] == [float(r["difference"]) for r in read] == [0.5, 0.5]
+    assert [r["difference"] for r in rows] == [float(r["difference"]) for r in read] == [0.5] * 3
+    assert [r["verdict"] for r in read] == ["better"] * 3
     with pytest.raises(UsageError, match=r"comes as markdown, csv, json. Got 'html'"):
         render_duel(found, METRICS, "html")
 
 
 def test_wrong_wishes_are_refused():
     with pytest.raises(UsageError, match=r"Got 'goood' instead. Did you mean 'good'"):
-        duel(table(ROWS), METRICS, "success", "goood", "bad")
+        met(ROWS, "goood", "bad")
     with pytest.raises(UsageError, match="Got 'good' twice"):
-        duel(table(ROWS), METRICS, "success", "good", "good")
+        met(ROWS, "good", "good")
     apart = scores({"a": GOOD}, scenario="x@1") + scores({"b": GOOD}, scenario="y@1")
-    with pytest.raises(UsageError, match="'a' and 'b' never were"):
-        duel(table(apart), METRICS, "success", "a", "b")
+    with pytest.raises(UsageError, match=r"'a' and 'b' never were. Only a in x@1"):
+        met(apart, "a", "b")
+    other = scores({"a": GOOD}, horizon=9.0) + scores({"b": GOOD})
+    with pytest.raises(UsageError, match="ran other worlds"):
+        met(other, "a", "b")

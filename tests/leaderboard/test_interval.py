@@ -11,22 +11,55 @@ from benchnav.leaderboard.interval import (
     cumulants,
     effective_size,
     mean,
+    mid_p,
     recover,
     resample,
     resampled_means,
     students,
     trimmed_mean,
-    wilson,
+    unanimous,
 )
 
 
 @pytest.mark.parametrize("size", [1, 5, 20, 100])
-def test_wilson_is_scipys(size):
+def test_mid_p_bounds_are_where_scipys_binomial_says(size):
     won = np.arange(size + 1)
-    low, high = wilson(won / size, np.full(size + 1, float(size)))
-    for k in won:
-        known = stats.binomtest(int(k), size).proportion_ci(method="wilson")
-        assert (low[k], high[k]) == pytest.approx((known.low, known.high), abs=1e-12)
+    low, high = mid_p(won / size, np.full(size + 1, float(size)))
+    assert (low[0], high[-1]) == (0.0, 1.0)
+
+    def above(k, p):
+        return stats.binom.sf(k, size, p) + 0.5 * stats.binom.pmf(k, size, p)
+
+    assert above(won[1:], low[1:]) == pytest.approx(np.full(size, 0.025), abs=1e-9)
+    assert above(won[:-1], high[:-1]) == pytest.approx(np.full(size, 0.975), abs=1e-9)
+    exact = [stats.binomtest(int(k), size).proportion_ci(method="exact") for k in won]
+    assert np.all(low >= np.array([ci.low for ci in exact]) - 1e-9)
+    assert np.all(high <= np.array([ci.high for ci in exact]) + 1e-9)
+    assert low == pytest.approx(1 - high[::-1], abs=1e-9)
+
+
+@pytest.mark.parametrize("size", [50, 100, 200])
+def test_mid_p_covers_exactly_what_is_asked(size):
+    """One agent a world: no simulation, every outcome with its probability."""
+    won = np.arange(size + 1)
+    low, high = mid_p(won / size, np.full(size + 1, float(size)))
+
+    def covered(p):
+        return stats.binom.pmf(won, size, p)[(low <= p) & (p <= high)].sum()
+
+    usual = [covered(p) for p in np.arange(0.05, 0.951, 0.05)]
+    assert min(usual) >= 0.93
+    assert max(usual) <= 0.97
+    assert min(covered(p) for p in (0.01, 0.02, 0.98, 0.99)) >= 0.93
+
+
+@given(st.integers(1, 200), st.floats(0, 1))
+def test_unanimous_worlds_are_read_as_exactly_as_a_binomial(count, value):
+    sure = stats.binomtest(count, count).proportion_ci(method="exact")
+    low, high = unanimous(np.ones(1), np.array([float(count)]), np.zeros(1), np.ones(1))
+    assert (low[0], high[0]) == (pytest.approx(sure.low), 1.0)
+    low, high = unanimous(np.array([value]), np.array([float(count)]), np.zeros(1), np.ones(1))
+    assert 0 <= low[0] <= value <= high[0] <= 1
 
 
 @given(st.lists(st.sampled_from([0.0, 1.0]), min_size=2, max_size=30))

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from benchnav.leaderboard import NotApplicable, comparisons, leaderboard, render
-from benchnav.leaderboard.duel import duel, render_duel
+from benchnav.leaderboard.duel import duel
+from benchnav.leaderboard.words import render_duel
 from tests.leaderboard.tables import METRICS, row, scores, table
 
 GRANT = {"rehearsal": 5, "rehearsal_decisions": 800, "rehearsal_seconds": 0.0032}
@@ -95,13 +96,22 @@ def test_what_is_not_applicable_stands_with_its_own_kind():
     assert where == {("mapper", 0), ("flock", 5), ("swarm", 0), ("swarm", 5)}
 
 
-def test_a_comparison_in_words_is_allowed_and_says_so():
-    (found,) = duel(table(rows()), METRICS, "success", "crowd", "orca")
-    assert (found.difference, found.first_rehearsal, found.second_rehearsal) == (1.0, 5, 0)
-    assert "crowd (rehearsal: 5) − orca = +1" in render_duel([found], METRICS)
-    (turned,) = duel(table(rows()), METRICS, "success", "orca", "crowd")
+def test_a_comparison_across_the_line_never_calls_anybody_better():
+    found = duel(table(rows()), METRICS, ["success"], "crowd", "orca")
+    (one,) = found.comparisons
+    assert (one.difference, one.first_rehearsal, one.second_rehearsal) == (1.0, 5, 0)
+    assert (one.verdict, one.adjusted < 1e-3) == ("not as equals", True)
+    text = render_duel(found, METRICS)
+    assert "## success: not as equals" in text
+    assert "crowd succeeds 100.0 points more often" in text
+    assert "crowd 5 and orca none was granted, so nobody is called better" in text
+    (turned,) = duel(table(rows()), METRICS, ["success"], "orca", "crowd").comparisons
     assert (turned.first_rehearsal, turned.second_rehearsal) == (0, 5)
-    assert len(comparisons(table(rows()), METRICS, "success")) == 6
+    every = comparisons(table(rows()), METRICS, "success")
+    assert {c.verdict for c in every if c.first_rehearsal != c.second_rehearsal} == {
+        "not as equals"
+    }
+    assert len(every) == 6
 
 
 def test_results_of_before_there_were_rehearsals_have_none():

@@ -1,0 +1,255 @@
+"""How often 95 % intervals hold the truth, and how often `compare` sees what is not there.
+
+    python -m benchmarks.coverage [--tables N] [--part rates|differences|means|false-alarms]
+
+Tables are simulated as real ones are: worlds with several agents each, which share their
+luck, and two navigators in the same worlds. docs/statistics.md keeps the output for 2,000
+tables. Worlds, agents and navigators share their luck through normal numbers that are cut at
+the rate (a Gaussian copula), or, for single rates, through a beta distribution of each world.
+Single rates of one agent a world need no tables: all outcomes are counted.
+"""
+
+import argparse
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from itertools import product
+
+import numpy as np
+from scipy.special import ndtri
+from scipy.stats import binom
+
+from benchnav.arrays import FloatArray
+from benchnav.leaderboard.compare import flips_for, holm, sign_flip
+from benchnav.leaderboard.difference import Pairs, difference
+from benchnav.leaderboard.estimate import Column, Sample, estimate
+from benchnav.leaderboard.interval import ALPHA, mid_p, resample, resampled_means
+
+TABLES = 2000
+WORLDS = (50, 100, 200)
+RATES = (0.01, 0.02, 0.05, *(k / 10 for k in range(1, 10)), 0.95, 0.98, 0.99)
+APART = 0.1  # between the rates of two navigators that differ
+WITHIN = (0.93, 0.97)  # what is asked for rates of 0.05 to 0.95; beyond, the first alone
+FALSE_ALARMS = 0.06  # at most
+
+
+@dataclass(frozen=True)
+class Crowd:
+    """How the agents of a simulated world share their luck."""
+
+    name: str
+    agents: int  # of each world
+    world: float = 0.0  # share of an agent's luck that is the world's, for both navigators
+    navigator: float = 0.0  # that is the world's, for each navigator apart
+    agent: float = 0.0  # that is its own, for both navigators
+
+
+CROWDS = (
+    Crowd("1 agent", 1),
+    Crowd("1 agent, worlds hard for both", 1, world=0.5),
+    Crowd("4 agents", 4, world=0.15, navigator=0.1, agent=0.2),
+    Crowd("4 agents that share their fate", 4, world=0.3, navigator=0.3, agent=0.2),
+    Crowd("10 agents", 10, world=0.15, navigator=0.1, agent=0.2),
+)
+CORRELATIONS = ((1, 0.0), (4, 0.1), (4, 0.3), (10, 0.1))  # agents, correlation within a world
+
+
+def rates(chance: float, agents: int, correlation: float, shape: tuple[int, int],
+          rng: np.random.Generator) -> FloatArray:  # fmt: skip
+    """(n, T) world rates: agents that share a world agree as much as ``correlation``."""
+    own = np.full(shape, chance)
+    if correlation:
+        weight = (1 - correlation) / correlation  # beta-binomial
+        own = rng.beta(chance * weight, (1 - chance) * weight, shape)
+    return rng.binomial(agents, own) / agents
+
+
+def paired_rates(chances: tuple[float, float], crowd: Crowd, shape: tuple[int, int],
+                 rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:  # fmt: skip
+    """(n, T), (n, T) world rates of two navigators in the same worlds."""
+    n, tables = shape
+    rest = 1.0 - crowd.world - crowd.navigator - crowd.agent
+    world = np.sqrt(crowd.world) * rng.normal(size=(n, 1, tables))
+    agent = np.sqrt(crowd.agent) * rng.normal(size=(n, crowd.agents, tables))
+    sides = []
+    for chance in chances:
+        own = np.sqrt(crowd.navigator) * rng.normal(size=(n, 1, tables))
+        luck = np.sqrt(rest) * rng.normal(size=(n, crowd.agents, tables))
+        sides.append((world + agent + own + luck < ndtri(chance)).mean(axis=1))
+    return sides[0], sides[1]
+
+
+def unit_rates(tables: int) -> Column:
+    """Of ``tables`` columns that are rates."""
+    return Column(np.ones(tables, dtype=np.bool_), np.zeros(tables), np.ones(tables))
+
+
+def held(low: FloatArray, high: FloatArray, truth: float) -> float:
+    """Share of intervals that hold the truth."""
+    return float(np.mean((low <= truth + 1e-12) & (truth <= high + 1e-12)))
+
+
+def rate_coverage(
+    chance: float, tables: int, *, agents: int, correlation: float, worlds: int, seed: int = 1
+) -> float:
+    """Of the interval of one navigator's rate; exact, by every outcome, with one agent a world."""
+    if agents == 1:
+        won = np.arange(worlds + 1)
+        low, high = mid_p(won / worlds, np.full(worlds + 1, float(worlds)))
+        return float(binom.pmf(won, worlds, chance)[(low <= chance) & (chance <= high)].sum())
+    rng = np.random.default_rng([seed, worlds, agents])
+    value = rates(chance, agents, correlation, (worlds, tables), rng)
+    size = np.full_like(value, float(agents))
+    found = estimate(Sample(value, size, np.zeros((2, worlds))), unit_rates(tables))
+    return held(found.low, found.high, chance)
+
+
+def difference_coverage(
+    chance: float, tables: int, *, apart: float, crowd: Crowd, worlds: int, seed: int = 2
+) -> float:
+    """Of the interval of the paired difference to a navigator ``apart`` nearer a half."""
+    other = round(chance + (apart if chance <= 0.5 else -apart), 9)
+    rng = np.random.default_rng([seed, worlds, crowd.agents])
+    one, second = paired_rates((chance, other), crowd, (worlds, tables), rng)
+    size = np.full_like(one, float(crowd.agents))
+    pairs = Pairs(one, second, size, size, np.zeros((2, worlds)))
+    found = difference(pairs, unit_rates(tables))
+    return held(found.low, found.high, chance - other)
+
+
+Draw = Callable[[np.random.Generator, tuple[int, int]], FloatArray]
+MEANS: dict[str, tuple[Draw, float]] = {
+    "normal": (lambda rng, size: rng.normal(size=size), 0.0),
+    "exponential": (lambda rng, size: rng.exponential(size=size), 1.0),
+    "log-normal": (lambda rng, size: rng.lognormal(0.0, 1.0, size), float(np.exp(0.5))),
+    "0 in 7 of 10, else exponential": (
+        lambda rng, size: rng.exponential(size=size) * (rng.random(size) < 0.3),
+        0.3,
+    ),
+    "SPL: 0 or near 0.9": (
+        lambda rng, size: (rng.random(size) < 0.85) * rng.beta(20, 2, size),
+        0.85 * 20 / 22,
+    ),
+}
+
+
+def mean_coverage(shape: str, worlds: int, tables: int, percentiles: bool = False) -> float:
+    """Of the interval of a mean; ``percentiles``: of the plain bootstrap, which is not used."""
+    rng = np.random.default_rng(worlds)
+    draw, truth = MEANS[shape]
+    value = draw(rng, (worlds, tables))
+    weights = resample(worlds, rng)
+    if percentiles:
+        low, high = np.quantile(resampled_means(value, weights), [0.025, 0.975], axis=0)
+        return held(low, high, truth)
+    limit = 1.0 if shape.startswith("SPL") else np.inf
+    least = np.full(tables, 0.0 if shape.startswith("SPL") else -np.inf)
+    column = Column(np.zeros(tables, dtype=np.bool_), least, np.full(tables, limit))
+    found = estimate(Sample(value, np.ones_like(value), weights), column)
+    return held(found.low, found.high, truth)
+
+
+def false_alarms(
+    chance: float, crowds: tuple[Crowd, Crowd], worlds: int, family: int, tables: int, seed: int = 3
+) -> float:
+    """Share of comparisons of equals that call a difference, among ``family`` in one report.
+
+    The two crowds are those of the two navigators: of rates that agree, one may share its fate
+    and the other not.
+    """
+    rng = np.random.default_rng([seed, worlds, family])
+    adjusted = np.empty((family, tables))
+    for k in range(family):
+        one, other = (paired_rates((chance, chance), c, (worlds, tables), rng) for c in crowds)
+        second = one[1] if crowds[0] == crowds[1] else other[1]
+        adjusted[k] = sign_flip(one[0] - second, flips_for(family))
+    adjusted = np.apply_along_axis(holm, 0, adjusted)
+    return float(np.mean((adjusted < ALPHA).any(axis=0)))
+
+
+def asked(chance: float, share: float) -> bool:
+    """Whether a coverage is what is asked of a rate."""
+    low, high = WITHIN
+    return share >= low and (share <= high or not 0.05 <= chance <= 0.95)
+
+
+def cells(measure: Callable[[float, int], float], tables: int) -> tuple[str, ...]:
+    """Coverage at each of `RATES`, and whether all are what is asked.
+
+    2,000 tables tell a coverage to ± 0.01: what falls outside is measured again (*) with
+    ten times as many, and judged by that.
+    """
+    texts, good = [], True
+    for p in RATES:
+        share, mark = measure(p, tables), ""
+        if not asked(p, share):
+            share, mark = measure(p, 10 * tables), "*"
+            good &= asked(p, share)
+        texts.append(f"{share:.3f}{mark}")
+    return (*texts, "yes" if good else "no")
+
+
+Row = tuple[str, ...]
+
+
+def rate_rows(tables: int) -> Iterator[Row]:
+    """Coverage of single rates."""
+    yield ("agents, correlation", "worlds", *(f"{p:g}" for p in RATES), "as asked")
+    for (agents, mix), n in product(CORRELATIONS, WORLDS):
+        measure = partial(rate_coverage, agents=agents, correlation=mix, worlds=n)
+        yield (f"{agents}, {mix}", f"{n}", *cells(measure, tables))
+
+
+def difference_rows(tables: int) -> Iterator[Row]:
+    """Coverage of paired differences, of equals and of navigators that differ."""
+    yield ("crowd", "B", "worlds", *(f"{p:g}" for p in RATES), "as asked")
+    for crowd, apart, n in product(CROWDS, (0.0, APART), WORLDS):
+        measure = partial(difference_coverage, apart=apart, crowd=crowd, worlds=n)
+        name = f"{apart:g} nearer ½" if apart else "as A"
+        yield (crowd.name, name, f"{n}", *cells(measure, tables))
+
+
+def mean_rows(tables: int) -> Iterator[Row]:
+    """Coverage of means of other quantities."""
+    counts = (5, 10, 20, 50, 100)
+    yield ("values of a world", *(f"n = {n}" for n in counts))
+    for shape, plain in product(MEANS, (False, True)):
+        shares = [mean_coverage(shape, n, tables, plain) for n in counts]
+        yield (f"{shape}{', by percentiles' * plain}", *(f"{s:.3f}" for s in shares))
+
+
+def alarm_rows(tables: int) -> Iterator[Row]:
+    """False alarms of one report."""
+    chances = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99)
+    yield ("crowd of A; of B", "comparisons", "worlds", *(f"{p:g}" for p in chances), "as asked")
+    mixed = (CROWDS[3], Crowd("4 agents, each for itself", 4))
+    for pair in (*((crowd, crowd) for crowd in CROWDS[:4]), mixed):
+        for family, n in product((1, 20), (20, 50)):
+            shares = [false_alarms(p, pair, n, family, tables) for p in chances]
+            name = pair[0].name if pair[0] == pair[1] else "; ".join(c.name for c in pair)
+            good = "yes" if max(shares) <= FALSE_ALARMS else "no"
+            yield (name, f"{family}", f"{n}", *(f"{s:.3f}" for s in shares), good)
+
+
+PARTS = {
+    "rates": rate_rows, "differences": difference_rows, "means": mean_rows,
+    "false-alarms": alarm_rows,
+}  # fmt: skip
+
+
+def main() -> None:
+    """Print Markdown tables."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("--tables", type=int, default=TABLES)
+    parser.add_argument("--part", choices=PARTS, action="append", help="may be given again")
+    asked = parser.parse_args()
+    for part in asked.part or PARTS:
+        print(f"\n{part}\n")
+        for k, row in enumerate(PARTS[part](asked.tables)):
+            print(f"| {' | '.join(row)} |", flush=True)
+            if k == 0:
+                print("| --- |" + " --- |" * (len(row) - 1))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,41 @@
+"""Runs that a verb reads: folders or packs, and what they lack is told."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from itertools import islice
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from benchnav.cli.console import say, spans
+
+if TYPE_CHECKING:
+    from benchnav.store.run_folder import RunFolder
+
+_SHOWN = 10  # cells that are named of those that lack episodes
+
+
+@contextmanager
+def reading(runs: Sequence[Path]) -> Iterator["list[RunFolder]"]:
+    """The run folders; packs are unpacked for as long as this lasts."""
+    from benchnav.store.unpack import opened
+
+    with ExitStack() as stack:
+        folders = [stack.enter_context(opened(run)) for run in runs]
+        for folder in folders:
+            _warn_if_unfinished(folder)
+        yield folders
+
+
+def _warn_if_unfinished(folder: "RunFolder") -> None:
+    missing = dict(folder.missing())
+    if not missing:
+        return
+    first, stop = folder.manifest.suite["seeds"]
+    total = (stop - first) * sum(not cell["reason"] for cell in folder.manifest.cells)
+    stored = total - sum(map(len, missing.values()))
+    advice = f": run the same suite with --out {folder.path} to finish it."
+    say(f"{folder.shown} holds {stored} of {total} episodes{'.' if folder.packed else advice}")
+    for key, seeds in islice(missing.items(), _SHOWN):
+        say(f"  missing: {spans(seeds)} of {key}")
+    if len(missing) > _SHOWN:
+        say(f"  … and of {len(missing) - _SHOWN} more cells")

@@ -1,0 +1,1 @@
+"""Pictures of results: paired comparisons and curves. They need the extra ``view``."""
