@@ -11,9 +11,11 @@ from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import UsageError
 from benchnav.leaderboard.compare import sign_flip
-from benchnav.leaderboard.estimate import Column, Estimate, Sample, estimate
-from benchnav.leaderboard.interval import ALPHA, resample, wilson
+from benchnav.leaderboard.difference import Pairs, difference
+from benchnav.leaderboard.estimate import Estimate, Sample, columns_of, estimate
+from benchnav.leaderboard.interval import ALPHA, mid_p, resample
 from benchnav.metrics.measure import all_metrics
+from benchnav.metrics.metric import Metric
 from benchnav.store.manifest import Manifest, load_manifest
 from benchnav.store.part import Part, parts_of
 from benchnav.store.reading import read_results
@@ -98,12 +100,16 @@ class Evidence:
         seeds are paired as any others would be.
         """
         mine, theirs = self._held(metric, cell, role), self._held(metric, other, role)
-        apart = np.array([[mine[s][0] - theirs[s][0]] for s in sorted(mine.keys() & theirs.keys())])
-        apart = apart.reshape(-1, 1)
+        seeds = sorted(mine.keys() & theirs.keys())
+        sides = [np.array([held[s] for s in seeds]).reshape(-1, 2) for held in (mine, theirs)]
+        pairs = Pairs(
+            sides[0][:, :1], sides[1][:, :1], sides[0][:, 1:], sides[1][:, 1:], _weights(len(seeds))
+        )
+        apart = pairs.differences.value
         defined = int((~np.isnan(apart)).sum())
         if not defined:
             return Difference(math.nan, math.nan, math.nan, 0, 1.0)
-        found = _bootstrap(apart)
+        found = _only(difference(pairs, columns_of([_metric(metric)])))
         return Difference(*found, defined, float(sign_flip(apart)[0]))
 
     def alike(self, metric: str, cells: Sequence[Cell]) -> bool:
@@ -144,18 +150,15 @@ class Evidence:
 def _interval(metric: str, values: FloatArray, agents: FloatArray) -> tuple[float, float, float]:
     if not len(values) or np.isnan(values).all():
         return math.nan, math.nan, math.nan
-    about = next(m for m in all_metrics() if m.name == metric)
+    about = _metric(metric)
     if not np.nansum(np.abs(values)) and math.isinf(about.high):
         # no event at all: as if each world could have had one, for counts have no bound
-        return 0.0, 0.0, float(wilson(np.zeros(1), np.array([float(len(values))]))[1][0])
-    column = Column(np.array([about.rate]), np.array([about.low]), np.array([about.high]))
-    return _only(estimate(Sample(values, agents, _weights(len(values))), column))
+        return 0.0, 0.0, float(mid_p(np.zeros(1), np.array([float(len(values))]))[1][0])
+    return _only(estimate(Sample(values, agents, _weights(len(values))), columns_of([about])))
 
 
-def _bootstrap(apart: FloatArray) -> tuple[float, float, float]:
-    free = Column(np.array([False]), np.array([-np.inf]), np.array([np.inf]))
-    found = _only(estimate(Sample(apart, np.ones_like(apart), _weights(len(apart))), free))
-    return found if not math.isnan(found[1]) else (found[0], found[0], found[0])
+def _metric(name: str) -> Metric:
+    return next(metric for metric in all_metrics() if metric.name == name)
 
 
 def _weights(count: int) -> FloatArray:
