@@ -79,16 +79,23 @@ def curve(
     return parameter_curves(results, metrics[metric], axis, settings)
 
 
+def _names(scenario: str) -> tuple[str, ...]:
+    """What a scenario may be called: its name alone, with parameters, with version, with both."""
+    named = re.sub(r"@\d+", "", scenario)
+    return named.split(":")[0], scenario.split(":")[0], scenario, named
+
+
 def _within(results: pa.Table, wanted: Sequence[str]) -> pa.Table:
     """The rows of scenarios that are named: with or without version and parameters."""
-    known = results["scenario"].unique().to_pylist()
+    names = {known: _names(known) for known in results["scenario"].unique().to_pylist()}
     chosen = set()
     for name in wanted:
-        found = {k for k in known if name in (k, k.split("@")[0], k.split(":")[0])}
+        found = {known for known, said in names.items() if name in said}
         if not found:
+            every = sorted({said[-1] for said in names.values()})
             raise UsageError(
                 f"A scenario to compare in must be one that was run. Got {name!r} instead."
-                f"{did_you_mean(name, [k.split('@')[0] for k in known])}"
+                f"{did_you_mean(name, every)}"
             )
         chosen |= found
     return results.filter(pc.is_in(results["scenario"], pa.array(sorted(chosen))))

@@ -94,6 +94,9 @@ def test_a_metric_is_shown_against_a_parameter_with_its_default(call, suite, tmp
     assert {(r["scenario"], r["axis_unit"], r["x"], r["metric"]) for r in rows} == {
         ("tiny/open@1", "m", 0.2, "spl"), ("tiny/open@1", "m", 0.3, "spl"),
     }  # fmt: skip
+    for name, count in (("tiny/open", 6), ("tiny/open@1:size=0.3", 2), ("tiny/open:size=0.3", 2)):
+        wanted = ["--scenario", name, "--metric", "spl", "--format", "json"]
+        assert len(json.loads(call("compare", out, "orca", "straight-line", *wanted)[1])) == count
     code, _, stderr = call("leaderboard", out, "--curve", "sise")
     assert code == 2
     assert "a parameter of a scenario that was run: size. Got 'sise'" in stderr
