@@ -102,6 +102,16 @@ class CorruptPartError(StoreError):
     """A part of a run cannot be trusted."""
 
 
+def named(name: str, text: str) -> BenchnavError:
+    """The error of this name with this text, as another process told of it."""
+    kind = globals().get(name)
+    if not (isinstance(kind, type) and issubclass(kind, BenchnavError)):
+        kind = BenchnavError
+    error: BenchnavError = kind.__new__(kind)
+    error.args = (text,)
+    return error
+
+
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """``" Did you mean 'x' or 'y'?"`` for the nearest known names, or ``""``."""
     near = get_close_matches(name, list(known), n=2, cutoff=0.6)

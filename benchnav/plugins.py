@@ -62,6 +62,10 @@ class Registry:
         """Every name, sorted, without importing anything."""
         return sorted({*self._entries(), *self._local})
 
+    def is_local(self, name: str) -> bool:
+        """True where ``name`` is known in this process alone."""
+        return name in self._local
+
     def source(self, name: str) -> Source:
         """Where ``name`` comes from."""
         if name in self._local:

@@ -67,6 +67,12 @@ def run(
             help="Of navigators' randomness, to repeat a run: its manifest has it. [default: new]",
         ),
     ] = None,
+    isolate: Annotated[
+        bool,
+        typer.Option(
+            "--isolate", help="Every navigator in a process of its own that is sent messages."
+        ),
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
 ) -> None:
     """Execute a suite into a run folder.
@@ -79,8 +85,9 @@ def run(
     from benchnav.runner.suite import Selection, load_suite
 
     chosen = Selection(
-        tuple(scenario or ()), tuple(track or ()), tuple(navigator or ()), seeds or "", salt or ""
-    )
+        tuple(scenario or ()), tuple(track or ()), tuple(navigator or ()), seeds or "", salt or "",
+        isolate,
+    )  # fmt: skip
     asked = load_suite(suite, chosen)
     folder = (
         out if out is not None else Path("runs") / f"{asked.name}-{datetime.now():%Y%m%d-%H%M%S}"

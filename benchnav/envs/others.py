@@ -8,6 +8,7 @@ import numpy as np
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.envs.relay import Relay
 from benchnav.errors import NavigatorError
+from benchnav.navigation.answer import CallFailed, checked
 from benchnav.navigation.briefing import brief
 from benchnav.navigation.configure import Spec, make, split
 from benchnav.navigation.map import Map
@@ -15,7 +16,6 @@ from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.tracks import granted_map
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner.answer import CallFailed, checked
 from benchnav.sensors.sense import sense
 
 

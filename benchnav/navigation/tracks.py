@@ -6,8 +6,12 @@ partial  walls only
 unknown  no map
 """
 
+from dataclasses import replace
 from typing import Literal, get_args
 
+import numpy as np
+
+from benchnav.arena.mesh import Mesh
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
@@ -28,20 +32,21 @@ def granted_map(
         body_position: (M, 2) [m] where its bodies stand now; None: where they start.
         revision: how often static obstacles were re-placed so far.
 
-    Dynamic obstacles are on no map. Solids are shared with the world, read-only.
+    Dynamic obstacles are on no map. Nothing of it is shared with the world: whoever holds
+    a map has no way from it to the world, and cannot move the world's walls with it.
     """
     if track == "unknown":
         return None
     if track == "partial":
         walls = tuple(solid for solid in world.solids if solid.kind == Kind.WALL)
-        return Map(world.bounds, _frozen(walls))
+        return Map(world.bounds, _copied(walls))
     if track == "stale":
         old = world.stale_solids
         solids = world.solids if old is None else old
         meshes = world.meshes if old is None else ()
-        return Map(world.bounds, _frozen(solids + _placed(world, None)), 0, meshes)
+        return Map(world.bounds, _copied(solids + _placed(world, None)), 0, _apart(meshes))
     solids = world.solids + _placed(world, body_position)
-    return Map(world.bounds, _frozen(solids), revision, world.meshes)
+    return Map(world.bounds, _copied(solids), revision, _apart(world.meshes))
 
 
 def _placed(world: World, position: FloatArray | None) -> tuple[Solid, ...]:
@@ -53,8 +58,16 @@ def _placed(world: World, position: FloatArray | None) -> tuple[Solid, ...]:
     )
 
 
-def _frozen(solids: tuple[Solid, ...]) -> tuple[Solid, ...]:
-    for solid in solids:
+def _copied(solids: tuple[Solid, ...]) -> tuple[Solid, ...]:
+    """The same solids in read-only arrays of their own."""
+    copies = tuple(replace(solid, loops=tuple(map(np.copy, solid.loops))) for solid in solids)
+    for solid in copies:
         for array in (*solid.loops, solid.capsules):
             array.setflags(write=False)
-    return solids
+    return copies
+
+
+def _apart(meshes: tuple[Mesh, ...]) -> tuple[Mesh, ...]:
+    return tuple(
+        replace(mesh, vertices=mesh.vertices.copy(), faces=mesh.faces.copy()) for mesh in meshes
+    )

@@ -9,12 +9,12 @@ from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
 from benchnav.errors import MissingExtraError
+from benchnav.navigation.answer import CallFailed, checked, said, short
 from benchnav.navigation.briefing import Briefing, brief
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.rehearsal import Rehearsal, copied
 from benchnav.navigation.tracks import granted_map
-from benchnav.runner.answer import CallFailed, checked
 from benchnav.runner.watch import calling
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
@@ -69,10 +69,12 @@ class Driver:
         try:
             with calling("reset"):
                 self.navigator.reset(briefings, rows)
+        except CallFailed as failed:
+            raise CallFailed(f"{self._blame}{failed.reason}", failed.suspects) from None
         except MissingExtraError:
             raise  # what is not installed is no failure of the navigator
         except (Exception, SystemExit) as error:
-            raise CallFailed(f"{self._blame}reset raised {_said(error)}") from error
+            raise CallFailed(f"{self._blame}reset raised {said(error)}") from error
         return perf_counter() - began
 
     def mark_twists(self, twist: BoolArray) -> None:
@@ -99,11 +101,12 @@ class Driver:
                 seconds = perf_counter() - began
                 told = checked(answer, active)
         except CallFailed as failed:
-            raise CallFailed(self._at(failed.reason, time), failed.suspects) from None
+            who = None if failed.suspects is None else observation.rows[failed.suspects]
+            raise CallFailed(self._at(failed.reason, time), who) from None
         except MissingExtraError:
             raise  # what is not installed is no failure of the navigator
         except (Exception, SystemExit) as error:
-            raise CallFailed(self._at(f"act raised {_said(error)}", time)) from error
+            raise CallFailed(self._at(f"act raised {said(error)}", time)) from error
         world, agent = np.nonzero(active)
         row = observation.rows[world]
         command[row, self.chosen[row, agent]] = told[world, agent]
@@ -115,8 +118,8 @@ class Driver:
             with calling("remarks"):
                 told = [str(remark) for remark in self.navigator.remarks(row)]
         except (Exception, SystemExit) as error:
-            return (f"remarks raised {_said(error)}",)
-        return tuple(_short(text) for text in told[:_REMARKS])
+            return (f"remarks raised {said(error)}",)
+        return tuple(short(text) for text in told[:_REMARKS])
 
     def _at(self, reason: str, time: float) -> str:
         return f"{self._blame}{reason} at t = {time:g} s"
@@ -171,13 +174,3 @@ def _chosen(worlds: Sequence[World], which: int) -> IntArray:
     for b, agents in enumerate(mine):
         chosen[b, : len(agents)] = agents
     return chosen
-
-
-def _short(text: str) -> str:
-    text = " ".join(text.split())
-    return text if len(text) <= 300 else text[:297] + "..."
-
-
-def _said(error: BaseException) -> str:
-    shown = _short(str(error))
-    return f"{type(error).__name__}: {shown}" if shown else type(error).__name__

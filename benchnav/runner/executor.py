@@ -12,13 +12,13 @@ from multiprocessing.process import BaseProcess
 from time import monotonic
 from typing import Any
 
-from benchnav.errors import BenchnavError
+from benchnav.errors import BenchnavError, named
 from benchnav.runner.limits import Limits
 from benchnav.runner.process_tree import kill, resident
 from benchnav.runner.progress import Progress
 from benchnav.runner.task import Outcome, Task, work
 from benchnav.runner.watch import SIZE, Watch
-from benchnav.runner.worker import ONE_THREAD, refused, serve
+from benchnav.runner.worker import ONE_THREAD, serve
 
 Finished = tuple[Task, Outcome]
 LOOK = 0.1  # [s] between two looks at the workers' calls and memory
@@ -129,7 +129,7 @@ class Crew:
             self.progress.advance(content)
             return
         if kind == "refused":
-            raise refused(*content)
+            raise named(*content)
         if kind == "crashed":
             raise RuntimeError(f"A worker crashed:\n{content}")
         worker.ready, worker.used, worker.task = True, kind == "done", None

@@ -11,12 +11,10 @@ import hashlib
 import json
 import re
 import secrets
-from typing import Any
 
 import numpy as np
-from numpy.random.bit_generator import ISpawnableSeedSequence
 
-from benchnav.arrays import AnyArray
+from benchnav.navigation.seeds import hashed_generator
 
 _SALT = re.compile(r"(?:[0-9a-f]{2}){1,64}")  # the key of blake2b has at most 64 bytes
 
@@ -50,46 +48,19 @@ def generator(
         rehearsal: k in the k-th rehearsal, 0 in the scored episode.
     """
     which = (rehearsal,) if rehearsal else ()
-    return _generator(_hashed(salt, "stream", scenario_hash, split, seed, driver, *which))
+    return hashed_generator(_hashed(salt, "stream", scenario_hash, split, seed, driver, *which))
 
 
 def phases(
     salt: str, scenario_hash: str, split: str, seed: int, rehearsal: int
 ) -> np.random.Generator:
     """What the movers' phases in the k-th rehearsal are drawn from: alike for every entry."""
-    return _generator(_hashed(salt, "phases", scenario_hash, split, seed, rehearsal))
-
-
-def _generator(hashed: bytes) -> np.random.Generator:
-    seeds: Any = _Seeds(hashed)  # numpy takes every ISeedSequence; its stubs know one
-    return np.random.Generator(np.random.PCG64(seeds))
+    return hashed_generator(_hashed(salt, "phases", scenario_hash, split, seed, rehearsal))
 
 
 def place(salt: str, scenario_hash: str, split: str, seed: int) -> bytes:
     """Worlds sorted by this stand in an order that tells nothing about their seeds."""
     return _hashed(salt, "place", scenario_hash, split, seed)
-
-
-class _Seeds(ISpawnableSeedSequence):
-    """A seed sequence that is a hash, and nothing that went into it."""
-
-    def __init__(self, hashed: bytes) -> None:
-        self._hashed = hashed
-        self._spawned = 0
-
-    def generate_state(self, n_words: int, dtype: Any = np.uint32) -> AnyArray:
-        """(n_words,) as numpy asks for them."""
-        kind = np.dtype(dtype)
-        stream = hashlib.shake_256(b"state" + self._hashed).digest(n_words * kind.itemsize)
-        return np.frombuffer(stream, kind.newbyteorder("<")).astype(kind)
-
-    def spawn(self, n_children: int) -> list["_Seeds"]:
-        """New sequences, independent of this one and of those that were spawned before."""
-        first, self._spawned = self._spawned, self._spawned + n_children
-        return [
-            _Seeds(hashlib.sha256(f"child {k} ".encode() + self._hashed).digest())
-            for k in range(first, self._spawned)
-        ]
 
 
 def _hashed(salt: str, *about: str | int) -> bytes:

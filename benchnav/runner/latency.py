@@ -3,8 +3,9 @@
 import sys
 
 from benchnav.arrays import FloatArray
+from benchnav.isolation import pool
+from benchnav.navigation.answer import CallFailed
 from benchnav.navigation.rehearsal import Rehearsal
-from benchnav.runner.answer import CallFailed
 from benchnav.runner.recorder import Recorder
 from benchnav.runner.rollout import Assignment, Seeded, drive, drivers_of
 from benchnav.world.simulation import Simulation
@@ -31,10 +32,15 @@ def latency(
 
 
 def peak_memory() -> int | None:
-    """[bytes] the most that this process ever held in RAM; None where the system does not tell."""
+    """[bytes] the most that this process ever held in RAM, and the largest navigator's beside it.
+
+    None where the system does not tell.
+    """
     try:
         import resource
     except ImportError:  # not on Windows
         return None
-    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return int(most) if sys.platform == "darwin" else int(most) * 1024
+    unit = 1 if sys.platform == "darwin" else 1024
+    own = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit
+    ended = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * unit
+    return int(own + max(ended, pool.peak_memory()))

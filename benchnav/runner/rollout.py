@@ -10,12 +10,14 @@ import numpy as np
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import Clock, Rules, World
 from benchnav.episode.episode import Episode, Identity
-from benchnav.errors import BrokenPluginError
+from benchnav.errors import BrokenPluginError, NavigatorError
+from benchnav.isolation.isolated import Isolated
+from benchnav.isolation.program import PROCESS
+from benchnav.navigation.answer import CallFailed
 from benchnav.navigation.configure import Spec, make, split
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.rehearsal import Rehearsal
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner.answer import CallFailed
 from benchnav.runner.driver import Driver
 from benchnav.runner.generators import generator, place
 from benchnav.runner.recorder import Recorder
@@ -43,6 +45,13 @@ class Assignment:
     rehearsals: int = 0  # that the navigator asks for
     leader: Spec | None = None  # who drives the leaders in them
     rehearsal: int = 0  # k: this is the k-th of them
+    isolated: bool = False  # whether the evaluated navigator is put into a process of its own
+
+    @property
+    def cell(self) -> tuple[str, ...]:
+        """What an isolated navigator's process may serve: one role in one cell."""
+        role = "rehearsal" if self.rehearsal else "episode"
+        return self.scenario, self.scenario_hash, self.split, self.track, self.label, role
 
     def identity(self, seed: int) -> Identity:
         """Of the episode with this seed."""
@@ -134,6 +143,8 @@ def _lockstep(
         try:
             drivers = drivers_of(assignment, simulation, told)
             planning = drive(assignment, drivers, recorder, [seed for seed, _ in batch])
+        except NavigatorError as error:  # its process does not start, in whatever world
+            return _lockstep(assignment, batch, str(error), grants)
         except CallFailed as failed:
             if len(batch) > 1:
                 raise
@@ -178,7 +189,7 @@ def drivers_of(
     ``rehearsals`` (B,) are what the first is told of, none where there are none. Raises
     CallFailed where one cannot be made.
     """
-    chosen = _made(assignment.navigator, "")
+    chosen = _made(assignment.navigator, "", assignment.cell if assignment.isolated else ())
     drivers = [Driver(chosen, simulation, 0, assignment.track, rehearsals=rehearsals)]
     for which, spec in enumerate(assignment.background, start=1):
         blame = f"the scenario's background navigator {split(NAVIGATORS, spec)[0]!r}: "
@@ -186,10 +197,13 @@ def drivers_of(
     return [driver for driver in drivers if driver.chosen.size]
 
 
-def _made(spec: Spec, blame: str) -> Navigator:
+def _made(spec: Spec, blame: str, cell: tuple[str, ...] = ()) -> Navigator:
+    """The navigator; one that is isolated is hosted by the process of ``cell``."""
+    apart = cell and split(NAVIGATORS, spec)[0] != PROCESS
     try:
         with calling("__init__"):
-            navigator: Navigator = make(NAVIGATORS, spec)
+            navigator: Navigator = Isolated(spec, cell) if apart else make(NAVIGATORS, spec)
+            _ = navigator.required  # for which a process of its own is started
     except BrokenPluginError as error:
         raise CallFailed(f"{blame}{error}") from error
     return navigator

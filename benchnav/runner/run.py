@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from benchnav.errors import RunConflictError, UsageError
+from benchnav.isolation import pool
 from benchnav.plugins import METRICS
 from benchnav.runner.executor import execute
 from benchnav.runner.generators import draw_salt
@@ -106,6 +107,7 @@ def run_suite(
                     summary.count(task, outcome)
         finally:
             told.end()
+            pool.dismiss()
             folder.amend(reasons | {cell.key: why for cell, why in summary.not_applicable})
     return summary
 

@@ -4,13 +4,23 @@ import hashlib
 import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
-from benchnav.errors import MissingExtraError, ScenarioError, UsageError, did_you_mean
-from benchnav.navigation.configure import Spec, configure, make, split
-from benchnav.navigation.navigator import Navigator, Need, Training
+from benchnav.arena.sensing import Sensing
+from benchnav.errors import (
+    BrokenPluginError,
+    NavigatorError,
+    ScenarioError,
+    UsageError,
+    did_you_mean,
+)
+from benchnav.isolation import isolated
+from benchnav.isolation.program import PROCESS
+from benchnav.navigation.configure import Spec, split
+from benchnav.navigation.introduction import Introduction, introduction
+from benchnav.navigation.navigator import Need, Training
 from benchnav.navigation.tracks import TRACKS
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.generators import check_salt
@@ -22,6 +32,10 @@ from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
 from benchnav.store.scenario_files import sha256_of
 from benchnav.world.build import sensing_of
+
+Mode = Literal["in-process", "isolated"]
+IN_PROCESS: Mode = "in-process"
+ISOLATED: Mode = "isolated"  # in a process of its own that is told what messages say
 
 
 @dataclass(frozen=True)
@@ -38,13 +52,16 @@ class Entry:
     rehearsal: int = 0  # rehearsals before each episode
     leader: "Entry | None" = None  # who drives the leaders in them
     uses_map: bool = True
+    unfit: Mapping[Sensing, str] = field(default_factory=dict)  # why it cannot sense so; "" if so
+    mode: Mode = IN_PROCESS
 
     @property
     def hash(self) -> str:
         """Of all that the label stands for: type, every parameter, source, version, files."""
         files = [self.fingerprint] if self.fingerprint else []
         led = [self.leader.hash] if self.leader else []
-        said = json.dumps([dict(self.spec), self.source, *files, *led], sort_keys=True)
+        mode = [] if self.mode == IN_PROCESS else [self.mode]
+        said = json.dumps([dict(self.spec), self.source, *files, *led, *mode], sort_keys=True)
         return hashlib.sha256(said.encode()).hexdigest()[:16]
 
 
@@ -67,6 +84,7 @@ class Cell:
             scenario.driver_specs,
             navigator_hash=entry.hash, rehearsals=entry.rehearsal,
             leader=entry.leader.spec if entry.leader else None,
+            isolated=entry.mode == ISOLATED,
         )  # fmt: skip
 
     @property
@@ -105,15 +123,9 @@ class Cell:
 
     def _unfit(self, entry: Entry) -> str:
         """Why a navigator cannot work with what the track and the sensors give."""
-        required, sensing = entry.required, self.scenario.sensing
-        if Need.MAP in required and self.track == "unknown":
+        if Need.MAP in entry.required and self.track == "unknown":
             return "needs a map"
-        sensed = {need for need in Need if getattr(sensing, need, None) is not None}
-        lacking = sorted(required - sensed - {Need.MAP})
-        if lacking:
-            return f"needs {' and '.join(lacking)}, which nobody senses there"
-        navigator: Navigator = make(NAVIGATORS, entry.spec)
-        return navigator.unfit(sensing_of(self.scenario))
+        return entry.unfit.get(sensing_of(self.scenario), "")
 
     @property
     def effort(self) -> float:
@@ -146,6 +158,7 @@ class Selection:
     navigators: tuple[str, ...] = ()
     seeds: str = ""
     salt: str = ""  # in hexadecimal digits; empty: the run draws one
+    isolate: bool = False  # every evaluated navigator in a process of its own
 
 
 @dataclass(frozen=True)
@@ -236,14 +249,15 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     document = read_yaml(path)
     said = validate(SuiteFile, document)
     wanted = _wanted_navigators(said, selection.navigators)
-    entries = tuple(
-        entry_of(spec, "--navigator" if i is None else document.where(("navigators", i)))
-        for i, spec in wanted
-    )
     if selection.scenarios:
         scenarios = tuple(find(name) for name in selection.scenarios)
     else:
         scenarios = tuple(find(name, path.parent) for name in said.scenarios)
+    meeting = _Meeting(tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate)
+    entries = tuple(
+        meeting.entry(spec, "--navigator" if i is None else document.where(("navigators", i)))
+        for i, spec in wanted
+    )
     tracks = tuple(selection.tracks or said.tracks)
     _refuse_unknown_tracks(tracks)
     _refuse_twice("scenario", [s.identity for s in scenarios], path)
@@ -313,54 +327,59 @@ def _label(spec: Spec) -> str:
     return str(spec.get("label", spec.get("type", "")))
 
 
-def entry_of(spec: Spec, where: str) -> Entry:
-    """The navigator of a spec, resolved, as it is installed here; ``where`` is for messages.
+@dataclass(frozen=True)
+class _Meeting:
+    """Asks navigators who they are, each in a process of its own where they are isolated."""
 
-    Raises:
-        ScenarioError: a label or a leader that cannot be.
-        PluginError: it cannot be used.
-    """
-    label = _label(spec)
-    if not isinstance(spec, str):
-        spec = {key: value for key, value in spec.items() if key != "label"}
-        if not label.strip() or len(label) > 80:
-            raise ScenarioError(f"{where} label must have 1 to 80 characters; got {label[:90]!r}.")
-    name, _ = split(NAVIGATORS, spec, where=where)
-    _, config = configure(NAVIGATORS, spec, where=where)
-    full = {"type": name, **config.model_dump(mode="json")}
-    source = NAVIGATORS.source(name).distribution
-    try:
-        navigator: Navigator = make(NAVIGATORS, spec, where=where)
-        led = _leader(navigator, where)
-        made_of = (source, *(part.distribution for part in navigator.parts))
+    sensings: tuple[Sensing, ...]
+    isolate: bool
+
+    def entry(self, spec: Spec, where: str) -> Entry:
+        """The entry that ``spec`` describes, as it stands at ``where``."""
+        label = _label(spec)
+        if not isinstance(spec, str):
+            spec = {key: value for key, value in spec.items() if key != "label"}
+            if not label.strip() or len(label) > 80:
+                raise ScenarioError(
+                    f"{where} label must have 1 to 80 characters; got {label[:90]!r}."
+                )
+        name, _ = split(NAVIGATORS, spec, where=where)
+        apart = self.isolate and name != PROCESS
+        ask = isolated.introduction if apart else introduction
+        try:
+            said = ask(spec, self.sensings, where=where)
+        except NavigatorError as error:
+            raise BrokenPluginError(
+                f"{where}: The navigator {label!r} cannot be used: {error}."
+            ) from None
+        led = self._leader(said, where)
+        alone = self.isolate or (name == PROCESS and (led is None or led.mode == ISOLATED))
         return Entry(
-            label, full, ", ".join(dict.fromkeys(made_of)), navigator.required,
-            training=navigator.training or (led.training if led else None),
-            fingerprint=navigator.fingerprint, rehearsal=navigator.rehearsal, leader=led,
-            uses_map=navigator.uses_map,
+            label, said.spec, ", ".join(said.made_of), said.needs, said.lacks,
+            training=said.training or (led.training if led else None),
+            fingerprint=said.fingerprint, rehearsal=said.rehearsal, leader=led,
+            unfit=dict(zip(self.sensings, said.unfit, strict=False)),
+            uses_map=said.uses_map, mode=ISOLATED if alone else IN_PROCESS,
         )  # fmt: skip
-    except MissingExtraError as error:
-        return Entry(label, full, source, frozenset(), str(error))
 
-
-def _leader(navigator: Navigator, where: str) -> Entry | None:
-    """Who leads in the rehearsals that ``navigator`` asks for; None where it asks for none."""
-    if not navigator.rehearsal:
-        return None
-    spec = navigator.leader
-    if spec is None:
-        raise ScenarioError(f"{where}: who asks for rehearsals must name who leads in them.")
-    led = entry_of(spec if isinstance(spec, str) else dict(spec), f"{where} leader")
-    if led.rehearsal:
-        raise ScenarioError(
-            f"{where}: who leads in rehearsals must need none itself. Got {led.label!r}."
-        )
-    return led
+    def _leader(self, said: Introduction, where: str) -> Entry | None:
+        """Who leads in the rehearsals that a navigator asks for; None where it asks for none."""
+        if not said.rehearsal:
+            return None
+        if said.leader is None:
+            raise ScenarioError(f"{where}: who asks for rehearsals must name who leads in them.")
+        led = self.entry(said.leader, f"{where} leader")
+        if led.rehearsal:
+            raise ScenarioError(
+                f"{where}: who leads in rehearsals must need none itself. Got {led.label!r}."
+            )
+        return led
 
 
 def _resolved(entry: Entry) -> dict[str, Any]:
     said: dict[str, Any] = {
         "label": entry.label, "says": dict(entry.spec), "source": entry.source,
+        "mode": entry.mode,
     }  # fmt: skip
     if entry.leader:
         said["rehearsal"], said["leader"] = entry.rehearsal, _resolved(entry.leader)

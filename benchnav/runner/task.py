@@ -6,6 +6,7 @@ from pathlib import Path
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
+from benchnav.isolation import fence
 from benchnav.metrics.measure import all_metrics
 from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.measured import failed_metrics, measured
@@ -94,6 +95,8 @@ def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:
 
 def _work(task: Task, tick: Callable[[int], None]) -> Outcome:
     cell = task.cell
+    if task.assignment.isolated:
+        fence.hide()  # before there is anything to hide
     worlds = [(seed, build(cell.scenario, cell.split, seed)) for seed in task.seeds]
     metrics = all_metrics()
     failures: list[tuple[int, str]] = []

@@ -15,7 +15,6 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
-from benchnav import errors
 from benchnav.errors import BenchnavError
 from benchnav.runner.watch import Notes, write_to
 
@@ -51,14 +50,6 @@ def serve(pipe: "Connection[Any, Any]", notes: Notes) -> None:
         else:
             pipe.send(("done", outcome))
         sys.stdout.flush()
-
-
-def refused(name: str, text: str) -> BenchnavError:
-    """The error that a worker told about."""
-    kind = getattr(errors, name, BenchnavError)
-    error: BenchnavError = kind.__new__(kind)
-    error.args = (text,)
-    return error
 
 
 def _end_with_parent() -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchnav.runner.answer import CallFailed, checked
+from benchnav.navigation.answer import CallFailed, checked
 
 ACTIVE = np.array([[True, True], [True, False]])
 

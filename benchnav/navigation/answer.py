@@ -1,4 +1,4 @@
-"""Checks what a navigator answered before it may touch the state."""
+"""Checks what a navigator answered before it may touch the state, and says what went wrong."""
 
 from typing import Any
 
@@ -42,6 +42,18 @@ def checked(answer: Any, active: BoolArray) -> FloatArray:
             np.flatnonzero(~finite.all(axis=1)),
         )
     return command
+
+
+def said(error: BaseException) -> str:
+    """What an exception says, on one line of a reason."""
+    shown = short(str(error))
+    return f"{type(error).__name__}: {shown}" if shown else type(error).__name__
+
+
+def short(text: str) -> str:
+    """On one line, of at most 300 letters."""
+    text = " ".join(text.split())
+    return text if len(text) <= 300 else text[:297] + "..."
 
 
 def _name(value: Any) -> str:

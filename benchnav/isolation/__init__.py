@@ -1,0 +1,1 @@
+"""Navigators in processes of their own: the messages, the fence, and both ends of the pipe."""

@@ -1,0 +1,67 @@
+"""What `--isolate` does: any navigator by its name, hosted in a process of its own."""
+
+import json
+import sys
+from collections.abc import Hashable, Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from benchnav.arena.sensing import Sensing
+from benchnav.errors import BrokenPluginError, NavigatorError, UsageError
+from benchnav.isolation import fence, pool
+from benchnav.isolation.process import Process
+from benchnav.isolation.remote import Remote, python_path, say_hello
+from benchnav.navigation.configure import Spec, split
+from benchnav.navigation.introduction import Introduction
+from benchnav.plugins import NAVIGATORS
+
+HOST = (sys.executable, "-P", "-m", "benchnav.isolation.host")
+PER_CALL, PER_AGENT = 60.0, 10.0  # [s] until it counts as hung: planners may take their time
+
+
+class Isolated(Remote):
+    """The navigator of ``spec``; ``cell`` is where it runs, and keeps its process warm."""
+
+    def __init__(self, spec: Spec, cell: Hashable) -> None:
+        super().__init__()
+        self._spec = spec if isinstance(spec, str) else dict(spec)
+        self._cell = (json.dumps(self._spec, sort_keys=True), cell)
+
+    def start(self) -> Process:
+        fence.require_fence()
+        return pool.lend(self._cell, lambda: Process(HOST))
+
+    @property
+    def hello(self) -> Mapping[str, Any]:
+        return _hello(self._spec)
+
+    def patience(self, agents: int) -> float:
+        return PER_CALL + PER_AGENT * agents
+
+
+def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "") -> Introduction:
+    """As `benchnav.navigation.introduction.introduction`, in a process of its own.
+
+    Nothing of the navigator is imported in this one. Raises also BrokenPluginError where the
+    process dies, and UsageError where no other process can host it.
+    """
+    name, _ = split(NAVIGATORS, spec, where=where)
+    if NAVIGATORS.is_local(name):
+        raise UsageError(
+            f"{where + ': ' if where else ''}An isolated navigator must be installed, or named as"
+            f" module:Class. Got {name!r} instead, which is registered in this process alone."
+        )
+    fence.require_fence()
+    process = Process(HOST)
+    try:
+        asked = {"where": where, "sensings": [asdict(sensing) for sensing in sensings]}
+        return say_hello(process, {**_hello(spec), **asked})
+    except NavigatorError as error:
+        raise BrokenPluginError(f"The navigator {name!r} cannot be used: {error}.") from None
+    finally:
+        process.stop()
+
+
+def _hello(spec: Spec) -> dict[str, Any]:
+    told = spec if isinstance(spec, str) else dict(spec)
+    return {"navigator": told, "path": python_path()}

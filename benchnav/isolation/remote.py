@@ -1,0 +1,167 @@
+"""A navigator that lives in a process of its own: the runner's end of the pipe."""
+
+import json
+import sys
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.errors import MissingExtraError, NavigatorError, named
+from benchnav.isolation.process import Process
+from benchnav.isolation.seen import seen
+from benchnav.isolation.told import told
+from benchnav.navigation.answer import CallFailed
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.configure import Spec
+from benchnav.navigation.introduction import Introduction
+from benchnav.navigation.map import Map
+from benchnav.navigation.navigator import Navigator, Need, Training
+from benchnav.navigation.observation import Observation
+
+PROTOCOL = 1  # version of the messages
+STARTING = 120.0  # [s] that a process may take to say who it is
+_ANSWERS = {"hello": "ready", "reset": "done", "act": "command", "remarks": "remarks"}
+_NO_MAP_YET: Any = object()
+
+
+class Remote(Navigator):
+    """Sends what a navigator is told and sees, and hands on what it answers.
+
+    Its process is started when something of it must be known, and ends with it.
+    """
+
+    def __init__(self, config: Any = None) -> None:
+        super().__init__(config)
+        self._maps: dict[int, Map | None] = {}  # by row, as its process knows it
+
+    @abstractmethod
+    def start(self) -> Process:
+        """Its process."""
+
+    @property
+    @abstractmethod
+    def hello(self) -> Mapping[str, Any]:
+        """What its process is told first."""
+
+    @abstractmethod
+    def patience(self, agents: int) -> float:
+        """[s] that a call may take in which so many agents are told or shown."""
+
+    @cached_property
+    def process(self) -> Process:
+        """What answers."""
+        return self.start()
+
+    @cached_property
+    def said(self) -> Introduction:
+        """What it says of itself. Raises NavigatorError where it cannot be started."""
+        return say_hello(self.process, self.hello)
+
+    @property
+    def required(self) -> frozenset[Need]:
+        return self.said.needs
+
+    @property
+    def command(self) -> Any:  # type: ignore[override] # declared for a class, said by each
+        """What it answers."""
+        return self.said.command
+
+    @property
+    def reproducible(self) -> bool:
+        return self.said.reproducible
+
+    @property
+    def training(self) -> Training | None:
+        return self.said.training
+
+    @property
+    def rehearsal(self) -> int:
+        return self.said.rehearsal
+
+    @property
+    def leader(self) -> Spec | None:
+        return self.said.leader
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        self._ask("reset", told(briefings, rows), sum(map(len, briefings)))
+        for row, briefing in zip(rows.tolist(), briefings, strict=True):
+            self._maps[row] = briefing.map
+
+    def act(self, observation: Observation) -> FloatArray:
+        rows = observation.rows.tolist()
+        changed = [
+            b for b, map in enumerate(observation.maps)
+            if self._maps.get(rows[b], _NO_MAP_YET) is not map
+        ]  # fmt: skip
+        fields = self._ask("act", seen(observation, changed), observation.active.size)
+        self._maps.update((rows[b], observation.maps[b]) for b in changed)
+        command: FloatArray = fields["command"]
+        return command
+
+    def remarks(self, row: int) -> Sequence[str]:
+        if not self.process.alive or not self.said.remarks:
+            return ()
+        return [str(text) for text in json.loads(self._ask("remarks", {"row": row}, 1)["says"])]
+
+    def _ask(self, kind: str, fields: Mapping[str, Any], agents: int) -> dict[str, Any]:
+        try:
+            _ = self.said
+            return ask(self.process, kind, fields, self.patience(agents))
+        except NavigatorError as error:
+            raise CallFailed(f"{kind}: {error}") from None
+
+
+def say_hello(process: Process, hello: Mapping[str, Any]) -> Introduction:
+    """What the navigator in ``process`` says of itself.
+
+    Raises NavigatorError where it dies or answers anything else, and what it refuses to be
+    made for.
+    """
+    says = json.dumps({"protocol": PROTOCOL, **hello})
+    answer = ask(process, "hello", {"says": says}, STARTING)["says"]
+    try:
+        return Introduction.model_validate_json(answer)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, first["loc"])) or "its answer"
+        raise NavigatorError(
+            f"its process must introduce itself by what docs/isolation.md lists: {key}:"
+            f" {first['msg']}. Got {str(answer)[:200]!r} instead"
+        ) from None
+
+
+def ask(process: Process, kind: str, fields: Mapping[str, Any], patience: float) -> dict[str, Any]:
+    """The fields of the answer to a message.
+
+    Raises:
+        NavigatorError: it dies, takes longer than ``patience`` [s], or answers garbage.
+        CallFailed: it says that it failed.
+        BenchnavError: it refuses to be made, or what it needs is not installed.
+    """
+    got, answer = process.ask(kind, fields, patience)
+    if got == "failed" and isinstance(answer.get("reason"), str):
+        if answer.get("error") and (kind == "hello" or answer["error"] == _LACKING):
+            raise named(answer["error"], answer["reason"])
+        if kind == "hello":
+            raise NavigatorError(answer["reason"])
+        raise CallFailed(answer["reason"], answer.get("suspects"))
+    wanted = _ANSWERS[kind]
+    field = {"ready": "says", "command": "command", "remarks": "says"}.get(wanted)
+    if got != wanted or (field is not None and field not in answer):
+        process.stop()
+        told = f" without {field!r}" if got == wanted else ""
+        raise NavigatorError(f"its process must answer {wanted!r}. Got {got!r}{told} instead")
+    return answer
+
+
+_LACKING = MissingExtraError.__name__
+
+
+def python_path() -> list[str]:
+    """Where this process imports from, by paths that hold in any folder."""
+    return [str(Path(entry).resolve()) for entry in sys.path]
