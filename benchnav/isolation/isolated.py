@@ -16,7 +16,6 @@ from benchnav.navigation.introduction import Introduction
 from benchnav.plugins import NAVIGATORS
 
 HOST = (sys.executable, "-P", "-m", "benchnav.isolation.host")
-PER_CALL, PER_AGENT = 60.0, 10.0  # [s] until it counts as hung: planners may take their time
 
 
 class Isolated(Remote):
@@ -34,9 +33,6 @@ class Isolated(Remote):
     @property
     def hello(self) -> Mapping[str, Any]:
         return _hello(self._spec)
-
-    def patience(self, agents: int) -> float:
-        return PER_CALL + PER_AGENT * agents
 
 
 def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "") -> Introduction:

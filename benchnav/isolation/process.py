@@ -1,6 +1,7 @@
 """A navigator's process: started behind the fence, asked by frames, ended for good."""
 
 import contextlib
+import math
 import os
 import selectors
 import shutil
@@ -68,7 +69,8 @@ class Process:
             pipes.register(self._out, selectors.EVENT_READ)
             pipes.register(self._err, selectors.EVENT_READ)
             while size is None or len(received) < size:
-                ready = pipes.select(max(deadline - monotonic(), 0.0))
+                left = max(deadline - monotonic(), 0.0)
+                ready = pipes.select(None if math.isinf(left) else left)
                 if not ready and monotonic() >= deadline:
                     self._fail(f"did not answer within {patience:g} s")
                 for key, _ in ready:

@@ -31,7 +31,9 @@ class Program(Remote):
             min_length=1, description="the program and its arguments: [./my_navigator, --fast]"
         )
         config: dict[str, Any] = Field({}, description="what the program is told in `hello`")
-        patience: float = Field(60.0, gt=0, description="[s] for a call, until it counts as hung")
+        patience: float | None = Field(
+            None, gt=0, description="[s] for a call, until it counts as hung; none: as the run says"
+        )
 
         @field_validator("command")
         @classmethod
@@ -50,9 +52,10 @@ class Program(Remote):
     def hello(self) -> Mapping[str, Any]:
         return {"config": self.config.config}
 
-    def patience(self, agents: int) -> float:
-        patience: float = self.config.patience
-        return patience
+    @property
+    def patience(self) -> float:
+        asked: float | None = self.config.patience
+        return super().patience if asked is None else asked
 
     @property
     def fingerprint(self) -> str:

@@ -1,6 +1,7 @@
 """A navigator that lives in a process of its own: the runner's end of the pipe."""
 
 import json
+import math
 import sys
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
@@ -48,9 +49,10 @@ class Remote(Navigator):
     def hello(self) -> Mapping[str, Any]:
         """What its process is told first."""
 
-    @abstractmethod
-    def patience(self, agents: int) -> float:
-        """[s] that a call may take in which so many agents are told or shown."""
+    @property
+    def patience(self) -> float:
+        """[s] that a call may take; whoever runs it may stop it before."""
+        return math.inf
 
     @cached_property
     def process(self) -> Process:
@@ -88,7 +90,7 @@ class Remote(Navigator):
         return self.said.leader
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
-        self._ask("reset", told(briefings, rows), sum(map(len, briefings)))
+        self._ask("reset", told(briefings, rows))
         for row, briefing in zip(rows.tolist(), briefings, strict=True):
             self._maps[row] = briefing.map
 
@@ -98,7 +100,7 @@ class Remote(Navigator):
             b for b, map in enumerate(observation.maps)
             if self._maps.get(rows[b], _NO_MAP_YET) is not map
         ]  # fmt: skip
-        fields = self._ask("act", seen(observation, changed), observation.active.size)
+        fields = self._ask("act", seen(observation, changed))
         self._maps.update((rows[b], observation.maps[b]) for b in changed)
         command: FloatArray = fields["command"]
         return command
@@ -106,12 +108,12 @@ class Remote(Navigator):
     def remarks(self, row: int) -> Sequence[str]:
         if not self.process.alive or not self.said.remarks:
             return ()
-        return [str(text) for text in json.loads(self._ask("remarks", {"row": row}, 1)["says"])]
+        return [str(text) for text in json.loads(self._ask("remarks", {"row": row})["says"])]
 
-    def _ask(self, kind: str, fields: Mapping[str, Any], agents: int) -> dict[str, Any]:
+    def _ask(self, kind: str, fields: Mapping[str, Any]) -> dict[str, Any]:
         try:
             _ = self.said
-            return ask(self.process, kind, fields, self.patience(agents))
+            return ask(self.process, kind, fields, self.patience)
         except NavigatorError as error:
             raise CallFailed(f"{kind}: {error}") from None
 

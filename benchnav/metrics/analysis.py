@@ -6,7 +6,6 @@ kept as long as the episode lives, and nothing in it may be written to.
 
 from dataclasses import dataclass
 from functools import cached_property
-from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -98,12 +97,12 @@ class Analysis:
         return encounters(self.trajectories, self.world.agents.radius, things)
 
 
-_KEPT: WeakKeyDictionary[Episode, Analysis] = WeakKeyDictionary()
+_KEPT = "_analysis"  # among an episode's own: a table here would show episodes to navigators
 
 
 def analyse(episode: Episode) -> Analysis:
     """The analysis of an episode: the same object every time."""
-    found = _KEPT.get(episode)
+    found: Analysis | None = vars(episode).get(_KEPT)
     if found is None:
         final = episode.status[-1]
         failed = (episode.status == int(Status.FAILED)).any(axis=0)
@@ -122,5 +121,5 @@ def analyse(episode: Episode) -> Analysis:
             contacts=episode.contacts,
             decision=episode.timings.decision,
         )
-        _KEPT[episode] = found
+        vars(episode)[_KEPT] = found
     return found

@@ -20,6 +20,7 @@ from benchnav.navigation.rehearsal import Rehearsal
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.driver import Driver
 from benchnav.runner.generators import generator, place
+from benchnav.runner.guard import Guard
 from benchnav.runner.recorder import Recorder
 from benchnav.runner.watch import calling
 from benchnav.world.simulation import Simulation
@@ -189,8 +190,10 @@ def drivers_of(
     ``rehearsals`` (B,) are what the first is told of, none where there are none. Raises
     CallFailed where one cannot be made.
     """
-    chosen = _made(assignment.navigator, "", assignment.cell if assignment.isolated else ())
-    drivers = [Driver(chosen, simulation, 0, assignment.track, rehearsals=rehearsals)]
+    cell = assignment.cell if assignment.isolated else ()
+    guard = None if cell else Guard()  # before anything of it is imported
+    chosen, track = _made(assignment.navigator, "", cell), assignment.track
+    drivers = [Driver(chosen, simulation, 0, track, rehearsals=rehearsals, guard=guard)]
     for which, spec in enumerate(assignment.background, start=1):
         blame = f"the scenario's background navigator {split(NAVIGATORS, spec)[0]!r}: "
         drivers.append(Driver(_made(spec, blame), simulation, which, "known", blame))

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -70,24 +71,38 @@ class Prepared:
         return Barrier(discs, np.arange(len(discs) + 1), np.zeros(len(discs), np.bool_))
 
 
-_PREPARED: dict[tuple[str, Path], Prepared] = {}
+@dataclass(frozen=True, eq=False)
+class _Asked:
+    """A scenario, the same as another where both draw the same."""
+
+    scenario: Scenario
+
+    @property
+    def key(self) -> tuple[str, Path]:
+        return self.scenario.hash, self.scenario.folder
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Asked) and self.key == other.key
+
+    def __hash__(self) -> int:
+        return hash(self.key)
 
 
 def prepare(scenario: Scenario) -> Prepared:
     """What the draws of ``scenario`` share; kept for the scenarios used last."""
-    key = (scenario.hash, scenario.folder)
-    known = _PREPARED.get(key)
-    if known is None:
-        while len(_PREPARED) >= _KEPT:
-            _PREPARED.pop(next(iter(_PREPARED)))
-        known = _PREPARED[key] = Prepared(
-            scenario,
-            scenario.layout is None and all(wall.fixed for wall in scenario.walls),
-            all(group.fixed for group in scenario.static),
-            _clearance(scenario),
-            np.vstack([fixed_places(team, scenario.bounds) for team in scenario.teams]),
-        )
-    return known
+    return _prepared(_Asked(scenario))
+
+
+@lru_cache(maxsize=_KEPT)  # not a table of this module, which a navigator could look into
+def _prepared(asked: _Asked) -> Prepared:
+    scenario = asked.scenario
+    return Prepared(
+        scenario,
+        scenario.layout is None and all(wall.fixed for wall in scenario.walls),
+        all(group.fixed for group in scenario.static),
+        _clearance(scenario),
+        np.vstack([fixed_places(team, scenario.bounds) for team in scenario.teams]),
+    )
 
 
 def _clearance(scenario: Scenario) -> float:
