@@ -18,6 +18,7 @@ from benchnav.metrics.measure import all_metrics
 from benchnav.metrics.metric import Metric
 from benchnav.metrics.success import SUCCESS
 from benchnav.scenario.parameters import joined_parameters, split_parameters
+from benchnav.store.manifest import IN_PROCESS
 from benchnav.store.reading import read_episodes_in_every_track, read_results
 from benchnav.store.run_folder import RunFolder
 
@@ -41,7 +42,8 @@ def table(
     missing = [gap for folder in folders for gap in _not_applicable(folder)]
     learned = {label: cost for folder in folders for label, cost in _training(folder)}
     mapless = {label for folder in folders for label in _mapless(folder)}
-    made = leaderboard(results, metrics, missing, learned, verified, mapless)
+    modes = {label: mode for folder in folders for label, mode in _modes(folder)}
+    made = leaderboard(results, metrics, missing, learned, verified, mapless, modes)
     return render(made, format, shown if metric or format in TIDY else None)
 
 
@@ -162,6 +164,12 @@ def _mapless(folder: RunFolder) -> Iterator[str]:
     for entry in folder.manifest.suite.get("navigators", ()):
         if entry.get("uses_map") is False:
             yield entry["label"]
+
+
+def _modes(folder: RunFolder) -> Iterator[tuple[str, str]]:
+    """(label, mode) of every navigator."""
+    for entry in folder.manifest.suite.get("navigators", ()):
+        yield entry["label"], entry.get("mode", IN_PROCESS)
 
 
 def _not_applicable(folder: RunFolder) -> Iterator[NotApplicable]:

@@ -119,6 +119,7 @@ class _Table:
         self.rehearsed = records[0].rehearsal
         self.verified = any(r.verified for r in records)
         self.chapter = f"Track {records[0].track}"
+        self.moded = any(r.mode for r in records)
 
     def sections(self, title: str) -> Iterator[Section]:
         """A row for each navigator, or for each metric where those are many."""
@@ -142,6 +143,9 @@ class _Table:
             if self.rehearsed:
                 spent = (rehearsal(self.at[name, self.leading]) for name in block)
                 rows.insert(0, (Cell("rehearsal"), *spent))
+            if self.moded:
+                modes = (Cell(self.at[name, self.leading].mode) for name in block)
+                rows.insert(0, (Cell("mode"), *modes))
             rows.insert(0, (Cell(f"rank ({self.leading})"), *ranks))
             yield Section(
                 self.chapter, title, (Cell("metric"), *names), tuple(rows), self._notes(block)
@@ -149,6 +153,8 @@ class _Table:
 
     def _headings(self) -> Iterator[Cell]:
         yield from (Cell("navigator"), Cell("rank"))
+        if self.moded:
+            yield Cell("mode")  # in the runner's process, or in one of its own
         for metric in self.metrics:
             yield heading(self._any(metric))
             if self.middle and metric == self.leading:
@@ -162,7 +168,7 @@ class _Table:
 
     def _navigator(self, name: str) -> tuple[Cell, ...]:
         leader = self.at[name, self.leading]
-        row = [entrant(leader), rank(leader)]
+        row = [entrant(leader), rank(leader), *([Cell(leader.mode)] if self.moded else [])]
         if not leader.episodes:
             extra = bool(self.middle) + self.learned + bool(self.rehearsed) + self.verified
             blank = [Cell("")] * (len(self.metrics) - 1 + extra)

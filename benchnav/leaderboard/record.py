@@ -55,6 +55,7 @@ class Record:
     rehearsal: int = 0  # rehearsals of each world that the navigator was granted
     rehearsal_decisions: float = math.nan  # in them, mean over worlds; NaN without a grant
     rehearsal_seconds: float = math.nan  # of the navigator that led, mean over worlds
+    mode: str = ""  # "in-process" or "isolated"; "" where the runs are not known
     fault: str = ""  # where and how the metric failed; "" if it did not
     verified: bool = False  # its runs were verified here, and it is no timing
 

@@ -47,6 +47,7 @@ def leaderboard(
     training: Mapping[str, tuple[float, float]] = {},
     verified: Collection[str] = (),
     mapless: Collection[str] = (),
+    modes: Mapping[str, str] = {},
 ) -> Leaderboard:
     """Every navigator × scenario × track × role × metric, with interval and rank.
 
@@ -57,7 +58,7 @@ def leaderboard(
     were not run. ``training`` maps labels to the decisions and seconds of their training;
     ``verified`` are the labels whose runs were verified here, ``mapless`` those of navigators that
     use no map. Where there are the tracks known and unknown, the paired difference between them
-    is a record too, in the place of a track.
+    is a record too, in the place of a track. ``modes`` maps labels to the mode in which they ran.
     Raises UsageError where one label stands for two navigators, or has two
     values in one world.
     """
@@ -73,6 +74,7 @@ def leaderboard(
     failed = faults(results)
     records = [with_fault(_with_training(record, training), failed) for record in records]
     records = [replace(r, verified=_is_verified(r, verified, metrics)) for r in records]
+    records = [replace(record, mode=modes.get(record.navigator, "")) for record in records]
     order = {name: place for place, name in enumerate(metrics)}
     names = sorted(
         {r.metric for r in records}, key=lambda name: (order.get(name, len(order)), name)

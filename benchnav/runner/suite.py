@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import (
@@ -30,12 +30,9 @@ from benchnav.scenario.catalogue import find
 from benchnav.scenario.sampler import support
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
+from benchnav.store.manifest import IN_PROCESS, ISOLATED, Mode
 from benchnav.store.scenario_files import sha256_of
 from benchnav.world.build import sensing_of
-
-Mode = Literal["in-process", "isolated"]
-IN_PROCESS: Mode = "in-process"
-ISOLATED: Mode = "isolated"  # in a process of its own that is told what messages say
 
 
 @dataclass(frozen=True)
@@ -379,8 +376,9 @@ class _Meeting:
 def _resolved(entry: Entry) -> dict[str, Any]:
     said: dict[str, Any] = {
         "label": entry.label, "says": dict(entry.spec), "source": entry.source,
-        "mode": entry.mode,
     }  # fmt: skip
+    if entry.mode != IN_PROCESS:
+        said["mode"] = entry.mode
     if entry.leader:
         said["rehearsal"], said["leader"] = entry.rehearsal, _resolved(entry.leader)
     if entry.training:

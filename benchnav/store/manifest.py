@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass, field, fields
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from benchnav.errors import CorruptPartError, StoreError
 
@@ -19,6 +19,10 @@ DIGESTED = 3  # schema from which on a manifest holds a digest of all that it sa
 _KEY = re.compile(r"[A-Za-z0-9@_-][A-Za-z0-9@._-]{0,250}")  # of a cell: the name of its folder
 _OF_A_CELL = ("key", "scenario", "track", "navigator", "reason")
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
+
+Mode = Literal["in-process", "isolated"]  # of a navigator; what a manifest says of it
+IN_PROCESS: Mode = "in-process"  # also where nothing is said
+ISOLATED: Mode = "isolated"  # in a process of its own that is told what messages say
 
 
 @dataclass(frozen=True)

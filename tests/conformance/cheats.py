@@ -362,18 +362,12 @@ class MemoryConfig(PluginConfig):
 
 
 class Memory(Cheat):
-    """The memory of every process that it can see: the y that stands behind the known x."""
+    """The memory of its process and of whoever started it: the y that follows the known x."""
 
     Config = MemoryConfig
 
     def peek(self, observation):
-        pids = sorted(int(p.name) for p in Path("/proc").iterdir() if p.name.isdigit())
-        parents = [os.getpid(), os.getppid()]
-        for pid in parents + [p for p in pids if p not in parents][-30:]:
-            found = self.in_memory(pid)
-            if found:
-                return found
-        return None
+        return next(filter(None, map(self.in_memory, (os.getpid(), os.getppid()))), None)
 
     def in_memory(self, pid):
         x = struct.pack("<d", float.fromhex(self.config.x))
@@ -399,14 +393,15 @@ class Memory(Cheat):
         return None
 
 
+PTRACE_SEIZE = 0x4206  # which does not stop whom it traces
+
+
 class Tracer(Memory):
     """The same by tracing whoever started it, as a debugger does."""
 
     def in_memory(self, pid):
-        libc = ctypes.CDLL(None, use_errno=True)
-        if pid == os.getpid() or libc.ptrace(16, pid, 0, 0) != 0:
+        if pid == os.getpid() or ctypes.CDLL(None).ptrace(PTRACE_SEIZE, pid, 0, 0) != 0:
             return None
-        libc.ptrace(17, pid, 0, 0)
         return "traced it"
 
 

@@ -16,8 +16,10 @@ from benchnav.runner import rollout
 from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.rehearsal import perform
 from benchnav.runner.rollout import Assignment
+from benchnav.runner.run import run_suite
 from benchnav.runner.suite import Selection, load_suite
 from benchnav.scenario.catalogue import find
+from benchnav.store.reading import read_episodes
 from benchnav.world.build import build
 
 
@@ -110,17 +112,22 @@ def test_who_takes_the_process_along_is_charged_with_the_cause(play, in_the_east
     assert len({e.failure for e in episodes.values()}) == 2
 
 
-def test_who_hangs_is_charged_with_the_cause(play, in_the_east, troubled, monkeypatch):
-    (troubled / "hanging.py").write_text(
-        "import time\nfrom troubled_navigators import Walk\n\n\n"
-        "class Hangs(Walk):\n    def fail(self, command, b):\n        time.sleep(99)\n"
+def test_who_hangs_is_charged_and_the_run_goes_on(scenario_file, troubled, tmp_path, in_the_east):
+    path = tmp_path / "suite.yaml"
+    path.write_text(
+        f"name: small\nscenarios: [{scenario_file}]\nseeds: '3:5'\nnavigators:\n"
+        "  - {type: 'troubled_navigators:Sleeps', label: sleeps}\n"
+        "  - {type: 'troubled_navigators:Walk', label: walk}\n"
     )
-    monkeypatch.setattr(isolated, "PER_CALL", 0.7)
-    monkeypatch.setattr(isolated, "PER_AGENT", 0.0)
-    episodes = play("hanging:Hangs", isolated=True)
-    for episode in episodes.values():
-        cause = "act: its process did not answer within 0.7 s at t = 0.6 s"
-        assert episode.failure == (cause if in_the_east(episode) else "")
+    out = tmp_path / "run"
+    run_suite(load_suite(str(path), Selection(isolate=True)), out, workers=1, timeout=3.0)
+    episodes = [*read_episodes(out)]
+    assert len(episodes) == 4
+    for episode in episodes:
+        guilty = episode.identity.navigator == "sleeps" and in_the_east(episode)
+        cause = "the navigator's process did not return from act at t = 0.6 s within 3 s"
+        assert episode.failure == (cause if guilty else "")
+    assert sum(bool(e.failure) for e in episodes) == 1
 
 
 def test_what_is_not_installed_is_no_failure(play):
