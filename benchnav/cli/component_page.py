@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benchnav.cli.listing import REGISTRIES, Kind, sentence
-from benchnav.cli.parameters import needs, parameters
+from benchnav.cli.parameters import SAID_ONCE_MADE, needs, parameters
 from benchnav.plugins import Registry
 
 KINDS = (Kind.NAVIGATORS, Kind.PLANNERS, Kind.CONTROLLERS)
@@ -50,7 +50,9 @@ def _page(registry: Registry, name: str) -> Iterator[str]:
     yield from _background(thing)
     facts = [f"Comes from `{registry.source(name).value}`."]
     if registry.kind != "planner":
-        facts.append(f"Needs {needs(registry, name)}; answers a {thing.command} per agent.")
+        needed = needs(registry, name)
+        kind = "command" if needed == SAID_ONCE_MADE else thing.command
+        facts.append(f"Needs {needed}; answers a {kind} per agent.")
     yield " ".join(facts)
     rows = parameters(thing)
     if rows:

@@ -7,6 +7,7 @@ from benchnav.errors import BenchnavError
 from benchnav.plugins import Registry
 
 WIDEST = 40  # characters of a type
+SAID_ONCE_MADE = "what it says once it is made"
 
 
 def parameters(plugin: Any) -> list[tuple[str, str, str, str]]:
@@ -21,6 +22,9 @@ def needs(registry: Registry, name: str) -> str:
     """What it needs as it is made without parameters."""
     from benchnav.navigation.configure import make
 
+    declared = registry.load(name).Config.model_fields.values()
+    if any(field.is_required() for field in declared):
+        return SAID_ONCE_MADE
     try:
         required = make(registry, name).required
     except BenchnavError as error:

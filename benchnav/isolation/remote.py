@@ -62,16 +62,17 @@ class Remote(Navigator):
     @cached_property
     def said(self) -> Introduction:
         """What it says of itself. Raises NavigatorError where it cannot be started."""
-        return say_hello(self.process, self.hello)
+        said = say_hello(self.process, self.hello)
+        vars(self)["command"] = said.command  # declared for the class, known here
+        return said
 
     @property
     def required(self) -> frozenset[Need]:
         return self.said.needs
 
     @property
-    def command(self) -> Any:  # type: ignore[override] # declared for a class, said by each
-        """What it answers."""
-        return self.said.command
+    def uses_map(self) -> bool:
+        return self.said.uses_map
 
     @property
     def reproducible(self) -> bool:

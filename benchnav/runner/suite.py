@@ -3,26 +3,20 @@
 import hashlib
 import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from benchnav.arena.sensing import Sensing
 from benchnav.errors import (
-    BrokenPluginError,
-    NavigatorError,
     ScenarioError,
     UsageError,
     did_you_mean,
 )
-from benchnav.isolation import isolated
-from benchnav.isolation.program import PROCESS
-from benchnav.navigation.configure import Spec, split
-from benchnav.navigation.introduction import Introduction, introduction
-from benchnav.navigation.navigator import Need, Training
+from benchnav.navigation.configure import Spec
+from benchnav.navigation.navigator import Need
 from benchnav.navigation.tracks import TRACKS
-from benchnav.plugins import NAVIGATORS
+from benchnav.runner.entry import Entry, Meeting, label_of, resolved
 from benchnav.runner.generators import check_salt
 from benchnav.runner.rollout import Assignment
 from benchnav.runner.suite_file import SuiteFile, parse_seeds, suite_path
@@ -30,36 +24,9 @@ from benchnav.scenario.catalogue import find
 from benchnav.scenario.sampler import support
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
-from benchnav.store.manifest import IN_PROCESS, ISOLATED, Mode
+from benchnav.store.manifest import ISOLATED
 from benchnav.store.scenario_files import sha256_of
 from benchnav.world.build import sensing_of
-
-
-@dataclass(frozen=True)
-class Entry:
-    """A navigator of a suite."""
-
-    label: str
-    spec: Mapping[str, Any]  # {type: name, …every parameter}
-    source: str  # distributions and versions that it and its parts come from
-    required: frozenset[Need]
-    lacks: str = ""  # what is not installed that it needs to be made; "" if it can be
-    training: Training | None = None
-    fingerprint: str = ""  # of the files that it reads
-    rehearsal: int = 0  # rehearsals before each episode
-    leader: "Entry | None" = None  # who drives the leaders in them
-    uses_map: bool = True
-    unfit: Mapping[Sensing, str] = field(default_factory=dict)  # why it cannot sense so; "" if so
-    mode: Mode = IN_PROCESS
-
-    @property
-    def hash(self) -> str:
-        """Of all that the label stands for: type, every parameter, source, version, files."""
-        files = [self.fingerprint] if self.fingerprint else []
-        led = [self.leader.hash] if self.leader else []
-        mode = [] if self.mode == IN_PROCESS else [self.mode]
-        said = json.dumps([dict(self.spec), self.source, *files, *led, *mode], sort_keys=True)
-        return hashlib.sha256(said.encode()).hexdigest()[:16]
 
 
 @dataclass(frozen=True)
@@ -229,7 +196,7 @@ class Suite:
                 for s in self.scenarios
             ],
             "tracks": list(self.tracks),
-            "navigators": [_resolved(entry) for entry in self.entries],
+            "navigators": [resolved(entry) for entry in self.entries],
             **({"blocks": [asdict(block) for block in self.blocks]} if self.blocks else {}),
         }
 
@@ -250,7 +217,7 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
         scenarios = tuple(find(name) for name in selection.scenarios)
     else:
         scenarios = tuple(find(name, path.parent) for name in said.scenarios)
-    meeting = _Meeting(tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate)
+    meeting = Meeting(tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate)
     entries = tuple(
         meeting.entry(spec, "--navigator" if i is None else document.where(("navigators", i)))
         for i, spec in wanted
@@ -269,7 +236,7 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
 def _blocks(said: SuiteFile, suite: Suite, path: Path) -> tuple[Block, ...]:
     """The file's blocks; what was selected and is not in the file belongs to each of them."""
     identities = {name: find(name, path.parent).identity for name in said.scenarios}
-    labels = tuple(_label(spec) for spec in said.navigators)
+    labels = tuple(label_of(spec) for spec in said.navigators)
     added = (
         tuple(s.identity for s in suite.scenarios if s.identity not in identities.values()),
         tuple(track for track in suite.tracks if track not in said.tracks),
@@ -304,7 +271,7 @@ def _known(chosen: tuple[str, ...] | None, own: tuple[str, ...], where: str) -> 
 
 def _wanted_navigators(said: SuiteFile, selected: Sequence[str]) -> list[tuple[int | None, Spec]]:
     """(place in the file or None, spec): labels select from the file, other names are added."""
-    own = {_label(spec): (i, spec) for i, spec in enumerate(said.navigators)}
+    own = {label_of(spec): (i, spec) for i, spec in enumerate(said.navigators)}
     if not selected:
         return [(i, spec) for i, spec in enumerate(said.navigators)]
     return [own.get(name, (None, _written(name))) for name in selected]
@@ -316,78 +283,6 @@ def _written(text: str) -> Spec:
         return text
     data: Spec = read_yaml_text(text, "--navigator").data
     return data
-
-
-def _label(spec: Spec) -> str:
-    if isinstance(spec, str):
-        return spec
-    return str(spec.get("label", spec.get("type", "")))
-
-
-@dataclass(frozen=True)
-class _Meeting:
-    """Asks navigators who they are, each in a process of its own where they are isolated."""
-
-    sensings: tuple[Sensing, ...]
-    isolate: bool
-
-    def entry(self, spec: Spec, where: str) -> Entry:
-        """The entry that ``spec`` describes, as it stands at ``where``."""
-        label = _label(spec)
-        if not isinstance(spec, str):
-            spec = {key: value for key, value in spec.items() if key != "label"}
-            if not label.strip() or len(label) > 80:
-                raise ScenarioError(
-                    f"{where} label must have 1 to 80 characters; got {label[:90]!r}."
-                )
-        name, _ = split(NAVIGATORS, spec, where=where)
-        apart = self.isolate and name != PROCESS
-        ask = isolated.introduction if apart else introduction
-        try:
-            said = ask(spec, self.sensings, where=where)
-        except NavigatorError as error:
-            raise BrokenPluginError(
-                f"{where}: The navigator {label!r} cannot be used: {error}."
-            ) from None
-        led = self._leader(said, where)
-        alone = self.isolate or (name == PROCESS and (led is None or led.mode == ISOLATED))
-        return Entry(
-            label, said.spec, ", ".join(said.made_of), said.needs, said.lacks,
-            training=said.training or (led.training if led else None),
-            fingerprint=said.fingerprint, rehearsal=said.rehearsal, leader=led,
-            unfit=dict(zip(self.sensings, said.unfit, strict=False)),
-            uses_map=said.uses_map, mode=ISOLATED if alone else IN_PROCESS,
-        )  # fmt: skip
-
-    def _leader(self, said: Introduction, where: str) -> Entry | None:
-        """Who leads in the rehearsals that a navigator asks for; None where it asks for none."""
-        if not said.rehearsal:
-            return None
-        if said.leader is None:
-            raise ScenarioError(f"{where}: who asks for rehearsals must name who leads in them.")
-        led = self.entry(said.leader, f"{where} leader")
-        if led.rehearsal:
-            raise ScenarioError(
-                f"{where}: who leads in rehearsals must need none itself. Got {led.label!r}."
-            )
-        return led
-
-
-def _resolved(entry: Entry) -> dict[str, Any]:
-    said: dict[str, Any] = {
-        "label": entry.label, "says": dict(entry.spec), "source": entry.source,
-    }  # fmt: skip
-    if entry.mode != IN_PROCESS:
-        said["mode"] = entry.mode
-    if entry.leader:
-        said["rehearsal"], said["leader"] = entry.rehearsal, _resolved(entry.leader)
-    if entry.training:
-        said["training"] = asdict(entry.training)
-    if not entry.uses_map:
-        said["uses_map"] = False
-    if entry.fingerprint:
-        said["fingerprint"] = entry.fingerprint
-    return said
 
 
 def _seeds(text: str) -> range:

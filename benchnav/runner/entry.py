@@ -1,0 +1,118 @@
+"""The navigators of a suite: who they are, as they say themselves."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from benchnav.arena.sensing import Sensing
+from benchnav.errors import BrokenPluginError, NavigatorError, ScenarioError
+from benchnav.isolation import isolated
+from benchnav.isolation.program import PROCESS
+from benchnav.navigation.configure import Spec, split
+from benchnav.navigation.introduction import Introduction, introduction
+from benchnav.navigation.navigator import Need, Training
+from benchnav.plugins import NAVIGATORS
+from benchnav.store.manifest import IN_PROCESS, ISOLATED, Mode
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A navigator of a suite."""
+
+    label: str
+    spec: Mapping[str, Any]  # {type: name, …every parameter}
+    source: str  # distributions and versions that it and its parts come from
+    required: frozenset[Need]
+    lacks: str = ""  # what is not installed that it needs to be made; "" if it can be
+    training: Training | None = None
+    fingerprint: str = ""  # of the files that it reads
+    rehearsal: int = 0  # rehearsals before each episode
+    leader: "Entry | None" = None  # who drives the leaders in them
+    uses_map: bool = True
+    unfit: Mapping[Sensing, str] = field(default_factory=dict)  # why it cannot sense so; "" if so
+    mode: Mode = IN_PROCESS
+
+    @property
+    def hash(self) -> str:
+        """Of all that the label stands for: type, every parameter, source, version, files."""
+        files = [self.fingerprint] if self.fingerprint else []
+        led = [self.leader.hash] if self.leader else []
+        mode = [] if self.mode == IN_PROCESS else [self.mode]
+        said = json.dumps([dict(self.spec), self.source, *files, *led, *mode], sort_keys=True)
+        return hashlib.sha256(said.encode()).hexdigest()[:16]
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Asks navigators who they are, each in a process of its own where they are isolated."""
+
+    sensings: tuple[Sensing, ...]
+    isolate: bool
+
+    def entry(self, spec: Spec, where: str) -> Entry:
+        """The entry that ``spec`` describes, as it stands at ``where``."""
+        label = label_of(spec)
+        if not isinstance(spec, str):
+            spec = {key: value for key, value in spec.items() if key != "label"}
+            if not label.strip() or len(label) > 80:
+                raise ScenarioError(
+                    f"{where} label must have 1 to 80 characters; got {label[:90]!r}."
+                )
+        name, _ = split(NAVIGATORS, spec, where=where)
+        apart = self.isolate and name != PROCESS
+        ask = isolated.introduction if apart else introduction
+        try:
+            said = ask(spec, self.sensings, where=where)
+        except NavigatorError as error:
+            raise BrokenPluginError(
+                f"{where}: The navigator {label!r} cannot be used: {error}."
+            ) from None
+        led = self._leader(said, where)
+        alone = self.isolate or (name == PROCESS and (led is None or led.mode == ISOLATED))
+        return Entry(
+            label, said.spec, ", ".join(said.made_of), said.needs, said.lacks,
+            training=said.training or (led.training if led else None),
+            fingerprint=said.fingerprint, rehearsal=said.rehearsal, leader=led,
+            unfit=dict(zip(self.sensings, said.unfit, strict=False)),
+            uses_map=said.uses_map, mode=ISOLATED if alone else IN_PROCESS,
+        )  # fmt: skip
+
+    def _leader(self, said: Introduction, where: str) -> Entry | None:
+        """Who leads in the rehearsals that a navigator asks for; None where it asks for none."""
+        if not said.rehearsal:
+            return None
+        if said.leader is None:
+            raise ScenarioError(f"{where}: who asks for rehearsals must name who leads in them.")
+        led = self.entry(said.leader, f"{where} leader")
+        if led.rehearsal:
+            raise ScenarioError(
+                f"{where}: who leads in rehearsals must need none itself. Got {led.label!r}."
+            )
+        return led
+
+
+def label_of(spec: Spec) -> str:
+    """What tables call the navigator of ``spec``."""
+    if isinstance(spec, str):
+        return spec
+    return str(spec.get("label", spec.get("type", "")))
+
+
+def resolved(entry: Entry) -> dict[str, Any]:
+    """All that it stands for, for the manifest."""
+    said: dict[str, Any] = {
+        "label": entry.label, "says": dict(entry.spec), "source": entry.source,
+    }  # fmt: skip
+    if entry.mode != IN_PROCESS:
+        said["mode"] = entry.mode
+    if entry.leader:
+        said["rehearsal"], said["leader"] = entry.rehearsal, resolved(entry.leader)
+    if entry.training:
+        said["training"] = asdict(entry.training)
+    if not entry.uses_map:
+        said["uses_map"] = False
+    if entry.fingerprint:
+        said["fingerprint"] = entry.fingerprint
+    return said
