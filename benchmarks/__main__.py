@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks import end_to_end, leader_arena, orca_peers
+from benchmarks import end_to_end, isolation, leader_arena, orca_peers
 from benchnav.threads import thread_count
 
 PACKAGES = ("benchnav", "numpy", "numba", "shapely", "pyarrow")
@@ -19,7 +19,7 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="Markdown file that keeps the table")
     arguments = parser.parse_args()
     rows = crowd_rows(orca_peers.measure(arguments.peers))
-    rows += leader_arena.measure() + end_to_end.measure()
+    rows += leader_arena.measure() + end_to_end.measure() + isolation.measure()
     text = page(rows)
     print(text)
     if arguments.out:

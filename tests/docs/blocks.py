@@ -110,8 +110,10 @@ class Reader:
     def call(self, command):
         inherited = os.environ.get("PYTHONPATH", "")
         path = os.pathsep.join([*self.path, *([inherited] if inherited else [])])
+        programs = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
         done = subprocess.run(
-            command, cwd=self.folder, env={**os.environ, "PYTHONPATH": path, "COLUMNS": "140"},
+            command, cwd=self.folder,
+            env={**os.environ, "PYTHONPATH": path, "PATH": programs, "COLUMNS": "140"},
             capture_output=True, text=True, timeout=300, check=False,
         )  # fmt: skip
         assert done.returncode == 0, f"{shlex.join(command[2:])}\n{done.stdout}{done.stderr}"
