@@ -22,9 +22,10 @@ def needs(registry: Registry, name: str) -> str:
     """What it needs as it is made without parameters."""
     from benchnav.navigation.configure import make
 
-    declared = registry.load(name).Config.model_fields.values()
-    if any(field.is_required() for field in declared):
-        return SAID_ONCE_MADE
+    if name in registry.names():  # and not a pair
+        declared = registry.load(name).Config.model_fields.values()
+        if any(field.is_required() for field in declared):
+            return SAID_ONCE_MADE
     try:
         required = make(registry, name).required
     except BenchnavError as error:
