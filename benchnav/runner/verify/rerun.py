@@ -7,11 +7,15 @@ from typing import Any
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import BenchnavError
+from benchnav.isolation.program import PROCESS
+from benchnav.runner.entry import Entry, Meeting
 from benchnav.runner.rehearsal import Performance, perform
-from benchnav.runner.suite import Cell, Entry, entry_of
+from benchnav.runner.suite import Cell
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.part_check import Pair, PartCheck
+from benchnav.store.manifest import ISOLATED
 from benchnav.store.run_folder import RunFolder
+from benchnav.world.build import sensing_of
 
 _BY_MODULE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 _TOLD = ("act ", "reset ", "in rehearsal ", "the scenario's background ")  # raised or answered
@@ -21,7 +25,7 @@ def rerun(
     task: PartCheck, scored: Sequence[Pair], rehearsed: Sequence[Pair], packed: bool, report: Report
 ) -> None:
     """Report every episode that its navigator, run again, does not repeat to the last bit."""
-    entry, why = installed(task.cell.entry, packed)
+    entry, why = installed(task.cell.entry, packed, [task.cell])
     if entry is None:
         report.notes[f"episode not run again: {why}"] += len(scored)
         return
@@ -63,15 +67,21 @@ def _compare(
                 report.find("rerun", pair.where, text)
 
 
-def installed(entry: Entry, packed: bool) -> tuple[Entry | None, str]:
+def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry | None, str]:
     """(the same navigator as it is installed here, ""), or (None, why there is none).
 
-    Nothing that a stranger names by module is imported: only what is registered here.
+    Nothing that a stranger names by module is imported, and no program of theirs is started:
+    only what is registered here. ``cells`` have the sensors that it is asked about.
     """
+    if packed and _is_program(entry.spec):
+        return None, f"{entry.label} is a program, in somebody else's pack"
     if packed and _by_module(entry.spec):
         return None, f"{entry.label} is named by its module, in somebody else's pack"
+    sensings = tuple(dict.fromkeys(sensing_of(cell.scenario) for cell in cells))
+    meeting = Meeting(sensings, entry.mode == ISOLATED)
     try:
-        found = entry_of({**entry.spec, "label": entry.label}, f"the navigator {entry.label!r}")
+        spec, where = {**entry.spec, "label": entry.label}, f"the navigator {entry.label!r}"
+        found = meeting.entry(spec, where)
     except BenchnavError as error:
         return None, f"{entry.label} cannot be made here: {_short(str(error))}"
     if found.lacks:
@@ -79,6 +89,12 @@ def installed(entry: Entry, packed: bool) -> tuple[Entry | None, str]:
     if found.hash != entry.hash:
         return None, f"{entry.label} is another one here ({found.source} instead of {entry.source})"
     return found, ""
+
+
+def _is_program(said: Any) -> bool:
+    if isinstance(said, Mapping):
+        return _is_program(said.get("type")) or any(map(_is_program, said.values()))
+    return isinstance(said, str) and said == PROCESS
 
 
 def _by_module(said: Any) -> bool:
@@ -96,7 +112,7 @@ def check_reasons(run: RunFolder, cells: Sequence[Cell], report: Report) -> None
     for cell in cells:
         label = cell.entry.label
         if label not in entries:
-            entries[label] = installed(cell.entry, run.packed is not None)
+            entries[label] = installed(cell.entry, run.packed is not None, cells)
         entry, why = entries[label]
         stored = said.get(cell.key, "")
         if entry is None:

@@ -10,11 +10,13 @@ from pydantic import ValidationError
 
 from benchnav.errors import BenchnavError
 from benchnav.navigation.navigator import Training
-from benchnav.runner.suite import Block, Cell, Entry, Suite
+from benchnav.runner.entry import Entry
+from benchnav.runner.suite import Block, Cell, Suite
 from benchnav.runner.suite_file import MAX_SEEDS
 from benchnav.runner.verify.finding import Report
 from benchnav.scenario.parameters import split_parameters
 from benchnav.scenario.scenario import Scenario
+from benchnav.store.manifest import IN_PROCESS, ISOLATED
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.scenario_files import stage_files
 
@@ -102,6 +104,7 @@ def _entry(said: Mapping[str, Any]) -> Entry:
         training=training, fingerprint=str(said.get("fingerprint", "")),
         rehearsal=int(said.get("rehearsal", 0)), leader=led,
         uses_map=bool(said.get("uses_map", True)),
+        mode=ISOLATED if said.get("mode") == ISOLATED else IN_PROCESS,
     )  # fmt: skip
 
 

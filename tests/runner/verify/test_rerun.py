@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import shutil
+import sys
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -10,6 +11,8 @@ import pytest
 
 from benchnav.metrics.measure import all_metrics
 from benchnav.runner.measured import measured
+from benchnav.runner.run import run_suite
+from benchnav.runner.suite import Selection, load_suite
 from benchnav.runner.verify.resimulate import resimulate
 from benchnav.store.episodes import from_table, to_table
 from benchnav.store.pack import pack
@@ -92,3 +95,39 @@ def test_nothing_that_a_strangers_pack_names_by_module_is_imported(genuine, find
     assert kinds == set()
     assert report.counts["rerun"] == 3  # those of the navigator that is registered
     assert sum(n for note, n in report.notes.items() if "named by its module" in note) >= 9
+
+
+@pytest.fixture(scope="module")
+def apart(scenario, troubled, tmp_path_factory):
+    """A run of isolated navigators, and of a program that notes when it is started."""
+    folder = tmp_path_factory.mktemp("apart")
+    noting = f"open({str(folder / 'starts')!r}, 'a').write('.')"
+    host = "from benchnav.isolation.host import main; main()"
+    program = {
+        "type": "process", "label": "program",
+        "command": [sys.executable, "-c", f"{noting}; {host}", "straight-line"],
+    }  # fmt: skip
+    walk = {"type": "troubled_navigators:Walk", "label": "walk"}
+    suite = {
+        "name": "apart", "scenarios": [str(scenario.folder / "tiny.yaml")], "tracks": ["known"],
+        "navigators": [walk, program, "straight-line"], "seeds": 2,
+    }  # fmt: skip
+    (folder / "apart.yaml").write_text(json.dumps(suite))
+    loaded = load_suite(str(folder / "apart.yaml"), Selection(isolate=True))
+    run_suite(loaded, folder / "run", workers=0)
+    return folder
+
+
+def test_isolated_navigators_are_run_again_in_processes_of_their_own(apart, findings):
+    kinds, report = findings(apart / "run", rerun=True)
+    assert kinds == set()
+    assert (report.counts["rerun"], report.notes) == (6, {})
+
+
+def test_no_program_of_a_strangers_pack_is_started(apart, findings, tmp_path):
+    pack(RunFolder.open(apart / "run"), tmp_path / "theirs.bnrun")
+    before = (apart / "starts").read_text()
+    kinds, report = findings(tmp_path / "theirs.bnrun", rerun=True)
+    assert kinds == set()
+    assert (apart / "starts").read_text() == before
+    assert any("is a program, in somebody else's pack" in note for note in report.notes)
