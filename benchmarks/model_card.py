@@ -19,7 +19,7 @@ import numpy as np
 from benchnav.arena.solid import Kind
 from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.leaderboard.interval import effective_size, wilson
+from benchnav.leaderboard.interval import effective_size, mid_p
 from benchnav.metrics.smoothness import turning
 from benchnav.metrics.success import success, timeout
 from benchnav.navigation.configure import make
@@ -66,7 +66,7 @@ def measure(navigator: str, scenario: str, agents: int) -> Row:
     sizes = np.array([[float(len(part[0]))] for part in parts])
     every = [np.concatenate(column) for column in zip(*(part[:3] for part in parts), strict=True)]
     rate = np.array([every[0].mean()])
-    low, high = wilson(rate, effective_size(rates, sizes))
+    low, high = mid_p(rate, effective_size(rates, sizes))
     first = [kind for part in parts for kind in part[3]]
     return Row(
         scenario, len(parts), len(every[0]), float(rate[0]), float(low[0]), float(high[0]),

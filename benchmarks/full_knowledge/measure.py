@@ -9,7 +9,7 @@ import numpy as np
 from benchnav.arena.world import World
 from benchnav.arrays import ByteArray
 from benchnav.episode.episode import Status
-from benchnav.leaderboard.interval import effective_size, wilson
+from benchnav.leaderboard.interval import effective_size, mid_p
 from benchnav.scenario.catalogue import find
 from benchnav.world.build import build
 from benchnav.world.simulation import Simulation
@@ -107,7 +107,7 @@ def summary(scenario: str, split: str, outcomes: list[Outcome]) -> Summary:
     rates = np.array([[o.arrived / o.agents] for o in outcomes])
     total = int(agents.sum())
     success = sum(o.arrived for o in outcomes) / total
-    low, high = wilson(np.array([success]), effective_size(rates, agents))
+    low, high = mid_p(np.array([success]), effective_size(rates, agents))
     return Summary(
         scenario, split, len(outcomes), total, success, float(low[0]), float(high[0]),
         sum(o.collided for o in outcomes) / total,
