@@ -75,14 +75,13 @@ def _regenerates(m: Material) -> Finding:
 
 
 def _needs_map(m: Material) -> Finding:
-    mapper = (cast.STATIC, "unknown", cast.MAPPER)
+    mapper, blind = ((cast.STATIC, "unknown", who) for who in (cast.MAPPER, cast.BLIND))
     known = (cast.STATIC, "known", cast.PLANNER)
-    change = m.evidence.difference("arrival", mapper, known)
-    worse = change.sure and change.mean < 0
-    return PARTLY if not worse else CONFIRMED, (
-        f"`{cast.PLANNER}` is n/a without a map, but mapping what its own rays see `{cast.MAPPER}`"
-        f" arrives in {_percent(m, 'arrival', mapper)} of `{cast.STATIC}` against"
-        f" {_percent(m, 'arrival', known)} with the map"
+    gain = m.evidence.difference("arrival", mapper, blind)
+    return PARTLY if gain.sure and gain.mean > 0 else CONFIRMED, (
+        f"`{cast.PLANNER}` is n/a without a map, but one that maps what its own rays see,"
+        f" `{cast.MAPPER}`, arrives in {_percent(m, 'arrival', mapper)} of `{cast.STATIC}`, against"
+        f" {_percent(m, 'arrival', known)} with a map and {_percent(m, 'arrival', blind)} without plan"
     )
 
 
