@@ -81,7 +81,8 @@ def _needs_map(m: Material) -> Finding:
     return PARTLY if gain.sure and gain.mean > 0 else CONFIRMED, (
         f"`{cast.PLANNER}` is n/a without a map, but one that maps what its own rays see,"
         f" `{cast.MAPPER}`, arrives in {_percent(m, 'arrival', mapper)} of `{cast.STATIC}`, against"
-        f" {_percent(m, 'arrival', known)} with a map and {_percent(m, 'arrival', blind)} without plan"
+        f" {_percent(m, 'arrival', known)} with a map and {_percent(m, 'arrival', blind)} without"
+        " plan"
     )
 
 
