@@ -23,6 +23,10 @@ def verify(
             metavar="N", min=0, help="Episodes that the slow twin of the kernels replays as well."
         ),
     ] = 20,
+    referee: Annotated[
+        str | None,
+        typer.Option(help="Who judges every contact a second time: fcl."),
+    ] = None,
     rerun: Annotated[
         bool, typer.Option("--rerun", help="Run the navigators again where they are deterministic.")
     ] = False,
@@ -38,12 +42,15 @@ def verify(
     Draws its worlds again, re-simulates its commands, measures its metrics, and names every
     stored number that does not agree. Exit status 1 where there are any.
     """
+    from benchnav.errors import UsageError
     from benchnav.runner.progress import progress
     from benchnav.runner.verify.verify import Wanted
     from benchnav.runner.verify.verify import verify as check
     from benchnav.store.unpack import opened
 
-    wanted = Wanted(twin, rerun)
+    if referee not in (None, "fcl"):
+        raise UsageError(f"--referee must be fcl. Got {referee!r} instead.")
+    wanted = Wanted(twin, referee is not None, rerun)
     with opened(run) as folder:
         began = perf_counter()
         report = check(folder, wanted, workers=workers, progress=progress(quiet))

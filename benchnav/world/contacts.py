@@ -136,6 +136,7 @@ def _record(
     event = opened[free]
     event.code, event.start, event.closing = code, time, closing
     event.penetration, event.charged = 0.0, charged
+    event.x, event.y = a.x, a.y
     a.open = True
 
 
@@ -145,6 +146,7 @@ def _close(i: int, time: float, world: Any, event: Any, closed: AnyArray) -> Non
     row = closed[world.closed]
     row.agent, row.code, row.start, row.end = i, event.code, event.start, time
     row.penetration, row.closing, row.charged = event.penetration, event.closing, event.charged
+    row.x, row.y = event.x, event.y
     world.closed += 1
     event.code = -1
 

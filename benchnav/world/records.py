@@ -53,10 +53,12 @@ CAPSULE = _record(
 # a corner point of a motion law: position at a time
 KNOT = _record(t="f8", x="f8", y="f8")
 
-# an event that is going on (B, A, OPEN_CONTACTS; code -1: free) or over (B, N)
+# an event that is going on (B, A, OPEN_CONTACTS; code -1: free) or over (B, N); (x, y) is where
+# the agent was at the first touch
 CONTACT = _record(
-    code="i8", agent="i8", start="f8", end="f8", penetration="f8", closing="f8", charged="?"
-)
+    code="i8", agent="i8", start="f8", end="f8", penetration="f8", closing="f8", x="f8", y="f8",
+    charged="?",
+)  # fmt: skip
 
 
 def field(records: AnyArray, name: str, width: int = 1) -> AnyArray:

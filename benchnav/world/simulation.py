@@ -124,18 +124,27 @@ class Simulation:
 
     def contacts(self, b: int) -> Contacts:
         """The collision events of world b so far; open ones end now."""
+        rows = self._events(b)
+        kind, partner = partners(self.worlds[b], rows["code"])
+        return Contacts(
+            rows["agent"].copy(), kind, partner, rows["start"].copy(), rows["end"].copy(),
+            rows["penetration"].copy(), rows["closing"].copy(), rows["charged"].copy(),
+        )  # fmt: skip
+
+    def touched(self, b: int) -> FloatArray:
+        """(N, 2) [m] where the agents of `contacts` were when they first touched."""
+        return field(self._events(b), "x", 2).copy()
+
+    def _events(self, b: int) -> AnyArray:
+        """CONTACT records of world b, sorted as `Contacts` are."""
         self._drain(0)
         agent, slot = np.nonzero(self._opened["code"][b] >= 0)
         going_on = self._opened[b, agent, slot]
         going_on["agent"] = agent
         going_on["end"] = self.records["steps_done"][b] * self.records["dt"][b]
         rows = np.concatenate([*self._kept[b], going_on])
-        rows = rows[np.lexsort((rows["code"], rows["start"], rows["agent"]))]
-        kind, partner = partners(self.worlds[b], rows["code"])
-        return Contacts(
-            rows["agent"].copy(), kind, partner, rows["start"].copy(), rows["end"].copy(),
-            rows["penetration"].copy(), rows["closing"].copy(), rows["charged"].copy(),
-        )  # fmt: skip
+        ordered: AnyArray = rows[np.lexsort((rows["code"], rows["start"], rows["agent"]))]
+        return ordered
 
     def _drain(self, above: int) -> None:
         """Empty the kernels' event lists that hold more than ``above``."""

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.part_check import PartCheck, check_part
+from benchnav.runner.verify.referee import judge
 from benchnav.runner.verify.rerun import rerun
 from benchnav.runner.verify.twin_check import check_twin
 
@@ -14,6 +15,7 @@ class Examination:
 
     check: PartCheck
     twin: tuple[int, ...]  # seeds of the episodes that the slow twin replays
+    referee: bool
     rerun: bool
     packed: bool  # it came in a pack: from somebody else
 
@@ -24,6 +26,9 @@ def examine(task: Examination) -> Report:
     for pair in scored + rehearsed:
         if pair.stored.identity.seed in task.twin:
             check_twin(pair.again.world, pair.again, pair.where, report)
+    if task.referee:
+        for pair in scored + rehearsed:
+            judge(pair, report)
     if task.rerun:
         rerun(task.check, scored, rehearsed, task.packed, report)
     return report

@@ -19,6 +19,7 @@ KINDS = {  # what a finding is about → what must hold there
     "metric": "values are those measured on the re-simulated episode, within 1e-9",
     "timing": "timings are possible ones",
     "twin": "the slow twin of the kernels agrees",
+    "referee": "trimesh and python-fcl judge every contact alike",
     "rerun": "the navigators, run again, answer the same",
 }
 
@@ -82,6 +83,11 @@ class Report:
             lines.append(
                 f"{c['twin episodes']} episodes by the slow twin of the kernels:"
                 f" {c['twin decisions']} decisions, {c['twin events']} events"
+            )
+        if c["judged states"]:
+            lines.append(
+                f"{c['judged events']} events by trimesh and python-fcl, and"
+                f" {c['judged states']} states of agents for events that lack"
             )
         if c["rerun"]:
             lines.append(f"{c['rerun']} episodes by running their navigators again")

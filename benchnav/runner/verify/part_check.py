@@ -7,6 +7,7 @@ from itertools import groupby
 from typing import Any
 
 from benchnav.arena.world import World
+from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import BenchnavError, CorruptPartError
 from benchnav.runner.generators import phases
@@ -54,6 +55,7 @@ class Pair:
 
     stored: Episode
     again: Episode
+    touched: FloatArray  # (N, 2) [m] where the agent of each event was when it first touched
     where: str
 
 
@@ -120,7 +122,7 @@ def _again(task: PartCheck, episodes: Sequence[Episode], report: Report) -> list
             checked.append((world, episode))
     pairs = []
     for batch in _batches(checked):
-        for (_, stored), (again, wrong) in zip(batch, resimulate(batch), strict=True):
+        for (_, stored), (again, wrong, touched) in zip(batch, resimulate(batch), strict=True):
             place = _place(task, stored)
             if wrong:
                 report.find("state", place, wrong)
@@ -128,7 +130,7 @@ def _again(task: PartCheck, episodes: Sequence[Episode], report: Report) -> list
             check_commands(stored, again, place, report)
             probe = not stored.identity.rehearsal and stored.identity.seed == task.probe
             check_timings(stored, probe, place, report)
-            pairs.append(Pair(stored, again, place))
+            pairs.append(Pair(stored, again, touched, place))
     return pairs
 
 

@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
 from benchnav.arena.world import World
+from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.runner.recorder import Recorder
 from benchnav.world.simulation import Simulation
@@ -29,8 +31,16 @@ def unfit(world: World, episode: Episode) -> str:
     return ""
 
 
-def resimulate(pairs: Sequence[tuple[World, Episode]]) -> list[tuple[Episode, str]]:
-    """(the episode that the stored commands lead to, what is wrong with its length) of each.
+class Resimulated(NamedTuple):
+    """What stored commands lead to."""
+
+    episode: Episode
+    wrong: str  # with its length; "" if nothing is
+    touched: FloatArray  # (N, 2) [m] where the agent of each event was when it first touched
+
+
+def resimulate(pairs: Sequence[tuple[World, Episode]]) -> list[Resimulated]:
+    """What the stored commands of each pair lead to.
 
     All worlds share clock and rules, and no pair is `unfit`. What commands cannot tell,
     such as timings, is taken from what is stored.
@@ -69,7 +79,8 @@ def resimulate(pairs: Sequence[tuple[World, Episode]]) -> list[tuple[Episode, st
         )
         for new, old in zip(made, stored, strict=True)
     ]  # fmt: skip
-    return list(zip(again, wrong, strict=True))
+    touched = [simulation.touched(b) for b in range(simulation.B)]
+    return [Resimulated(*of) for of in zip(again, wrong, touched, strict=True)]
 
 
 def _end(simulation: Simulation, b: int, episode: Episode) -> str:

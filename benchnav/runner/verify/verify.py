@@ -16,6 +16,7 @@ from benchnav.runner.verify.coverage import covered
 from benchnav.runner.verify.examine import Examination, examine
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.part_check import PartCheck
+from benchnav.runner.verify.referee import require_referee
 from benchnav.runner.verify.rerun import check_reasons
 from benchnav.runner.verify.restored import restore
 from benchnav.runner.verify.sampled import sampled
@@ -31,6 +32,7 @@ class Wanted:
     """What to do beyond re-simulating."""
 
     twin: int = 20  # episodes to be replayed through the slow twin
+    referee: bool = False  # judge every contact again with trimesh and python-fcl
     rerun: bool = False  # run the navigators again
 
 
@@ -51,12 +53,15 @@ def verify(
 
     Raises:
         StoreError: an older benchnav made the run, which did not keep what this needs.
+        MissingExtraError: the referee is wanted, and python-fcl or trimesh is not installed.
     """
     if run.manifest.schema < VERIFIABLE:
         raise StoreError(
             f"A run must be of schema {VERIFIABLE} or later to be verified. {run.shown} is of"
             f" schema {run.manifest.schema}: benchnav kept too little then. Run the suite again."
         )
+    if wanted.referee:
+        require_referee()
     told = progress if progress is not None else Progress()
     report = Report()
     _note_versions(run, report)
@@ -89,7 +94,7 @@ def _tasks(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[E
     chosen = sampled(checks, wanted.twin)
     packed = run.packed is not None
     return [
-        Examination(check, tuple(seeds), wanted.rerun, packed)
+        Examination(check, tuple(seeds), wanted.referee, wanted.rerun, packed)
         for check, seeds in zip(checks, chosen, strict=True)
     ]
 

@@ -1,4 +1,4 @@
-"""Seeds faults into kernels, one at a time, and prints which of them the slow twin finds.
+"""Seeds faults into kernels, one at a time, and prints what the twin and the referee find.
 
 Run as a program of its own with NUMBA_DISABLE_JIT=1: interpreted kernels call what their
 module holds now. Each fault is in the simulation and in the re-simulation alike, so
@@ -22,6 +22,8 @@ from benchnav.episode.episode import Identity
 from benchnav.runner.recorder import Recorder
 from benchnav.runner.verify.compare import compare
 from benchnav.runner.verify.finding import Report
+from benchnav.runner.verify.part_check import Pair
+from benchnav.runner.verify.referee import judge
 from benchnav.runner.verify.resimulate import resimulate
 from benchnav.runner.verify.twin_check import check_twin
 from benchnav.world import contacts, step, touch
@@ -63,16 +65,17 @@ def play(drawn, seed):
 
 
 def found():
-    """What re-simulation and the twin say of all scenes."""
-    again, twin = Report(), Report()
+    """What the twin and the referee say of all scenes; re-simulation sees nothing."""
+    again, twin, referee = Report(), Report(), Report()
     for seed, drawn in enumerate(scenes()):
         episode = play(drawn, seed)
-        ((new, wrong),) = resimulate([(drawn, episode)])
+        ((new, wrong, touched),) = resimulate([(drawn, episode)])
         assert not wrong
         compare(episode, new, "", again)
         check_twin(drawn, episode, "", twin)
+        judge(Pair(episode, new, touched, ""), referee)
     assert again.clean  # the fault is in both
-    return [finding.what for finding in twin.findings]
+    return [[finding.what for finding in report.findings][:2] for report in (twin, referee)]
 
 
 @contextmanager
@@ -146,5 +149,5 @@ if __name__ == "__main__":
     said = {"": found()}
     for name, (module, attribute, value) in FAULTS.items():
         with patched(module, attribute, value):
-            said[name] = found()[:2]
+            said[name] = found()
     print(json.dumps(said))

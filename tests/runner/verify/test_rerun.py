@@ -27,11 +27,11 @@ def replaced(forger):
     old = list(from_table(pq.read_table(stem + EPISODES_FILE)))
     gentle = dataclasses.replace(old[0], requested=0.99 * old[0].requested)
     steps = len(gentle.requested)
-    ((new, wrong),) = resimulate([(gentle.world, gentle)])
+    ((new, wrong, _),) = resimulate([(gentle.world, gentle)])
     if wrong:  # it would go on: hold still to the horizon
         more = np.zeros((gentle.world.clock.steps - steps, *gentle.requested.shape[1:]))
         longer = dataclasses.replace(gentle, requested=np.concatenate([gentle.requested, more]))
-        ((new, wrong),) = resimulate([(gentle.world, longer)])
+        ((new, wrong, _),) = resimulate([(gentle.world, longer)])
     assert not wrong
     seconds = np.full(len(new.requested), 1e-4)
     new = dataclasses.replace(new, timings=dataclasses.replace(old[0].timings, decision=seconds))

@@ -1,0 +1,85 @@
+"""A world in python-fcl, built by trimesh: a second geometry, for the referee.
+
+Everything planar stands upright: loops become side walls of triangles, discs and agents
+spheres in the plane between. The gap between sphere and wall there is the planar gap.
+"""
+
+import math
+from typing import Any
+
+import fcl
+import numpy as np
+import trimesh
+
+from benchnav.arena.solid import Solid
+from benchnav.arena.world import World
+from benchnav.arrays import FloatArray
+
+HALF = 10.0  # [m] of the height of side walls: more than any agent is wide
+_MOST = 64  # triangles of one pair that are asked for
+
+
+class Scene:
+    """Objects of solids, bodies and agents, that are moved before they are asked about."""
+
+    def __init__(self, world: World) -> None:
+        self.solids = [_object(solid) for solid in world.solids]
+        self.bodies = [_object(body.solid) for body in world.bodies]
+        self.agents = [fcl.CollisionObject(fcl.Sphere(float(r))) for r in world.agents.radius]
+
+    def gap(self, i: int, place: FloatArray, other: tuple[str, int], at: FloatArray) -> float:
+        """[m] between agent i at ``place`` (2,) and a partner at ``at`` (2,).
+
+        Negative: how deep they overlap; of a shape that holds the agent's centre, how
+        far the agent reaches out of it.
+        """
+        name, k = other
+        mine, theirs = self.agents[i], getattr(self, name)[k]
+        _move(mine, place)
+        if name != "solids":
+            _move(theirs, at)
+        found = fcl.CollisionResult()
+        asked = fcl.CollisionRequest(num_max_contacts=_MOST, enable_contact=True)
+        if fcl.collide(mine, theirs, asked, found):
+            return -max(abs(float(contact.penetration_depth)) for contact in found.contacts)
+        return max(0.0, float(fcl.distance(mine, theirs)))
+
+
+def _move(thing: Any, place: FloatArray) -> None:
+    thing.setTransform(fcl.Transform(np.array([place[0], place[1], 0.0])))
+
+
+def _object(solid: Solid) -> Any:
+    if solid.is_disc:
+        x, y = solid.center
+        if (x, y) == (0.0, 0.0):
+            return fcl.CollisionObject(fcl.Sphere(solid.radius))
+        place = fcl.Transform(np.array([x, y, 0.0]))
+        return fcl.CollisionObject(fcl.Sphere(solid.radius), place)
+    mesh = _side_walls(solid)
+    model = fcl.BVHModel()
+    model.beginModel(len(mesh.vertices), len(mesh.faces))
+    model.addSubModel(mesh.vertices, mesh.faces)
+    model.endModel()
+    return fcl.CollisionObject(model)
+
+
+def _side_walls(solid: Solid) -> Any:
+    corners, faces, first = [], [], 0
+    for loop in solid.loops:
+        n = len(loop)
+        i, j = first + np.arange(n), first + (np.arange(n) + 1) % n
+        faces += [np.column_stack([i, j, j + n]), np.column_stack([i, j + n, i + n])]
+        corners += [np.column_stack([loop, np.full(n, z)]) for z in (-HALF, HALF)]
+        first += 2 * n
+    return trimesh.Trimesh(np.vstack(corners), np.vstack(faces), process=False)
+
+
+def extent(solid: Solid) -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest corner (2,), (2,) [m] of a shape."""
+    c = solid.capsules
+    ends = np.vstack([c[:, :2], c[:, 2:4]])
+    rim = float(c[:, 4].max(initial=0.0))
+    if not len(ends):
+        return np.full(2, math.inf), np.full(2, -math.inf)
+    return ends.min(axis=0) - rim, ends.max(axis=0) + rim
