@@ -45,14 +45,17 @@ class Tally:
 
 def survive(
     suite: str, folder: Path, times: int, *, options: tuple[str, ...] = (),
-    parent_only: bool = False, seed: int = 0,
+    parent_only: bool = False, seed: int = 0, within: float | None = None,
 ) -> Tally:  # fmt: skip
-    """Kill runs of a suite ``times`` times; raises AssertionError where one ends differently."""
+    """Kill runs of a suite ``times`` times, ``within`` so many [s] of their begin or any time.
+
+    Raises AssertionError where one ends differently.
+    """
     moments, tally = random.Random(seed), Tally()
     whole = folder / "whole"
     began = time.monotonic()
     subprocess.run(_command(suite, whole, options), check=True, stdout=subprocess.DEVNULL)
-    span = time.monotonic() - began
+    span = within or time.monotonic() - began
     before = facts(whole)
     out = folder / "run-0"
     while tally.kills < times or out.exists():
@@ -68,9 +71,11 @@ def survive(
             _kill(process, parent_only)
             tally.kills += 1
             tally.seconds.append(moment or 0.0)
+            if tally.kills % 10 == 0:
+                print(f"{tally.kills} of {times} kills", file=sys.stderr, flush=True)
             continue
         assert code == 0, f"the command ended with status {code}"
-        assert facts(out) == before, f"{out} is not {whole}"
+        _compare(facts(out), before)
         assert not list(out.rglob(f"{TEMPORARY}*")), "leftovers"
         tally.finished += 1
         shutil.rmtree(out)
@@ -80,7 +85,14 @@ def survive(
     return tally
 
 
-def facts(run: Path) -> tuple[object, ...]:
+def _compare(found: tuple[list[str], ...], before: tuple[list[str], ...]) -> None:
+    for now, then in zip(found, before, strict=True):
+        differing = [pair for pair in zip(now, then, strict=False) if pair[0] != pair[1]]
+        assert not differing, f"{len(differing)} differ, first {differing[0]}"
+        assert len(now) == len(then), f"{len(now)} for {len(then)}"
+
+
+def facts(run: Path) -> tuple[list[str], ...]:
     """Digests, measured values and the table of a run, timings aside."""
     metrics = {m.name: m for m in all_metrics()}
     kept = [name for name, metric in metrics.items() if metric.verifiable]
@@ -91,7 +103,8 @@ def facts(run: Path) -> tuple[object, ...]:
         if row["metric"] in kept
     )
     table = render(leaderboard(results, metrics), "markdown", kept)
-    return [(e.identity, e.digest) for e in read_episodes(run)], rows, table
+    episodes = [f"{e.identity} {e.digest}" for e in read_episodes(run)]
+    return episodes, rows, table.splitlines()
 
 
 def _command(suite: str, out: Path, options: tuple[str, ...]) -> list[str]:
@@ -131,7 +144,9 @@ def main() -> None:
     parser.add_argument("--times", type=int, default=100)
     parser.add_argument("--suite", default="quick")
     parser.add_argument("--seeds", default="40")
+    parser.add_argument("--navigator", action="append", help="instead of the suite's")
     parser.add_argument("--workers", default="2")
+    parser.add_argument("--within", type=float, help="[s] until the latest kill")
     parser.add_argument("--parent-only", action="store_true")
     parser.add_argument("--seed", type=int, default=0, help="of the moments")
     asked = parser.parse_args()
@@ -139,7 +154,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         tally = survive(
             asked.suite, Path(folder), asked.times, parent_only=asked.parent_only, seed=asked.seed,
-            options=("--seeds", asked.seeds, "--workers", asked.workers),
+            within=asked.within, options=("--seeds", asked.seeds, "--workers", asked.workers,
+            *(word for name in asked.navigator or () for word in ("--navigator", name))),
         )  # fmt: skip
     who = "the command alone" if asked.parent_only else "the whole process group"
     print(

@@ -39,11 +39,11 @@ def table(
     held = _held(results, metrics)
     shown = choose(held, ["all"] if metric is None and format in TIDY else metric)
     results = results.filter(pc.is_in(results["metric"], pa.array(shown)))
-    missing = [gap for folder in folders for gap in _not_applicable(folder)]
+    missing = dict.fromkeys(gap for folder in folders for gap in _not_applicable(folder))
     learned = {label: cost for folder in folders for label, cost in _training(folder)}
     mapless = {label for folder in folders for label in _mapless(folder)}
     modes = {label: mode for folder in folders for label, mode in _modes(folder)}
-    made = leaderboard(results, metrics, missing, learned, verified, mapless, modes)
+    made = leaderboard(results, metrics, list(missing), learned, verified, mapless, modes)
     return render(made, format, shown if metric or format in TIDY else None)
 
 

@@ -14,6 +14,7 @@ from benchnav.cli.doctor import doctor
 from benchnav.cli.imports import import_app
 from benchnav.cli.leaderboard import leaderboard
 from benchnav.cli.listing import list_
+from benchnav.cli.merge import merge
 from benchnav.cli.new import new_app
 from benchnav.cli.pack import pack
 from benchnav.cli.run import run
@@ -50,6 +51,7 @@ app.command("leaderboard")(leaderboard)
 app.command("verify")(verify)
 app.command("pack")(pack)
 app.command("compare")(compare)
+app.command("merge")(merge)
 app.command("train")(train)
 app.command("list")(list_)
 app.command("show")(show)

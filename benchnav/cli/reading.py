@@ -22,16 +22,16 @@ def reading(runs: Sequence[Path]) -> Iterator["list[RunFolder]"]:
     with ExitStack() as stack:
         folders = [stack.enter_context(opened(run)) for run in runs]
         for folder in folders:
-            _warn_if_unfinished(folder)
+            warn_if_unfinished(folder)
         yield folders
 
 
-def _warn_if_unfinished(folder: "RunFolder") -> None:
+def warn_if_unfinished(folder: "RunFolder") -> None:
+    """Say what a run lacks."""
     missing = dict(folder.missing())
     if not missing:
         return
-    first, stop = folder.manifest.suite["seeds"]
-    total = (stop - first) * sum(not cell["reason"] for cell in folder.manifest.cells)
+    total = sum(len(seeds) for _, seeds in folder.wanted())
     stored = total - sum(map(len, missing.values()))
     advice = f": run the same suite with --out {folder.path} to finish it."
     say(f"{folder.shown} holds {stored} of {total} episodes{'.' if folder.packed else advice}")

@@ -2,17 +2,28 @@
 
 from collections import Counter
 from datetime import datetime
+from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from benchnav.cli.console import put, say
+from benchnav.cli.console import one_of, put, say
+from benchnav.errors import UsageError
 
 if TYPE_CHECKING:
-    from benchnav.runner.run import Summary
+    from benchnav.runner.run import Executor, Summary
+    from benchnav.runner.shard import Shard
     from benchnav.runner.suite import Suite
+
+
+class Where(StrEnum):
+    """Who runs the tasks."""
+
+    LOCAL = "local"
+    RAY = "ray"
 
 
 def run(
@@ -41,6 +52,22 @@ def run(
         float | None,
         typer.Option(
             metavar="GB", help="So does one whose process holds more memory. [default: 4]"
+        ),
+    ] = None,
+    executor: Annotated[
+        str, typer.Option(help="local, or ray (extra): a Ray cluster.")
+    ] = Where.LOCAL.value,
+    address: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Of the Ray cluster: auto, host:port, ray://host:port. [default: this machine]",
+        ),
+    ] = None,
+    shard: Annotated[
+        str | None,
+        typer.Option(
+            metavar="I/N", help="Only this share of the episodes; `benchnav merge` joins them."
         ),
     ] = None,
     seeds: Annotated[
@@ -88,6 +115,8 @@ def run(
         tuple(scenario or ()), tuple(track or ()), tuple(navigator or ()), seeds or "", salt or "",
         isolate,
     )  # fmt: skip
+    running = _executor(one_of(Where, "--executor", executor), address, workers)
+    share = _shard(shard)
     asked = load_suite(suite, chosen)
     folder = (
         out if out is not None else Path("runs") / f"{asked.name}-{datetime.now():%Y%m%d-%H%M%S}"
@@ -97,8 +126,8 @@ def run(
     summary, began = Summary(), perf_counter()
     try:
         run_suite(
-            asked, folder, workers=workers, timeout=timeout, memory=memory,
-            progress=progress(quiet), summary=summary,
+            asked, folder, workers=workers, timeout=timeout, memory=memory, executor=running,
+            shard=share, progress=progress(quiet), summary=summary,
         )  # fmt: skip
     except KeyboardInterrupt:
         say(
@@ -110,6 +139,29 @@ def run(
         say(_conclude(summary, perf_counter() - began))
         say(f"The table: benchnav leaderboard {folder}")
     put(str(folder))
+
+
+def _executor(where: Where, address: str | None, workers: int | None) -> "Executor | None":
+    if where is Where.LOCAL:
+        if address is not None:
+            raise UsageError(
+                "--address must be that of a Ray cluster. Got it without --executor ray."
+            )
+        return None
+    if workers == 0:
+        raise UsageError("--executor ray must have workers. Got --workers 0, which has none.")
+    from benchnav.runner.ray_executor import execute_on_ray
+
+    return partial(execute_on_ray, address=address or "")
+
+
+def _shard(text: str | None) -> "Shard | None":
+    from benchnav.runner.shard import Shard
+
+    try:
+        return None if text is None else Shard.parse(text)
+    except ValueError as error:
+        raise UsageError(f"--shard {error}.") from None
 
 
 def _announce(suite: "Suite", folder: Path) -> str:

@@ -1,25 +1,26 @@
 """Executes a suite into a run folder."""
 
 from collections import Counter
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
 
-from benchnav.errors import RunConflictError, UsageError
+from benchnav.errors import UsageError
 from benchnav.isolation import pool
 from benchnav.plugins import METRICS
-from benchnav.runner.executor import execute
-from benchnav.runner.generators import draw_salt
+from benchnav.runner.executor import Finished, execute
 from benchnav.runner.limits import Limits
-from benchnav.runner.process_tree import tells_memory
 from benchnav.runner.progress import Progress
+from benchnav.runner.shard import Shard
+from benchnav.runner.start import planned, refuse_limits, start
 from benchnav.runner.suite import Cell, Suite
 from benchnav.runner.task import Outcome, Task, chunks
-from benchnav.store.manifest import Manifest
 from benchnav.store.run_folder import RunFolder
-from benchnav.store.scenario_files import keep_files
 from benchnav.threads import core_count
+
+Executor = Callable[[Sequence[Task], int | None, Progress, Limits], Generator[Finished, None, None]]
+"""(tasks, workers or None for all there are, progress, limits) → finished tasks, stored."""
 
 
 @dataclass
@@ -67,6 +68,8 @@ def run_suite(
     workers: int | None = None,
     timeout: float | None = None,
     memory: float | None = None,
+    shard: Shard | None = None,
+    executor: Executor | None = None,
     progress: Progress | None = None,
     summary: Summary | None = None,
 ) -> Summary:
@@ -79,6 +82,8 @@ def run_suite(
             is limited.
         timeout: [s] that a call of a navigator may last; None: as in ``out``, or as in `Limits`.
         memory: [GB] that a worker may hold; None: likewise.
+        shard: run this share alone; None: everything.
+        executor: who runs the tasks; None: worker processes of this machine.
         progress: who is told; None: nobody.
         summary: filled while the run goes on; None: a new one.
 
@@ -93,16 +98,19 @@ def run_suite(
     told = progress if progress is not None else Progress()
     summary = summary if summary is not None else Summary()
     cells = list(suite.cells())
-    count = _count(workers)
-    _refuse_limits(count, timeout, memory)
-    folder, limits = _start(suite, out, cells, timeout, memory)
+    if executor is None:
+        refuse_limits(workers, timeout, memory)
+    wanted = _wanted(suite, cells, shard)
+    manifest = planned(suite, cells, wanted, shard)
+    folder, limits = start(suite, out, manifest, timeout, memory)
     with folder.writing():
         reasons = {cell.key: cell.reason for cell in cells}
         folder = folder.amend(reasons)  # what was not installed then may be now
-        tasks = _tasks(suite, folder, cells, summary)
+        tasks = _tasks(suite, folder, cells, wanted, summary)
         told.begin(summary.total, summary.stored)
         try:
-            with closing(execute(tasks, count, told, limits)) as finished:
+            run_tasks = executor or _locally
+            with closing(run_tasks(tasks, workers, told, limits)) as finished:
                 for task, outcome in finished:
                     summary.count(task, outcome)
         finally:
@@ -112,16 +120,33 @@ def run_suite(
     return summary
 
 
-def _tasks(suite: Suite, folder: RunFolder, cells: list[Cell], summary: Summary) -> list[Task]:
+def _locally(
+    tasks: Sequence[Task], workers: int | None, progress: Progress, limits: Limits
+) -> Generator[Finished, None, None]:
+    return execute(tasks, default_workers() if workers is None else workers, progress, limits)
+
+
+def _wanted(suite: Suite, cells: list[Cell], shard: Shard | None) -> dict[str, set[int]]:
+    """The seeds of each cell that are to be run."""
+    if shard is not None:
+        return shard.seeds(cells, suite.seeds)
+    return {cell.key: set(suite.seeds) for cell in cells}
+
+
+def _tasks(
+    suite: Suite, folder: RunFolder, cells: list[Cell], wanted: Mapping[str, set[int]],
+    summary: Summary,
+) -> list[Task]:  # fmt: skip
     """What is missing, the longest first."""
     tasks = []
     for cell in cells:
         if cell.reason:
             summary.not_applicable.append((cell, cell.reason))
             continue
-        missing = set(suite.seeds) - folder.done(cell.key)
-        summary.total += len(suite.seeds)
-        summary.stored += len(suite.seeds) - len(missing)
+        seeds = wanted.get(cell.key, set())
+        missing = seeds - folder.done(cell.key)
+        summary.total += len(seeds)
+        summary.stored += len(seeds) - len(missing)
         task = Task(
             cell, folder.cell(cell.key), 0, 0, salt=folder.manifest.salt, probe=suite.seeds.start
         )
@@ -137,65 +162,3 @@ def _refuse_without_metrics() -> None:
             "Metrics must be registered, or nothing would be measured. There are none: the"
             " installed metadata is stale. Install benchnav again (pip install -e . in a checkout)."
         )
-
-
-def _refuse_limits(workers: int, timeout: float | None, memory: float | None) -> None:
-    if workers == 0 and (timeout, memory) != (None, None):
-        raise UsageError(
-            "A limit must have a worker process to hold in. Got --workers 0, which has none."
-        )
-    if memory is not None and not tells_memory():
-        raise UsageError(
-            "--memory must stand on a system that tells how much memory a process holds."
-            " This one does not; leave it out."
-        )
-
-
-def _start(
-    suite: Suite, out: Path, cells: list[Cell], timeout: float | None, memory: float | None
-) -> tuple[RunFolder, Limits]:
-    said = tuple(_said(c) for c in cells)
-    asked = _limits(Limits(), timeout, memory)
-    salt = suite.salt or draw_salt()
-    folder = RunFolder.start(out, Manifest(suite.resolved(), said, salt, asked.said()))
-    for scenario in suite.scenarios:
-        keep_files(folder.path, scenario.named_files())
-    held = folder.manifest.salt
-    if suite.salt not in ("", held):
-        raise RunConflictError(
-            f"The salt must be that of the run in {folder.path}, {held}. Got {suite.salt} instead."
-            " Leave --salt out to go on there, or give another --out."
-        )
-    limits = Limits.of(folder.manifest.limits)
-    if _limits(limits, timeout, memory) != limits:
-        raise RunConflictError(
-            f"The limits must be those of the run in {folder.path}, {limits}. Got"
-            f" {_limits(limits, timeout, memory)} instead. Leave --timeout and --memory out to go"
-            " on there, or give another --out."
-        )
-    return folder, limits
-
-
-def _limits(otherwise: Limits, timeout: float | None, memory: float | None) -> Limits:
-    try:
-        return Limits(
-            otherwise.timeout if timeout is None else timeout,
-            otherwise.memory if memory is None else memory,
-        )
-    except ValueError as error:
-        raise UsageError(f"The limit {error}.") from None
-
-
-def _said(cell: Cell) -> dict[str, Any]:
-    return {
-        "key": cell.key,
-        "scenario": cell.scenario.identity,
-        "track": cell.track,
-        "navigator": cell.entry.label,
-        "reason": cell.reason,
-        **({"also": list(cell.also)} if cell.also else {}),
-    }
-
-
-def _count(workers: int | None) -> int:
-    return default_workers() if workers is None else workers

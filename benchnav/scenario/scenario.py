@@ -86,6 +86,10 @@ class Scenario(Spec):
         copy._folder, copy._chosen, copy._starts = folder, dict(chosen or {}), starts
         return copy
 
+    def moved_to(self, folder: Path) -> "Scenario":
+        """The same scenario where copies of its files lie in another folder."""
+        return self.placed_in(folder, self._chosen, self._starts)
+
     def where_start(self, team: int) -> str:
         """``file:line: teams[0].start``; without a file where it came from none."""
         return self._starts[team] if self._starts else f"teams[{team}].start"

@@ -17,6 +17,7 @@ SCHEMA = 3  # of a run folder's layout and columns; 2: rehearsals; 3: all that v
 MANIFEST = "manifest.json"
 DIGESTED = 3  # schema from which on a manifest holds a digest of all that it says
 _KEY = re.compile(r"[A-Za-z0-9@_-][A-Za-z0-9@._-]{0,250}")  # of a cell: the name of its folder
+_MOST_SEED = 10**15
 _OF_A_CELL = ("key", "scenario", "track", "navigator", "reason")
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
 
@@ -34,6 +35,7 @@ class Manifest:
     cells: tuple[Mapping[str, Any], ...]
     salt: str = ""  # of the randomness that navigators are handed, in hexadecimal digits
     limits: Mapping[str, float] = field(default_factory=dict)  # beyond which an episode fails
+    shard: str = ""  # "2/4" where it executes that share alone; its cells then say their seeds
     schema: int = SCHEMA
     versions: Mapping[str, str] = field(default_factory=lambda: versions())
     platform: str = field(default_factory=platform.platform)
@@ -100,7 +102,7 @@ def load_manifest(run: Path) -> Manifest:
             )
         manifest = Manifest(
             said["suite"], tuple(said["cells"]), said.get("salt", ""), said.get("limits", {}),
-            schema, said["versions"], said["platform"], said["created"],
+            said.get("shard", ""), schema, said["versions"], said["platform"], said["created"],
         )  # fmt: skip
         whole = manifest.suite_hash == said["suite_hash"]
         older = schema < DIGESTED and "digest" not in said
@@ -127,3 +129,7 @@ def _refuse_strange_cells(cells: Sequence[Mapping[str, Any]]) -> None:
         strange = [name for name in _OF_A_CELL if not isinstance(cell.get(name, ""), str)]
         if strange:
             raise ValueError(f"cells[{i}].{strange[0]} must be text")
+        for span in cell.get("seeds", ()):
+            first, stop = map(int, span)
+            if not 0 <= first < stop <= _MOST_SEED:
+                raise ValueError(f"cells[{i}].seeds must be spans; got {span}")

@@ -2,7 +2,7 @@
 
 import hashlib
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from benchnav.episode.episode import Episode
-from benchnav.errors import StoreError
+from benchnav.errors import CorruptPartError, StoreError
 from benchnav.store import checked_json
 from benchnav.store.episodes import DICTIONARY, EPISODES, to_table
 from benchnav.store.part import EPISODES_FILE, FILES, REHEARSALS_FILE, RESULTS_FILE, SEAL, Part
@@ -55,7 +55,7 @@ class PartWriter:
                     self._open(REHEARSALS_FILE)
                 self._streams[REHEARSALS_FILE].writer.write_table(to_table(rehearsals))
         except OSError as error:
-            raise self._refused(error) from error
+            raise refused(self.part, error) from error
         self._rows += len(episodes)
         self._results.append(results)
 
@@ -83,7 +83,7 @@ class PartWriter:
                 self._temporary(suffix).replace(self.part.path(suffix))
             _sync_folder(self.part.folder)
         except OSError as error:
-            raise self._refused(error) from error
+            raise refused(self.part, error) from error
         self._sealed = True
 
     def __enter__(self) -> Self:
@@ -110,7 +110,7 @@ class PartWriter:
             self.part.folder.mkdir(parents=True, exist_ok=True)
             file = self._temporary(suffix).open("wb")
         except OSError as error:
-            raise self._refused(error) from error
+            raise refused(self.part, error) from error
         writer = pq.ParquetWriter(
             file, EPISODES, compression="zstd", use_dictionary=DICTIONARY,
             write_statistics=["seed"],
@@ -120,14 +120,54 @@ class PartWriter:
     def _temporary(self, suffix: str) -> Path:
         return self.part.folder / f"{TEMPORARY}{self.part.stem}{suffix}"
 
-    def _refused(self, error: OSError) -> StoreError:
-        run = self.part.folder.parent.parent
-        return StoreError(
-            f"{self.part.folder} must be writable and have room."
-            f" The system says: {error.strerror or error}."
-            " Every part that was finished is safe; make room and run the same suite again"
-            f" with --out {run} to go on from there."
-        )
+
+def receive(part: Part, files: Mapping[str, bytes]) -> None:
+    """Store a part that was written elsewhere; ``files`` are its own by suffix.
+
+    Raises StoreError where the disk refuses, CorruptPartError where a file is not what was sealed.
+    """
+    _refuse_unsealed(part, files)
+    written = [suffix for suffix in (*FILES, SEAL) if suffix in files]  # the seal last
+    temporary = {suffix: part.folder / f"{TEMPORARY}{part.stem}{suffix}" for suffix in written}
+    try:
+        part.folder.mkdir(parents=True, exist_ok=True)
+        for suffix, path in temporary.items():
+            with path.open("wb") as file:
+                file.write(files[suffix])
+                _sync(file)
+        for suffix, path in temporary.items():
+            path.replace(part.path(suffix))
+        _sync_folder(part.folder)
+    except OSError as error:
+        raise refused(part, error) from error
+    finally:
+        for path in temporary.values():
+            with suppress(OSError):
+                path.unlink(missing_ok=True)
+
+
+def _refuse_unsealed(part: Part, files: Mapping[str, bytes]) -> None:
+    try:
+        said = checked_json.load(files[SEAL].decode(), (*FILES, "episodes"))
+        sealed = {suffix: said[suffix]["sha256"] for suffix in FILES if suffix in said}
+    except (KeyError, TypeError, ValueError) as error:
+        raise CorruptPartError(f"{part.path(SEAL)} must come sealed. It cannot be read.") from error
+    found = {
+        suffix: hashlib.sha256(files[suffix]).hexdigest() for suffix in files if suffix != SEAL
+    }
+    if sealed != found or said.get("episodes") != len(part.seeds):
+        raise CorruptPartError(f"{part.path(SEAL)} must fit what it came with. It does not.")
+
+
+def refused(part: Part, error: OSError) -> StoreError:
+    """What is said where the disk refuses."""
+    run = part.folder.parent.parent
+    return StoreError(
+        f"{part.folder} must be writable and have room."
+        f" The system says: {error.strerror or error}."
+        " Every part that was finished is safe; make room and run the same suite again"
+        f" with --out {run} to go on from there."
+    )
 
 
 def _sync(file: Any) -> None:

@@ -86,17 +86,21 @@ class RunFolder:
             seeds.update(part.seeds)
         return seeds
 
+    def wanted(self) -> Iterator[tuple[str, set[int]]]:
+        """(key, seeds) of the cells that can be run."""
+        for cell in self.manifest.cells:
+            if not cell["reason"]:
+                spans = cell.get("seeds", [self.manifest.suite["seeds"]])
+                yield cell["key"], {seed for span in spans for seed in range(*span)}
+
     def missing(self) -> Iterator[tuple[str, list[int]]]:
-        """(key, seeds) of the cells that could be run and are not stored whole.
+        """(key, seeds) of the cells that can be run and are not stored whole.
 
         Raises CorruptPartError where a part is damaged.
         """
-        first, stop = self.manifest.suite["seeds"]
-        for cell in self.manifest.cells:
-            if not cell["reason"]:
-                seeds = sorted(set(range(first, stop)) - self.done(cell["key"]))
-                if seeds:
-                    yield cell["key"], seeds
+        for key, seeds in self.wanted():
+            if lacking := sorted(seeds - self.done(key)):
+                yield key, lacking
 
     @contextmanager
     def writing(self) -> Iterator[None]:

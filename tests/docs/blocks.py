@@ -72,6 +72,8 @@ class Reader:
                 return
             case ["benchnav", "run", suite, *_]:
                 fewer = FEWER if "--seeds" not in words else FEWER[2:]
+                if "ray" in words:
+                    fewer = [*fewer[:-1], "1"]
                 self.benchnav(
                     [*words[1:], *fewer, *(QUICKER if suite in ("quick", "learning") else [])]
                 )

@@ -13,7 +13,7 @@ import pytest
 from benchnav.errors import RunConflictError, UsageError
 from benchnav.metrics.metric import Metric
 from benchnav.plugins import METRICS
-from benchnav.runner import run as run_module
+from benchnav.runner import start as start_module
 from benchnav.runner import task as task_module
 from benchnav.runner.limits import Limits
 from benchnav.runner.process_tree import tells_memory, tree
@@ -109,7 +109,7 @@ def test_limits_that_cannot_be_kept_are_refused(suite_file, tmp_path, monkeypatc
             run_suite(suite, out, workers=1, timeout=wrong)
     with pytest.raises(UsageError, match="Got --workers 0"):
         run_suite(suite, out, workers=0, memory=1.0)
-    monkeypatch.setattr(run_module, "tells_memory", lambda: False)
+    monkeypatch.setattr(start_module, "tells_memory", lambda: False)
     with pytest.raises(UsageError, match="--memory must stand on a system that tells"):
         run_suite(suite, out, workers=1, memory=1.0)
     assert not out.exists()

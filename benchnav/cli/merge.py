@@ -1,0 +1,27 @@
+"""`benchnav merge`: one run of several that share a suite."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from benchnav.cli.console import put, say
+
+
+def merge(
+    runs: Annotated[list[Path], typer.Argument(metavar="RUN…", help="Run folders of one suite.")],
+    out: Annotated[Path, typer.Option(metavar="DIR", help="Run folder that gets everything.")],
+) -> None:
+    """Merge runs that executed shares of one suite.
+
+    Prints the merged run on stdout, and says what it still lacks. Episodes that several
+    runs hold must be the same.
+    """
+    from benchnav.cli.reading import warn_if_unfinished
+    from benchnav.store import merge as merging
+
+    merged = merging.merge(runs, out)
+    again = f", {merged.twice} were there already and are the same" if merged.twice else ""
+    say(f"{merged.copied} episodes copied{again}")
+    warn_if_unfinished(merged.run)
+    put(str(out))
