@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from itertools import chain
-from operator import attrgetter, is_
+from operator import attrgetter
 from types import FunctionType
 from typing import Any
 
@@ -35,11 +35,11 @@ class Guard:
     def replaced(self) -> str:
         """The name of what is no longer as it was; all is put back. "" where nothing changed."""
         changed: list[str] = []
-        if not all(map(is_, self._values, self._now())) or len(self._values) != self._size():
+        if not _same(self._values, self._now()):
             for (owner, held, whose), before in zip(self._spaces, self._held, strict=True):
                 changed += _restored(owner, held, whose, before)
             self._keep()  # with what Python itself adds to a class when it is asked
-        if not all(map(is_, self._code, map(_code, self._functions))):
+        if not _same(self._code, [*map(_code, self._functions)]):
             for function, code in zip(self._functions, self._code, strict=True):
                 if function.__code__ is not code:
                     function.__code__ = code
@@ -48,13 +48,18 @@ class Guard:
 
     def _keep(self) -> None:
         self._held = [dict(held) for _, held, _ in self._spaces]
-        self._values = [*self._now()]
+        self._values = self._now()
 
-    def _now(self) -> Iterator[Any]:
-        return chain.from_iterable([held.values() for _, held, _ in self._spaces])
+    def _now(self) -> list[Any]:
+        return [*chain.from_iterable([held.values() for _, held, _ in self._spaces])]
 
-    def _size(self) -> int:
-        return sum([len(held) for _, held, _ in self._spaces])
+
+def _same(before: list[Any], now: list[Any]) -> bool:
+    """The same objects. Lists look at identity first, and faster than anything else does."""
+    try:
+        return before == now
+    except Exception:  # of what cannot be compared with what it replaced
+        return False
 
 
 def _restored(
