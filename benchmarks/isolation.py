@@ -51,7 +51,7 @@ def rate(assignment: Assignment, worlds: list[Seeded]) -> float:
     began = perf_counter()
     episodes = [e for batch in rollout(assignment, worlds) for e in batch]
     seconds = perf_counter() - began
-    return sum(e.requested.shape[0] * e.requested.shape[1] for e in episodes) / seconds
+    return float(sum(e.requested.shape[0] * e.requested.shape[1] for e in episodes)) / seconds
 
 
 if __name__ == "__main__":

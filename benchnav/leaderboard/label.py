@@ -35,7 +35,8 @@ def require_one_navigator_per_label(tables: Mapping[str, pa.Table]) -> None:
                 raise UsageError(
                     f"The label {label!r} must stand for one navigator. It stands for two:"
                     f" {known[:12]} in {where} and {found[:12]} in {name} are configured"
-                    " differently, run in another mode, or are different code. Tell them apart by a label"
-                    f" of its own for one of them ({{type: …, label: {label}-2}} in the suite), and run"
+                    " differently, run in another mode, or are different code. Tell them apart by"
+                    f" a label of its own for one of them ({{type: …, label: {label}-2}} in the"
+                    " suite), and run"
                     " that one again."
                 )
