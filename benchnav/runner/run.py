@@ -9,12 +9,13 @@ from pathlib import Path
 from benchnav.errors import UsageError
 from benchnav.isolation import pool
 from benchnav.plugins import METRICS
+from benchnav.runner.cell import Cell
 from benchnav.runner.executor import Finished, execute
 from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
 from benchnav.runner.shard import Shard
 from benchnav.runner.start import planned, refuse_limits, start
-from benchnav.runner.suite import Cell, Suite
+from benchnav.runner.suite import Suite
 from benchnav.runner.task import Outcome, Task, chunks
 from benchnav.store.run_folder import RunFolder
 from benchnav.threads import core_count

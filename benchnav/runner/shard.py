@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from heapq import heapify, heapreplace
 
-from benchnav.runner.suite import Cell
+from benchnav.runner.cell import Cell
 from benchnav.runner.task import chunks
 
 MOST = 10_000

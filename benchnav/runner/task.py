@@ -8,11 +8,11 @@ from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.isolation import fence
 from benchnav.metrics.measure import all_metrics
+from benchnav.runner.cell import Cell
 from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.measured import failed_metrics, measured
 from benchnav.runner.rehearsal import Performance, perform
 from benchnav.runner.rollout import Assignment, Seeded
-from benchnav.runner.suite import Cell
 from benchnav.store.part import Part
 from benchnav.store.part_writer import PartWriter
 from benchnav.world.build import build

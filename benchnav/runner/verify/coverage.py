@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator
 
-from benchnav.runner.suite import Cell
+from benchnav.runner.cell import Cell
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.restored import Restored
 from benchnav.store.part import Part, parts_of

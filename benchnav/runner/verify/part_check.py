@@ -10,9 +10,9 @@ from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import BenchnavError, CorruptPartError
+from benchnav.runner.cell import Cell
 from benchnav.runner.generators import phases
 from benchnav.runner.rollout import Assignment, batches
-from benchnav.runner.suite import Cell
 from benchnav.runner.verify.compare import check_commands, check_timings, compare
 from benchnav.runner.verify.difference import first_difference
 from benchnav.runner.verify.finding import Report

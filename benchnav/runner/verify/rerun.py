@@ -8,9 +8,9 @@ from typing import Any
 from benchnav.episode.episode import Episode
 from benchnav.errors import BenchnavError
 from benchnav.isolation.program import PROCESS
+from benchnav.runner.cell import Cell
 from benchnav.runner.entry import Entry, Meeting
 from benchnav.runner.rehearsal import Performance, perform
-from benchnav.runner.suite import Cell
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.part_check import Pair, PartCheck
 from benchnav.store.manifest import ISOLATED

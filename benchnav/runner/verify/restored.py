@@ -10,8 +10,9 @@ from pydantic import ValidationError
 
 from benchnav.errors import BenchnavError
 from benchnav.navigation.navigator import Training
+from benchnav.runner.cell import Cell
 from benchnav.runner.entry import Entry
-from benchnav.runner.suite import Block, Cell, Suite
+from benchnav.runner.suite import Block, Suite
 from benchnav.runner.suite_file import MAX_SEEDS
 from benchnav.runner.verify.finding import Report
 from benchnav.scenario.parameters import split_parameters
