@@ -70,7 +70,7 @@ def test_a_registered_name_is_that_navigator(monkeypatch):
         (
             "grid.astar+orcaa",
             "In the navigator 'grid.astar+orcaa': There is no controller 'orcaa'."
-            " Did you mean 'orca'? 'benchnav list controllers' shows all.",
+            " Did you mean 'orca' or 'orca-ppo'? 'benchnav list controllers' shows all.",
         ),
         (
             "navmehs+orca",
@@ -93,8 +93,9 @@ def test_a_registered_name_is_that_navigator(monkeypatch):
             "The navigator 'grid.astar+orca' has no parameter 'cutt'. Did you mean 'cut'?",
         ),
         (
-            {"type": "grid.astar+orca", "controller": {"margn": 1}},
-            "controller: The controller 'orca' has no parameter 'margn'. Did you mean 'margin'?",
+            {"type": "grid.astar+orca", "controller": {"neighbors": 1}},
+            "controller: The controller 'orca' has no parameter 'neighbors'."
+            " Did you mean 'neighbours'?",
         ),
     ],
 )

@@ -102,7 +102,7 @@ def test_a_path_on_a_fine_grid_proves_that_worlds_are_solvable(name, step):
 def test_pure_and_disjoint_between_splits(name):
     one = SCENARIOS[name]
     digests = {s: [world_digest(build(one, s, seed)) for seed in range(6)] for s in SPLITS}
-    draw_prepared._PREPARED.clear()
+    draw_prepared._prepared.cache_clear()
     again = [world_digest(build(one, "test", seed)) for seed in reversed(range(6))]
     assert again[::-1] == digests["test"]
     assert len({d for of_split in digests.values() for d in of_split}) == 18

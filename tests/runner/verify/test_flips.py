@@ -45,6 +45,8 @@ def test_every_column_of_episodes(forger, findings, column, cell):
         pytest.skip("there is nothing to flip")
 
     def change(value):
+        if column == "memory_bytes":  # a byte of gigabytes is within tolerance
+            return 2 * value
         return _with_another_world(value) if column == "world" else flipped(value)
 
     forger.column(stem, EPISODES_FILE, column, change, rows[-1])
