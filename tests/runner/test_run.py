@@ -252,6 +252,11 @@ def test_a_navigator_of_this_process_runs_in_this_process(suite_file, tmp_path):
         run_suite(suite, tmp_path / "there", workers=1)
 
 
+def _heed_ctrl_c():
+    """Also where the tests run in the background of a shell, which has its jobs ignore it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 @pytest.mark.slow
 def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file, tmp_path):
     """The real thing: a process, a signal, and the run again.
@@ -266,7 +271,7 @@ def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file,
     ]  # fmt: skip
     process = subprocess.Popen(
         [*command, "--out", str(out)], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
-        start_new_session=True,
+        start_new_session=True, preexec_fn=_heed_ctrl_c,
     )  # fmt: skip
     deadline = time.monotonic() + 300  # the worker may have to compile first
     while not list(out.glob(f"parts/*/[!.]*{SEAL}")) and time.monotonic() < deadline:
