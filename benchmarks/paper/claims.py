@@ -1,6 +1,6 @@
 """What the paper says, and whether our measurements bear it out."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from . import cast
@@ -211,58 +211,49 @@ def _jagged(m: Material) -> Finding:
     paper = (cast.STATIC, "unknown", cast.PAPER)
     tables = [(cast.STATIC, "unknown", cast.TABULAR), (cast.STATIC, "known", cast.GRID)]
     changes = [m.evidence.difference("turning", paper, cell) for cell in tables]
-    verdicts = {_compared(change, -1) for change in changes}
-    values = [m.evidence.value("turning", cell).text(1, 2) for cell in tables]
-    return verdicts.pop() if len(verdicts) == 1 else PARTLY, (
+    sensed, cells = (m.evidence.value("turning", cell).text(1, 2) for cell in tables)
+    return _together(_compared(change, -1) for change in changes), (
         f"turning {m.evidence.value('turning', paper).text(1, 2)} rad/m; `{cast.GRID}`, over the"
-        " cells"
-        f" of a known arena, {values[1]}; `{cast.TABULAR}`, over what is sensed, {values[0]}"
+        f" cells of a known arena, {cells}; `{cast.TABULAR}`, over what is sensed, {sensed}"
     )
 
 
+def _together(verdicts: Iterable[str]) -> str:
+    """What all of them say; in part where they differ."""
+    found = set(verdicts)
+    return found.pop() if len(found) == 1 else PARTLY
+
+
+def _guided(m: Material, metric: str) -> Difference:
+    """How followers differ who are guided from those who plan."""
+    cells = (among_groups(who) for who in (cast.GUIDED, cast.BOTH))
+    return m.evidence.difference(metric, *cells, "follower")
+
+
 def _congestion(m: Material) -> Finding:
-    found = {
-        metric: m.evidence.difference(
-            metric, among_groups(cast.GUIDED), among_groups(cast.BOTH), "follower"
-        )
-        for metric in ("density_mean", "jam")
-    }
-    verdicts = {_compared(change, -1) for change in found.values()}
-    verdict = verdicts.pop() if len(verdicts) == 1 else PARTLY
-    return verdict, (
-        f"against `{cast.BOTH}`, density at the centre {found['density_mean'].text(1, 3)} /m²,"
-        " time in a"
-        f" jam {found['jam'].text(100)} points"
+    density, jam = (_guided(m, metric) for metric in ("density_mean", "jam"))
+    return _together(_compared(change, -1) for change in (density, jam)), (
+        f"against `{cast.BOTH}`, density at the centre {density.text(1, 3)} /m², time in a jam"
+        f" {jam.text(100)} points"
     )
 
 
 def _flocks(m: Material) -> Finding:
-    found = {
-        metric: m.evidence.difference(
-            metric, among_groups(cast.GUIDED), among_groups(cast.BOTH), "follower"
-        )
-        for metric in ("cohesion", "splits", "polarisation")
-    }
-    wanted = {"cohesion": -1, "splits": -1, "polarisation": 1}
-    verdicts = {_compared(change, wanted[metric]) for metric, change in found.items()}
-    verdict = verdicts.pop() if len(verdicts) == 1 else PARTLY
-    return verdict, (
-        f"against `{cast.BOTH}`, cohesion {found['cohesion'].text(1, 2)} (less is closer), parts"
-        " of a"
-        f" group {found['splits'].text(1, 2)}, polarisation {found['polarisation'].text(1, 3)}"
+    cohesion, splits, order = (_guided(m, x) for x in ("cohesion", "splits", "polarisation"))
+    wanted = ((cohesion, -1), (splits, -1), (order, 1))
+    return _together(_compared(change, sign) for change, sign in wanted), (
+        f"against `{cast.BOTH}`, cohesion {cohesion.text(1, 2)} (less is closer), parts of a group"
+        f" {splits.text(1, 2)}, polarisation {order.text(1, 3)}"
     )
 
 
 def _groups_arrive(m: Material) -> Finding:
     arrival = m.evidence.value("arrival", among_groups(cast.GUIDED), "follower")
     success = m.evidence.value("success", among_groups(cast.GUIDED), "follower")
-    change = m.evidence.difference(
-        "success", among_groups(cast.GUIDED), among_groups(cast.BOTH), "follower"
-    )
     good = success.mean >= GOOD
     return CONFIRMED if good else PARTLY if arrival.mean >= GOOD else NOT, (
         f"{arrival.text(100)} % of the followers arrive, {success.text(100)} % without a collision,"
-        f" {change.text(100)} points against `{cast.BOTH}`"
+        f" {_guided(m, 'success').text(100)} points against `{cast.BOTH}`"
     )
 
 

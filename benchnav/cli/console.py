@@ -35,13 +35,10 @@ def columns(rows: Sequence[Sequence[str]]) -> str:
 
 def spans(seeds: Sequence[int]) -> str:
     """Sorted seeds in few words: ``seeds 0–4, 7``."""
-    runs: list[list[int]] = []
-    for seed in seeds:
-        if runs and seed == runs[-1][-1] + 1:
-            runs[-1][1:] = [seed]
-        else:
-            runs.append([seed])
-    shown = ", ".join("–".join(map(str, run)) for run in runs[:4])
+    from benchnav.store.spans import spans as runs_of
+
+    runs = runs_of(seeds)
+    shown = ", ".join("–".join(map(str, sorted({a, b - 1}))) for a, b in runs[:4])
     return f"seed{'s' if len(seeds) > 1 else ''} {shown}{', …' if len(runs) > 4 else ''}"
 
 
