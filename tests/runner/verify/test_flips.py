@@ -181,7 +181,7 @@ def test_every_column_of_results(forger, findings, column, cell):
     )  # fmt: skip
 
     def change(value):
-        return value + 1e-8 if column in ("value", "rehearsal_seconds") else flipped(value)
+        return _off(value) if column in ("value", "rehearsal_seconds") else flipped(value)
 
     forger.column(stem, RESULTS_FILE, column, change, row)
     assert "metric" in findings(forger.run)[0]
