@@ -20,7 +20,7 @@ from .as_velocity import as_velocity
 from .orca.avoidance import OrcaConfig
 from .orca.controller import OrcaController
 from .recurrent_ppo.controller import RecurrentPPOPlusController
-from .recurrent_ppo.policy_pilot import ForesightConfig
+from .recurrent_ppo.policy_pilot import PolicyConfig
 
 
 class OrcaPpoConfig(PluginConfig):
@@ -29,9 +29,7 @@ class OrcaPpoConfig(PluginConfig):
     orca: OrcaConfig = Field(
         OrcaConfig(time_horizon=3.0, edge_margin=0.02), description="parameters of ORCA"
     )
-    policy: ForesightConfig = Field(
-        ForesightConfig(), description="parameters of `recurrent-ppo-plus`"
-    )
+    policy: PolicyConfig = Field(PolicyConfig(), description="parameters of `recurrent-ppo-plus`")
     memory: float = Field(
         5.0,
         ge=0,

@@ -5,7 +5,7 @@ from typing import ClassVar
 from benchnav.navigation.navigator import PluginConfig
 
 from ..pilot import PilotedController
-from .policy_pilot import ForesightConfig, PolicyConfig, pilot_of
+from .policy_pilot import PolicyConfig, pilot_of
 
 
 class RecurrentPPOController(PilotedController):
@@ -22,5 +22,4 @@ class RecurrentPPOController(PilotedController):
 class RecurrentPPOPlusController(RecurrentPPOController):
     """The policy of `recurrent-ppo-plus`, shown the guide's target as its goal."""
 
-    Config = ForesightConfig
     shipped: ClassVar[str] = "recurrent-ppo-plus.safetensors"

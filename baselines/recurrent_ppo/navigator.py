@@ -5,16 +5,17 @@ from typing import ClassVar
 from benchnav.navigation.navigator import PluginConfig
 
 from ..pilot import PilotedNavigator
-from .policy_pilot import ForesightConfig, PolicyConfig, pilot_of
+from .policy_pilot import DriverConfig, pilot_of
 
 
 class RecurrentPPO(PilotedNavigator):
-    """The paper's method: PPO with LSTM and collision prediction, 7 forward rays.
+    """The paper's method: PPO with LSTM, 7 forward rays, and velocity obstacles of what they meet.
 
+    The policy sees by its rays alone, and what they meet is all that corrects it.
     Deterministic: the mean of the Gaussian over (forward speed, turn rate).
     """
 
-    Config = PolicyConfig
+    Config = DriverConfig
     shipped: ClassVar[str] = "recurrent-ppo.safetensors"
 
     def __init__(self, config: PluginConfig | None = None) -> None:
@@ -25,5 +26,4 @@ class RecurrentPPO(PilotedNavigator):
 class RecurrentPPOPlus(RecurrentPPO):
     """RecurrentPPO that sees all round, told its neighbours' velocities, and steers smoothly."""
 
-    Config = ForesightConfig
     shipped: ClassVar[str] = "recurrent-ppo-plus.safetensors"

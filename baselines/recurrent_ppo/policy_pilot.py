@@ -21,7 +21,9 @@ from benchnav.navigation.row_table import RowTable
 
 from ..pilot import Pilot
 from .actor import Actor
-from .foresight import foresee
+from .detour import Detours
+from .foresight import HELD, foresee
+from .sightings import Sightings
 from .weights import read_weights
 
 SHIPPED = Path(__file__).parent / "weights"
@@ -29,15 +31,21 @@ _LIMITS = ("radius", "max_speed", "max_turn_rate")
 
 
 class PolicyConfig(PluginConfig):
-    """Which weights."""
-
-    weights: str = Field("", description="file that `benchnav train` wrote; its own if empty")
-
-
-class ForesightConfig(PolicyConfig):
     """Which weights, and whether to look ahead."""
 
+    weights: str = Field("", description="file that `benchnav train` wrote; its own if empty")
     foresight: bool = Field(True, description="correct twists that would collide")
+
+
+class DriverConfig(PolicyConfig):
+    """The same for who finds the way alone."""
+
+    hold: float = Field(
+        0.9, ge=HELD, le=2, description="[s] that looking ahead may hold a twist at most"
+    )
+    patience: float = Field(
+        4.0, ge=0, description="[s] of standing after which to try another way; 0: never"
+    )
 
 
 class PolicyPilot(Pilot):
@@ -47,18 +55,27 @@ class PolicyPilot(Pilot):
 
     Args:
         weights: file that `benchnav train` wrote.
-        foresight: correct twists that would collide; needs neighbours and edges.
+        foresight: correct twists that would collide.
+        hold: [s] that a twist may be held at most.
+        patience: [s] of standing after which to try another way; 0: never.
+
+    Who sees by rays looks ahead with what these meet.
     """
 
-    def __init__(self, weights: Path, foresight: bool = False) -> None:
+    def __init__(
+        self, weights: Path, foresight: bool, hold: float = HELD, patience: float = 0.0
+    ) -> None:
         self._actor, self.about = _loaded(weights)
         self._encoder = encoder(self.about["encoder"])
-        self._foresight = foresight
+        self._foresight, self._hold = foresight, hold
+        self._sightings = Sightings() if Need.RAYS in self._encoder.needs else None
+        self._detours = Detours(patience) if patience else None
         self._kept = RowTable()
 
     @property
     def needs(self) -> frozenset[Need]:
-        return self._encoder.needs
+        around = {Need.NEIGHBOURS, Need.EDGES} if self._foresight or self._detours else ()
+        return self._encoder.needs.union(around)
 
     @property
     def training(self) -> Training:
@@ -88,6 +105,9 @@ class PolicyPilot(Pilot):
             limits = {name: getattr(briefing, name) for name in _LIMITS}
             limits["tolerance"] = np.full(len(briefing), briefing.goal_tolerance)
             self._kept.put(int(row), memory=memory, **limits)
+            for part in (self._sightings, self._detours):
+                if part is not None:
+                    part.reset(int(row), briefing)
 
     def tolerance(self, seen: Observation) -> FloatArray:
         return self._told("tolerance", seen)
@@ -106,7 +126,20 @@ class PolicyPilot(Pilot):
         command[active] = action
         command[..., 0] = 0.5 * (command[..., 0] + 1.0) * speed
         command[..., 1] *= turn
-        return foresee(seen, bodies, command, tolerance) if self._foresight else command
+        return self._corrected(seen, bodies, command, tolerance)
+
+    def _corrected(
+        self, seen: Observation, bodies: Bodies, command: FloatArray, tolerance: FloatArray
+    ) -> FloatArray:
+        if seen.neighbours is None or seen.edges is None:
+            return command
+        if self._sightings is not None:
+            seen = self._sightings.limit(seen, bodies.radius)
+        if self._detours is not None:
+            self._detours.steer(seen, bodies, command)
+        if not self._foresight:
+            return command
+        return foresee(seen, bodies, command, tolerance, self._hold)
 
     def _told(self, name: str, seen: Observation) -> FloatArray:
         values: FloatArray = self._kept.take(name, seen.rows, seen.active.shape[1])
@@ -114,9 +147,11 @@ class PolicyPilot(Pilot):
 
 
 def pilot_of(config: Any, shipped: str) -> PolicyPilot:
-    """By a `PolicyConfig` or `ForesightConfig`; ``shipped`` are its weights where it names none."""
+    """By a `PolicyConfig` or `DriverConfig`; ``shipped`` are its weights where it names none."""
     path = Path(config.weights) if config.weights else SHIPPED / shipped
-    return PolicyPilot(path, getattr(config, "foresight", False))
+    alone = isinstance(config, DriverConfig)
+    more = (config.hold, config.patience) if alone else ()
+    return PolicyPilot(path, config.foresight, *more)
 
 
 @lru_cache(maxsize=8)

@@ -16,8 +16,10 @@ from benchnav.world.build import build
 from tests.reference.foresight import corrected
 
 
-@pytest.mark.parametrize("scenario", ["leaders/dynamic", "corridor/bidirectional"])
-def test_foresight_agrees_with_its_twin(scenario):
+@pytest.mark.parametrize(
+    ("scenario", "hold"), [("leaders/dynamic", 0.9), ("corridor/bidirectional", 0.3)]
+)
+def test_foresight_agrees_with_its_twin(scenario, hold):
     worlds = [build(find(scenario), "validation", seed) for seed in range(9)]
     rng = np.random.default_rng(0)
     batch = AgentBatch(worlds, 9, encoder("surround"), RewardWeights(), rng)
@@ -37,9 +39,9 @@ def test_foresight_agrees_with_its_twin(scenario):
             ],
             axis=-1,
         )
-        found = foresee(seen, bodies, twist, tolerance)
+        found = foresee(seen, bodies, twist, tolerance, hold)
         for b, a in np.argwhere(batch.active):
-            expected = corrected(twist[b, a], seen, bodies, tolerance, b, a)
+            expected = corrected(twist[b, a], seen, bodies, tolerance, b, a, hold)
             np.testing.assert_allclose(found[b, a], expected, atol=1e-9)
             changed += bool((found[b, a] != twist[b, a]).any())
         assert (found[~batch.active] == twist[~batch.active]).all()

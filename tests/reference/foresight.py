@@ -9,8 +9,14 @@ from shapely import LineString, Point
 from benchnav.arena.solid import Kind
 
 
-def danger(twist, seen, bodies, tolerance, b, a):
-    """Of one twist of agent (b, a): 0 where it touches nothing before horizon or goal."""
+def danger(twist, seen, bodies, tolerance, b, a, hold):
+    """Of one twist of agent (b, a), held as long as is safest."""
+    times = np.arange(f.HELD, hold + 1e-9, f.HELD)
+    return min(danger_held(twist, seen, bodies, tolerance, b, a, held) for held in times)
+
+
+def danger_held(twist, seen, bodies, tolerance, b, a, held):
+    """0 where it touches nothing before horizon or goal."""
     v, w = twist
     near, edges = seen.neighbours, seen.edges
     radius = bodies.radius[b, a]
@@ -21,7 +27,7 @@ def danger(twist, seen, bodies, tolerance, b, a):
     back = 0.0
     for k in range(round(f.HORIZON / f.TICK)):
         time = (k + 1) * f.TICK
-        turn = w if time <= f.HELD + 1e-9 else 0.0
+        turn = w if time <= held + 1e-9 else 0.0
         way = heading + turn * f.TICK / 2
         spot = spot + v * f.TICK * np.array([math.cos(way), math.sin(way)])
         heading += turn * f.TICK
@@ -42,17 +48,17 @@ def danger(twist, seen, bodies, tolerance, b, a):
     return back
 
 
-def corrected(twist, seen, bodies, tolerance, b, a):
+def corrected(twist, seen, bodies, tolerance, b, a, hold=f.HELD):
     """The twist that is best by danger and likeness; the learned one where both are zero."""
     top, rate = bodies.max_speed[b, a], bodies.max_turn_rate[b, a]
     choices = [tuple(twist)]
-    if danger(twist, seen, bodies, tolerance, b, a) > 0:
+    if danger(twist, seen, bodies, tolerance, b, a, hold) > 0:
         choices += [
             (v, w) for v in np.linspace(0, top, f.SPEEDS) for w in np.linspace(-rate, rate, f.TURNS)
         ]
 
     def cost(choice):
         apart = abs(choice[0] - twist[0]) / top + abs(choice[1] - twist[1]) / rate / 2
-        return danger(choice, seen, bodies, tolerance, b, a) + apart
+        return danger(choice, seen, bodies, tolerance, b, a, hold) + apart
 
     return min(choices, key=cost)

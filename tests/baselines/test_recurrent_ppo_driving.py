@@ -1,0 +1,168 @@
+"""What a learned driver keeps in mind, and what it does where it cannot get on."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from benchnav_baselines.recurrent_ppo import detour
+from benchnav_baselines.recurrent_ppo.detour import Detours
+from benchnav_baselines.recurrent_ppo.policy_pilot import SHIPPED, PolicyPilot
+from benchnav_baselines.recurrent_ppo.sightings import MEMORY, Sightings
+
+from benchnav.arena.solid import Kind
+from benchnav.envs.encoders.encoder import Bodies
+from benchnav.navigation.configure import make
+from benchnav.navigation.navigator import Need
+from benchnav.plugins import NAVIGATORS
+from benchnav.testing.observations import briefings_of, observations_of
+from benchnav.testing.scenes import USUAL, scene
+from tests.reference import detour as slow_detour
+from tests.reference import sightings as slow_sightings
+
+SENSORS = frozenset({Need.RAYS, Need.NEIGHBOURS, Need.EDGES})
+
+
+@pytest.fixture(scope="module")
+def shown():
+    """(briefings, observations, bodies) of some decisions in three worlds."""
+    worlds = [replace(scene(k, 6), sensing=USUAL) for k in range(3)]
+    told = briefings_of(worlds, SENSORS)
+    limits = [
+        np.array([getattr(t, name) for t in told])
+        for name in ("radius", "max_speed", "max_turn_rate")
+    ]
+    return told, list(observations_of(worlds, SENSORS, frames=20)), Bodies(*limits)
+
+
+def standing(seen, time):
+    """The same view, later."""
+    return replace(seen, time=np.full(len(seen), time))
+
+
+def test_sightings_agree_with_their_twin(shown):
+    told, views, bodies = shown
+    mine = Sightings()
+    for row, one in enumerate(told):
+        mine.reset(row, one)
+    kept, remembered, hidden = {}, 0, 0
+    for seen in views:
+        found = mine.limit(seen, bodies.radius)
+        for b, a in np.argwhere(seen.active):
+            radius, dt = bodies.radius[b, a], told[b].dt
+            kept[b, a] = slow_sightings.others(seen, radius, dt, kept.get((b, a), []), b, a)
+            near, count = found.neighbours, found.neighbours.count[b, a]
+            assert count == len(kept[b, a])
+            for n, (kind, place, velocity, size, _) in enumerate(kept[b, a]):
+                assert (near.kind[b, a, n], near.radius[b, a, n]) == (kind, size)
+                np.testing.assert_allclose(near.position[b, a, n], place, atol=1e-9)
+                np.testing.assert_allclose(near.velocity[b, a, n], velocity, atol=1e-9)
+            edges, E = found.edges, found.edges.count[b, a]
+            pairs = list(zip(edges.start[b, a, :E], edges.end[b, a, :E], strict=True))
+            np.testing.assert_array_equal(
+                np.reshape(pairs, (-1, 4)),
+                np.reshape(slow_sightings.edges(seen, radius, b, a), (-1, 4)),
+            )
+            remembered += sum(one[-1] > 0 for one in kept[b, a])
+            hidden += seen.edges.count[b, a] - E
+    assert remembered > 10
+    assert hidden > 10
+
+
+def test_who_is_not_met_again_is_forgotten(shown):
+    told, views, bodies = shown
+    mine = Sightings()
+    for row, one in enumerate(told):
+        mine.reset(row, one)
+    before = mine.limit(views[0], bodies.radius).neighbours.count.sum()
+    assert before > 0
+    blind = replace(views[0], rays=replace(views[0].rays, kind=np.zeros_like(views[0].rays.kind)))
+    for _ in range(math.floor(MEMORY / told[0].dt)):
+        count = mine.limit(blind, bodies.radius).neighbours.count.sum()
+    assert count == before
+    assert mine.limit(blind, bodies.radius).neighbours.count.sum() == 0
+
+
+def test_the_policy_of_seven_rays_learns_of_nothing_else(shown):
+    """What no ray met changes nothing that it does."""
+    told, views, _ = shown
+    drivers = [make(NAVIGATORS, "recurrent-ppo") for _ in range(2)]
+    for driver in drivers:
+        driver.reset(told, np.arange(3))
+    for seen in views[:8]:
+        none = np.zeros_like(seen.neighbours.count)
+        away = replace(seen, neighbours=replace(seen.neighbours, count=none))
+        nobody = (seen.rays.kind != Kind.AGENT) & (seen.rays.kind != Kind.DYNAMIC)
+        alone = nobody.all(axis=-1) & seen.active
+        first, second = drivers[0].act(replace(seen, active=alone)), None
+        second = drivers[1].act(replace(away, active=alone))
+        np.testing.assert_array_equal(first[alone], second[alone])
+    assert alone.any()
+
+
+def test_who_stands_takes_the_way_that_its_twin_takes(shown):
+    told, views, bodies = shown
+    seen, dt = views[3], told[0].dt
+    mine = Detours(patience=1.0)
+    for row, one in enumerate(told):
+        mine.reset(row, one)
+    still = np.zeros((*seen.active.shape, 2))
+    command = still.copy()
+    for k in range(round(1.0 / dt) + 1):
+        assert (command == still).all()
+        command = still.copy()
+        mine.steer(standing(seen, k * dt), bodies, command)
+    for b, a in np.argwhere(seen.active):
+        course = slow_detour.course(seen, bodies.radius[b, a], b, a)
+        error = math.remainder(course - seen.heading[b, a], 2 * math.pi)
+        rate = bodies.max_turn_rate[b, a]
+        expected = [
+            bodies.max_speed[b, a] * max(0.0, math.cos(error)),
+            min(max(error / dt, -rate), rate),
+        ]
+        np.testing.assert_allclose(command[b, a], expected, atol=1e-9)
+    assert (command[~seen.active] == 0.0).all()
+
+
+def test_a_second_detour_from_there_is_another_and_longer(shown):
+    told, views, bodies = shown
+    seen, dt = views[3], told[0].dt
+    mine = Detours(patience=1.0)
+    for row, one in enumerate(told):
+        mine.reset(row, one)
+    begun, lengths = [], []
+    for k in range(round(20.0 / dt)):
+        command = np.full((*seen.active.shape, 2), -9.0)  # what nobody steers
+        mine.steer(standing(seen, k * dt), bodies, command)
+        away = bool((command[0, 0] != -9.0).any())
+        if away and (not lengths or lengths[-1] < 0):
+            begun.append(mine._kept.take("state", seen.rows, 6)[0, 0, detour._COURSE])
+            lengths.append(0)
+        if away:
+            lengths[-1] += 1
+        elif lengths and lengths[-1] > 0:
+            lengths.append(-1)
+    lengths = [n * dt for n in lengths if n > 0]
+    assert lengths[:2] == pytest.approx([detour.LASTS, 2 * detour.LASTS], abs=dt)
+    first = slow_detour.course(seen, bodies.radius[0, 0], 0, 0)
+    second = slow_detour.course(seen, bodies.radius[0, 0], 0, 0, last=first)
+    assert begun[:2] == pytest.approx([first, second])
+
+
+def test_who_gets_on_is_left_alone(shown):
+    told, views, bodies = shown
+    mine = Detours(patience=1.0)
+    for row, one in enumerate(told):
+        mine.reset(row, one)
+    for k in range(30):
+        moved = views[0].position + 0.3 * k
+        command = np.full((*views[0].active.shape, 2), 0.125)
+        mine.steer(replace(views[0], position=moved), bodies, command)
+        assert (command == 0.125).all()
+
+
+def test_without_foresight_and_patience_it_is_the_policy_alone():
+    alone = PolicyPilot(SHIPPED / "recurrent-ppo.safetensors", foresight=False)
+    assert alone.needs == {Need.RAYS}
+    driver = make(NAVIGATORS, "recurrent-ppo")
+    assert driver.required == SENSORS
