@@ -6,7 +6,7 @@ OUT ?= runs/quick
 READY := $(VENV)/.ready
 PEERS := .venv-peers
 
-.PHONY: setup run test check lint types layers pytest bench clean
+.PHONY: setup run test test-all check lint types layers bench clean
 
 setup: $(READY)  ## .venv with everything, at the versions of constraints.txt
 
@@ -33,10 +33,11 @@ types: $(READY)
 layers: $(READY)
 	$(BIN)/lint-imports
 
-pytest: $(READY)
-	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal
+test: check $(READY)  ## all checks, and all tests but the long ones
+	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal -m 'not long'
 
-test: check pytest  ## all checks and tests
+test-all: check $(READY)  ## all checks and tests, as CI runs them
+	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal
 
 bench: $(READY) $(PEERS)/.ready  ## speed against peers and limits; writes docs/benchmarks.md
 	$(BIN)/python -m benchmarks --peers $(PEERS)/bin/python --out docs/benchmarks.md

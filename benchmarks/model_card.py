@@ -1,20 +1,22 @@
-"""``python -m benchmarks.model_card recurrent-ppo --training DIR``: measure a learned navigator.
+"""``python -m benchmarks.model_card recurrent-ppo [--seed WEIGHTS]``: measure a learned navigator.
 
 Writes its model card: where it learned, what that cost, what each stage gained, and strict
 success per agent in worlds of the test split, with the interval clustered by world, beside
-what full knowledge reached in the same worlds.
+what full knowledge reached in the same worlds, what the policy reaches that nothing corrects,
+and what other seeds of the training reached.
 """
 
 import argparse
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import yaml
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import FloatArray
@@ -22,7 +24,7 @@ from benchnav.episode.episode import Episode
 from benchnav.leaderboard.interval import effective_size, mid_p
 from benchnav.metrics.smoothness import turning
 from benchnav.metrics.success import success, timeout
-from benchnav.navigation.configure import make
+from benchnav.navigation.configure import Spec, make
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
@@ -34,7 +36,10 @@ SCENARIOS = (
 )  # fmt: skip
 CHUNK = 50  # worlds of a task
 KINDS = (Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.DYNAMIC)
+LEADERS = tuple(name for name in SCENARIOS if name.startswith("leaders/"))
 KNOWLEDGE = Path("docs/learning/full_knowledge.json")
+CURVES = Path("docs/learning/curves")
+ALONE = {"foresight": False, "patience": 0}
 
 
 @dataclass(frozen=True)
@@ -52,7 +57,7 @@ class Row:
     turning: float  # [rad/m]
 
 
-def measure(navigator: str, scenario: str, agents: int) -> Row:
+def measure(navigator: Spec, scenario: str, agents: int) -> Row:
     """Run ``navigator`` for ``agents`` or more in the first test worlds, without a map."""
     each = int(build(find(scenario), "test", 0).agents.evaluated.sum())
     worlds = -(-agents // each)
@@ -76,12 +81,12 @@ def measure(navigator: str, scenario: str, agents: int) -> Row:
     )  # fmt: skip
 
 
-def _run(task: tuple[str, str, int, int]) -> list[tuple[FloatArray, FloatArray, FloatArray, list]]:
+def _run(task: tuple[Spec, str, int, int]) -> list[tuple[FloatArray, FloatArray, FloatArray, list]]:
     navigator, name, first, stop = task
     scenario = find(name)
     background = scenario.driver_specs
     about = Assignment(
-        scenario.identity, scenario.hash, "test", "unknown", navigator, navigator, background,
+        scenario.identity, scenario.hash, "test", "unknown", "measured", navigator, background,
         salt="00",
     )  # fmt: skip
     worlds = [(seed, build(scenario, "test", seed)) for seed in range(first, stop)]
@@ -107,9 +112,9 @@ def _first_hits(episode: Episode, who: Any) -> Iterator[int]:
             yield int(contacts.kind[rows[0]])
 
 
-def card(navigator: str, rows: list[Row], training: Path | None) -> str:
-    """The card as Markdown."""
-    about = make(NAVIGATORS, navigator).about
+def card(navigator: str, rows: list[Row], alone: list[Row], seeds: dict[int, list[Row]]) -> str:
+    """The card as Markdown: of the navigator, its policy alone, and other seeds' trainings."""
+    about = make(NAVIGATORS, navigator).pilot.about
     progress = about["progress"]
     known = {k["scenario"]: k for k in json.loads(KNOWLEDGE.read_text())}
     lines = [
@@ -133,34 +138,71 @@ def card(navigator: str, rows: list[Row], training: Path | None) -> str:
         "|---|---|---|---|---|---|---|",
     ]
     lines += [_line(row, known.get(row.scenario)) for row in rows]
-    if training is not None:
-        lines += ["", *_stages(training)]
+    lines += ["", *_alone(alone)]
+    if seeds:
+        lines += ["", *_seeds({progress["seed"]: rows, **seeds})]
+    lines += ["", *_stages(about["recipe"], progress["seed"])]
     return "\n".join([*lines, ""])
 
 
+def _alone(rows: list[Row]) -> Iterator[str]:
+    yield "The policy alone, which nothing corrects (`foresight: false, patience: 0`):"
+    yield ""
+    yield "| scenario | agents | success % | hit by agent, wall, static, mover % | timeout % |"
+    yield "|---|---|---|---|---|"
+    for row in rows:
+        yield (
+            f"| {row.scenario} | {row.agents:,} | {_rate(row)} | {_hits(row)} |"
+            f" {100 * row.timeout:.2f} |"
+        )
+
+
+def _seeds(seeds: dict[int, list[Row]]) -> Iterator[str]:
+    """Success of each seed of the training."""
+    yield "Success % of the same recipe, trained with other seeds:"
+    yield ""
+    yield f"| seed | {' | '.join(LEADERS)} |"
+    yield "|---|" + "---|" * len(LEADERS)
+    for seed, rows in sorted(seeds.items()):
+        found = {row.scenario: _rate(row) for row in rows}
+        yield f"| {seed} | {' | '.join(found[name] for name in LEADERS)} |"
+
+
+def _rate(row: Row) -> str:
+    return f"{100 * row.success:.2f} [{100 * row.low:.2f}, {100 * row.high:.2f}]"
+
+
+def _hits(row: Row) -> str:
+    return ", ".join(f"{100 * row.hits[kind.name.lower()]:.2f}" for kind in KINDS)
+
+
 def _line(row: Row, known: dict[str, Any] | None) -> str:
-    hits = ", ".join(f"{100 * row.hits[kind.name.lower()]:.2f}" for kind in KINDS)
     full = "" if known is None else f"{100 * known['success']:.2f}"
+    rate, _, interval = _rate(row).partition(" ")
     return (
-        f"| {row.scenario} | {row.agents:,} | **{100 * row.success:.2f}** [{100 * row.low:.2f},"
-        f" {100 * row.high:.2f}] | {full} | {hits} | {100 * row.timeout:.2f} | {row.turning:.2f} |"
+        f"| {row.scenario} | {row.agents:,} | **{rate}** {interval} | {full} | {_hits(row)} |"
+        f" {100 * row.timeout:.2f} | {row.turning:.2f} |"
     )
 
 
-def _stages(training: Path) -> Iterator[str]:
+def _stages(recipe: str, seed: int) -> Iterator[str]:
     """What each stage gained, on the validation split."""
-    from benchnav_baselines.recurrent_ppo.log import read_curve
+    from benchnav_baselines.recurrent_ppo.log import read_rows
+    from benchnav_baselines.recurrent_ppo.recipe import Recipe
+    from benchnav_baselines.recurrent_ppo.trainer import RecurrentPPOTrainer
 
-    curve = read_curve(training)
-    said = json.loads((training / "training.json").read_text())["recipe"]
+    curve = read_rows(CURVES / f"{recipe}-{seed}.csv")
+    said = RecurrentPPOTrainer.recipes / f"{recipe}.yaml"
+    stages = Recipe(**yaml.safe_load(said.read_text("utf-8"))).stages
     names = [name for name in curve[0] if name.startswith("validation ")]
-    corrected = [str(k) for k, stage in enumerate(said["stages"], 1) if stage.get("foresight")]
-    how = f"corrected by foresight in stage {', '.join(corrected)} alone" if corrected else "as is"
+    corrected = [str(k) for k, stage in enumerate(stages, 1) if stage.foresight]
+    only = f"corrected by foresight in stage {', '.join(corrected)} alone"
+    how = only if corrected else "of the policy alone"
     yield f"Success on the validation split at the end of each stage, {how}:"
     yield ""
     yield "| stage | decisions | " + " | ".join(n.removeprefix("validation ") for n in names) + " |"
     yield "|---|---|" + "---|" * len(names)
-    for stage in range(len(said["stages"])):
+    for stage in range(len(stages)):
         last = next((row for row in curve if row["stage"] > stage), curve[-1])
         cells = " | ".join(f"{100 * last[name]:.1f}" for name in names)
         yield f"| {stage + 1} | {last['decisions']:,.0f} | {cells} |"
@@ -172,14 +214,28 @@ def main() -> None:
     parser.add_argument("navigator")
     parser.add_argument("--agents", type=int, default=10_000, help="at least so many a scenario")
     parser.add_argument("--scenario", action="append", help="instead of all; may be given again")
-    parser.add_argument("--training", type=Path, help="folder of the training, for its stages")
+    parser.add_argument(
+        "--seed", type=Path, action="append", default=[],
+        help="weights that another seed gave; may be given again",
+    )  # fmt: skip
     parser.add_argument("--out", type=Path, help="the card; and the numbers as JSON beside it")
     asked = parser.parse_args()
-    rows = []
-    for scenario in asked.scenario or SCENARIOS:
-        rows.append(measure(asked.navigator, scenario, asked.agents))
-        print(rows[-1], flush=True)
-    text = card(asked.navigator, rows, asked.training)
+
+    def measured(names: Sequence[str], **changes: Any) -> list[Row]:
+        rows = []
+        for scenario in names:
+            rows.append(measure({"type": asked.navigator, **changes}, scenario, asked.agents))
+            print(changes, rows[-1], flush=True)
+        return rows
+
+    seeds = {
+        make(NAVIGATORS, {"type": asked.navigator, "weights": str(path)}).pilot.about["progress"][
+            "seed"
+        ]: measured(LEADERS, weights=str(path))
+        for path in asked.seed
+    }
+    rows = measured(asked.scenario or SCENARIOS)
+    text = card(asked.navigator, rows, measured(LEADERS, **ALONE), seeds)
     if asked.out:
         asked.out.write_text(text)
     else:

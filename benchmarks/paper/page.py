@@ -48,6 +48,8 @@ def _head(evidence: Evidence) -> Iterator[str]:
         " shipped"
         " weights. Success is arrival with no collision before it, per agent; every interval is"
         " 95 %,"
-        " clustered by world, and differences are paired by world."
+        " clustered by world, and differences are paired by world. `recurrent-ppo` is the method"
+        " as printed: predicted collisions weigh in its reward, and correct no command"
+        " (`foresight: false, patience: 0`)."
     )
     yield ""

@@ -20,7 +20,7 @@ clock: {dt: 0.2, substeps: 2, horizon: 6}
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(not tells_memory(), reason="without /proc nobody knows who is still there")
 @pytest.mark.parametrize("parent_only", [False, True])
 def test_a_run_that_is_killed_ends_as_an_unbroken_one(tmp_path, parent_only):

@@ -75,7 +75,7 @@ def run(tmp_path_factory):
     return folder
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_page_is_made_from_a_run_of_the_suite(run, tmp_path):
     text = page(run, Pictures(tmp_path))
     for about, _ in claims.CLAIMS:

@@ -9,12 +9,21 @@ from tests.docs.blocks import ROOT, Reader, blocks, documents
 LINK = re.compile(r"(?<!!)\[[^\]]*\]\((?P<to>[^)\s]+)\)|!\[[^\]]*\]\((?P<picture>[^)\s]+)\)")
 
 
+LONG = {"cluster", "learning", "running", "verification"}
+
+
 def named(paths):
     return [pytest.param(path, id=str(path.relative_to(ROOT))) for path in paths]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("document", named(d for d in documents() if blocks(d)))
+def executed():
+    for document in documents():
+        if blocks(document):
+            mark = pytest.mark.long if document.stem in LONG else pytest.mark.slow
+            yield pytest.param(document, id=str(document.relative_to(ROOT)), marks=mark)
+
+
+@pytest.mark.parametrize("document", executed())
 def test_what_a_document_says_can_be_done(document, tmp_path):
     reader = Reader(tmp_path)
     for block in blocks(document):

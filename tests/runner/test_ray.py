@@ -73,7 +73,7 @@ class Kills(Progress):
         self.done += episodes
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_machine_that_dies_changes_nothing(suite, tmp_path, cluster, monkeypatch):
     lost = []
     lose = ray_executor._Site._lose

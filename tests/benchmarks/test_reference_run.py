@@ -1,0 +1,80 @@
+"""The reference run that docs/leaderboard keeps: a sample is verified, and run again."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from benchmarks.reference_run import DIGITS, METRICS, SAMPLE, SUITE, digests
+from benchnav.runner.run import run_suite
+from benchnav.runner.suite import Selection, load_suite
+from benchnav.runner.verify.verify import Wanted, verify
+from benchnav.store.run_folder import RunFolder
+from benchnav.store.unpack import opened
+
+KEPT = Path(__file__).parents[2] / "docs" / "leaderboard"
+NAME = "standard-1"
+AGAIN = ("straight-line", "orca", "visibility+social-force", "ompl-orca", "q-learning")
+
+
+@pytest.fixture(scope="module")
+def said():
+    return json.loads((KEPT / f"{NAME}.json").read_text("utf-8"))
+
+
+def flat(kept):
+    """{(scenario, track, navigator): digests of its seeds}."""
+    return {
+        (scenario, track, who): values.split() if isinstance(values, str) else values
+        for scenario, tracks in kept.items()
+        for track, navigators in tracks.items()
+        for who, values in navigators.items()
+    }
+
+
+def test_it_is_of_the_suite_that_ships(said):
+    suite = load_suite(SUITE, Selection(seeds="10"))
+    assert said["suite"] == f"{suite.name}@{suite.version}"
+    cells = {
+        (cell.scenario.identity, cell.track, cell.entry.label)
+        for cell in suite.cells()
+        if not cell.reason
+    }
+    assert set(flat(said["digests"])) == cells
+    assert all(len(values) == 10 for values in flat(said["digests"]).values())
+    assert said["verified"]
+    assert said["seconds"] < 3600
+
+
+def test_its_sample_is_verified_and_of_it(said):
+    with opened(KEPT / f"{NAME}-sample.bnrun") as run:
+        report = verify(run, Wanted(twin=3), workers=0)
+        assert report.findings == []
+        assert report.counts["episodes"] > 50
+        assert report.counts["twin episodes"] == 3
+        assert run.manifest.salt == said["salt"]
+        every = flat(said["digests"])
+        for cell, (first,) in flat(digests(run)).items():
+            assert first == every[cell][0], cell
+
+
+def test_run_again_it_is_the_same(said, tmp_path):
+    """Of navigators whose arithmetic is the same on every processor."""
+    wanted = Selection(SAMPLE, navigators=AGAIN, seeds="2", salt=said["salt"])
+    run_suite(load_suite(SUITE, wanted), tmp_path / "again", workers=0)
+    every, found = flat(said["digests"]), flat(digests(RunFolder.open(tmp_path / "again")))
+    assert len(found) > len(SAMPLE) * len(AGAIN)
+    for cell, values in found.items():
+        assert values == every[cell][:2], cell
+        assert {len(value) for value in values} == {DIGITS}
+
+
+def test_the_page_and_the_records_are_of_it(said):
+    page = (KEPT / f"{NAME}.md").read_text("utf-8")
+    assert said["pack"]["sha256"] in page
+    assert said["suite_hash"] in page
+    with (KEPT / f"{NAME}.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["metric"] for row in rows} == set(METRICS)
+    assert {row["navigator"] for row in rows} == {who for _, _, who in flat(said["digests"])}
