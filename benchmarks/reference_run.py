@@ -225,7 +225,7 @@ def main() -> None:
     asked = parser.parse_args()
     run = execute(asked.run, SEEDS)
     seconds = lasted(run) if asked.seconds is None else asked.seconds
-    report = verify(run, Wanted(), progress=progress(quiet=False))
+    report = verify(run, Wanted(twin=5), progress=progress(quiet=False))
     for finding in report.few(20):
         print(finding)
     packed = asked.run.with_name(asked.run.name + SUFFIX)

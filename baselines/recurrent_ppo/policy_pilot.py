@@ -35,14 +35,14 @@ class PolicyConfig(PluginConfig):
 
     weights: str = Field("", description="file that `benchnav train` wrote; its own if empty")
     foresight: bool = Field(True, description="correct twists that would collide")
+    hold: float = Field(
+        0.9, ge=HELD, le=2, description="[s] that looking ahead may hold a twist at most"
+    )
 
 
 class DriverConfig(PolicyConfig):
     """The same for who finds the way alone."""
 
-    hold: float = Field(
-        0.9, ge=HELD, le=2, description="[s] that looking ahead may hold a twist at most"
-    )
     patience: float = Field(
         4.0, ge=0, description="[s] of standing after which to try another way; 0: never"
     )
@@ -63,7 +63,7 @@ class PolicyPilot(Pilot):
     """
 
     def __init__(
-        self, weights: Path, foresight: bool, hold: float = HELD, patience: float = 0.0
+        self, weights: Path, foresight: bool, hold: float, patience: float = 0.0
     ) -> None:
         self._actor, self.about = _loaded(weights)
         self._encoder = encoder(self.about["encoder"])
@@ -149,9 +149,7 @@ class PolicyPilot(Pilot):
 def pilot_of(config: Any, shipped: str) -> PolicyPilot:
     """By a `PolicyConfig` or `DriverConfig`; ``shipped`` are its weights where it names none."""
     path = Path(config.weights) if config.weights else SHIPPED / shipped
-    alone = isinstance(config, DriverConfig)
-    more = (config.hold, config.patience) if alone else ()
-    return PolicyPilot(path, config.foresight, *more)
+    return PolicyPilot(path, config.foresight, config.hold, getattr(config, "patience", 0.0))
 
 
 @lru_cache(maxsize=8)

@@ -30,7 +30,7 @@ def share(navigator, name, track, worlds):
 
 def shown_the_way(name):
     """The navigator as it drives where a planner knows the way: without detours."""
-    return {"type": name, "hold": 0.3, "patience": 0} if "ppo" in name else name
+    return {"type": name, "patience": 0} if "ppo" in name else name
 
 
 def views(needs):

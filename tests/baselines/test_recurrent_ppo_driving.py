@@ -162,7 +162,7 @@ def test_who_gets_on_is_left_alone(shown):
 
 
 def test_without_foresight_and_patience_it_is_the_policy_alone():
-    alone = PolicyPilot(SHIPPED / "recurrent-ppo.safetensors", foresight=False)
+    alone = PolicyPilot(SHIPPED / "recurrent-ppo.safetensors", foresight=False, hold=0.3)
     assert alone.needs == {Need.RAYS}
     driver = make(NAVIGATORS, "recurrent-ppo")
     assert driver.required == SENSORS
