@@ -62,9 +62,7 @@ class PolicyPilot(Pilot):
     Who sees by rays looks ahead with what these meet.
     """
 
-    def __init__(
-        self, weights: Path, foresight: bool, hold: float, patience: float = 0.0
-    ) -> None:
+    def __init__(self, weights: Path, foresight: bool, hold: float, patience: float = 0.0) -> None:
         self._actor, self.about = _loaded(weights)
         self._encoder = encoder(self.about["encoder"])
         self._foresight, self._hold = foresight, hold
