@@ -23,7 +23,7 @@ def executed():
             yield pytest.param(document, id=str(document.relative_to(ROOT)), marks=mark)
 
 
-@pytest.mark.parametrize("document", executed())
+@pytest.mark.parametrize("document", list(executed()))
 def test_what_a_document_says_can_be_done(document, tmp_path):
     reader = Reader(tmp_path)
     for block in blocks(document):
