@@ -40,6 +40,8 @@ class Summary:
     """Worlds by (navigator, scenario, what it tells of them)."""
     missing: Counter[tuple[str, str]] = field(default_factory=Counter)
     """Values by (metric, why it failed)."""
+    tracebacks: dict[tuple[str, str], str] = field(default_factory=dict)
+    """One for each (navigator, kind of reason) of what was raised."""
 
     def count(self, task: Task, outcome: Outcome) -> None:
         """A task is finished."""
@@ -51,6 +53,7 @@ class Summary:
         self.unled.update((label, scenario, team) for _, team in outcome.unled)
         self.remarks.update((label, scenario, text) for _, text in outcome.remarks)
         self.missing.update(outcome.missing)
+        self.tracebacks |= {(label, kind): text for kind, text in outcome.tracebacks.items()}
         if outcome.lacks:
             self.total -= len(task.seeds)
             if all(cell != task.cell for cell, _ in self.not_applicable):

@@ -61,6 +61,7 @@ EPISODES = pa.schema(
         ("rehearsal_seconds", pa.float64()),
         ("remarks", pa.list_(pa.string())),
         ("twist", pa.large_list(pa.bool_())),  # of every agent; null: not known
+        ("traceback", pa.string()),  # of the failure; null where nothing was raised
     ]
 )
 LATER = (
@@ -73,6 +74,7 @@ LATER = (
     "rehearsal_seconds",
     "remarks",
     "twist",
+    "traceback",
 )  # columns that older parts lack; null there
 DICTIONARY = [*_IDENTITY, "navigator_hash", "failure"]  # columns whose values repeat
 
@@ -100,6 +102,7 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
     columns["memory_bytes"] = [e.timings.memory for e in episodes]
     columns["remarks"] = [list(e.remarks) for e in episodes]
     columns["twist"] = [e.twist for e in episodes]
+    columns["traceback"] = [e.traceback or None for e in episodes]
     columns["rehearsal_seconds"] = [e.timings.rehearsal for e in episodes]
     arrays = [
         values if isinstance(values, pa.Array) else pa.array(values, type=field.type)
@@ -159,6 +162,7 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
         rehearsals=scalar("rehearsals") or 0,
         rehearsal_decisions=scalar("rehearsal_decisions") or 0,
         remarks=tuple(scalar("remarks") or ()),
+        traceback=scalar("traceback") or "",
         twist=None if twist is None else np.array(twist, np.bool_),
         **arrays,
     )

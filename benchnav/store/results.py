@@ -30,6 +30,8 @@ RESULTS = pa.schema(
         ("rehearsal_decisions", pa.int64()),  # of agents, in the rehearsals of this world
         ("rehearsal_seconds", pa.float64()),  # of the navigator that led
         ("missing", pa.string()),  # how the metric failed; "" where it did not, and in older parts
+        ("traceback", pa.string()),  # of that; null where nothing was raised, and in older parts
+        ("remarks", pa.list_(pa.string())),  # of the navigator on this episode; null likewise
     ]
 )
 
@@ -40,6 +42,8 @@ LATER = {
     "rehearsal_decisions": 0,
     "rehearsal_seconds": 0.0,
     "missing": "",
+    "traceback": None,
+    "remarks": None,
 }
 """Columns that older parts lack, and what stands for them."""
 
