@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from typing import Any, Literal
 
 from benchnav.errors import CorruptPartError, StoreError
 from benchnav.store import checked_json
+from benchnav.store.run_path import RunPath, run_path
 
 SCHEMA = 3  # of a run folder's layout and columns; 2: rehearsals; 3: all that verifying needs
 MANIFEST = "manifest.json"
@@ -71,13 +71,14 @@ def versions() -> dict[str, str]:
     return found
 
 
-def load_manifest(run: Path) -> Manifest:
+def load_manifest(run: RunPath) -> Manifest:
     """The manifest of a run folder.
 
     Raises:
         StoreError: the folder is no run, or a newer benchnav wrote it.
         CorruptPartError: its manifest is damaged, or names a cell that no folder may be called.
     """
+    run = run_path(run)
     path = run / MANIFEST
     if not path.is_file():
         what = "Got a file" if run.is_file() else "It is not there" if not run.exists() else None
