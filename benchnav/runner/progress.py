@@ -13,11 +13,11 @@ UNKNOWN = "estimating the time left"
 class Progress:
     """Counts finished episodes, and says nothing."""
 
-    def begin(self, total: int, stored: int, loads: Iterable[Load] = ()) -> None:
-        """Of ``total`` episodes, ``stored`` are there already; ``loads`` are the tasks that come.
+    def begin(self, total: int, stored: int) -> None:
+        """Of ``total`` episodes, ``stored`` are there already."""
 
-        Without loads the time that is left follows from the episodes alone.
-        """
+    def expect(self, loads: Iterable[Load]) -> None:
+        """These tasks will be run; unless told, the time left follows from the episodes alone."""
 
     def start(self, worker: Hashable, load: Load) -> None:
         """A worker begins a task."""
@@ -42,11 +42,13 @@ class _Shown(Progress):
         self._clock = clock
         self._estimate = Estimate(clock)
 
-    def begin(self, total: int, stored: int, loads: Iterable[Load] = ()) -> None:
+    def begin(self, total: int, stored: int) -> None:
         self._total, self._stored, self._done = total, stored, stored
         self._began, self._by_load = self._clock(), False
+
+    def expect(self, loads: Iterable[Load]) -> None:
+        self._by_load = True
         for load in loads:
-            self._by_load = True
             self._estimate.expect(load)
 
     def start(self, worker: Hashable, load: Load) -> None:
@@ -75,7 +77,7 @@ class _Shown(Progress):
 class Bar(_Shown):
     """A bar with the time that has passed and that is left."""
 
-    def begin(self, total: int, stored: int, loads: Iterable[Load] = ()) -> None:
+    def begin(self, total: int, stored: int) -> None:
         from rich.console import Console
         from rich.progress import (
             BarColumn,
@@ -87,7 +89,7 @@ class Bar(_Shown):
         from rich.progress import Progress as RichProgress
         from rich.text import Text
 
-        super().begin(total, stored, loads)
+        super().begin(total, stored)
         left = self.left
 
         class Left(ProgressColumn):
@@ -116,8 +118,8 @@ class Bar(_Shown):
 class Lines(_Shown):
     """A line at every tenth of the work, and no more often than every two seconds."""
 
-    def begin(self, total: int, stored: int, loads: Iterable[Load] = ()) -> None:
-        super().begin(total, stored, loads)
+    def begin(self, total: int, stored: int) -> None:
+        super().begin(total, stored)
         self._said = self._began
         self._tenth = 10 * stored // total if total else 10
 

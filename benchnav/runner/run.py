@@ -112,7 +112,8 @@ def run_suite(
         reasons = {cell.key: cell.reason for cell in cells}
         folder = folder.amend(reasons)  # what was not installed then may be now
         tasks = _tasks(suite, folder, cells, wanted, summary)
-        told.begin(summary.total, summary.stored, [task.load for task in tasks])
+        told.begin(summary.total, summary.stored)
+        told.expect(task.load for task in tasks)
         try:
             run_tasks = executor or _locally
             with closing(run_tasks(tasks, workers, told, limits)) as finished:
