@@ -18,7 +18,7 @@ from benchnav.errors import BenchnavError, MissingExtraError
 from benchnav.isolation.frame import HEAD, decode, encode, head
 from benchnav.isolation.seen import maps_changed, observation_of
 from benchnav.isolation.told import briefings_of
-from benchnav.navigation.answer import CallFailed, checked, said
+from benchnav.navigation.answer import CallFailed, checked, remarks_of, said
 from benchnav.navigation.introduction import meet
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Navigator
@@ -82,7 +82,7 @@ class Host:
         return "command", {"command": checked(answer, active)}
 
     def _remarks(self, fields: dict[str, Any]) -> Answer:
-        told = [plain(remark) for remark in self._hosted.remarks(int(fields["row"]))]
+        told = remarks_of(self._hosted.remarks(int(fields["row"])))
         return "remarks", {"says": json.dumps(told)}
 
     @property

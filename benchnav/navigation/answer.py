@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Mapping
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,7 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation.trace import class_name, location, plain
 
 _PLACE = re.compile(r" (\([^()]+:\d+\))\.?( at t = \S+ s)?$")
+MOST_REMARKS = 20  # that are kept of one episode
 _NUMBER = re.compile(r"-?\d[\d.]*(e[-+]?\d+)?")
 _TIME = re.compile(r" at t = \S+ s$")
 
@@ -63,6 +65,14 @@ def short(text: object) -> str:
     """On one line, of at most 300 letters; whatever is no text yet is made one."""
     line = " ".join(plain(text).split())
     return line if len(line) <= 300 else line[:297] + "..."
+
+
+def remarks_of(answer: Any) -> list[str]:
+    """The remarks that a navigator answered: one text is one remark, None is none."""
+    if answer is None:
+        return []
+    given = [answer] if isinstance(answer, str) else islice(answer, MOST_REMARKS)
+    return [short(remark) for remark in given]
 
 
 def kind_of(reason: str) -> str:

@@ -1,7 +1,6 @@
 """One navigator at work in a batch: what it is told, what it sees, what it answers."""
 
 from collections.abc import Sequence
-from itertools import islice
 from time import perf_counter
 
 import numpy as np
@@ -10,7 +9,7 @@ from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
 from benchnav.errors import MissingExtraError
-from benchnav.navigation.answer import CallFailed, checked, said, short
+from benchnav.navigation.answer import CallFailed, checked, remarks_of, said
 from benchnav.navigation.briefing import Briefing, brief
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.observation import Observation
@@ -21,8 +20,6 @@ from benchnav.runner.guard import Guard
 from benchnav.runner.watch import Call, calling
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
-
-_REMARKS = 20  # that are kept of one episode
 
 
 class Driver:
@@ -127,7 +124,7 @@ class Driver:
         """What it has to tell of the world in ``row``; what it cannot tell is lost."""
         try:
             with calling("remarks"):
-                return tuple(map(short, islice(self.navigator.remarks(row), _REMARKS)))
+                return tuple(remarks_of(self.navigator.remarks(row)))
         except (Exception, SystemExit) as error:
             return (_raised("remarks", error)[0],)
 

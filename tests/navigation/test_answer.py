@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchnav.navigation.answer import CallFailed, checked
+from benchnav.navigation.answer import MOST_REMARKS, CallFailed, checked, remarks_of
 
 ACTIVE = np.array([[True, True], [True, False]])
 
@@ -47,3 +47,10 @@ def test_what_is_no_command_is_refused_by_what_it_is(answer, got):
     with pytest.raises(CallFailed, match=got) as failed:
         checked(answer, ACTIVE)
     assert failed.value.suspects is None
+
+
+def test_remarks_are_texts_however_they_are_answered():
+    assert remarks_of(None) == []
+    assert remarks_of("one sentence") == ["one sentence"]
+    assert remarks_of(["a\nb", 3]) == ["a b", "3"]
+    assert len(remarks_of(str(k) for k in range(10**9))) == MOST_REMARKS

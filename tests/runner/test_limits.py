@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import pytest
 
 from benchnav.errors import RunConflictError, UsageError
 from benchnav.metrics.metric import Metric
+from benchnav.navigation.answer import kind_of
 from benchnav.plugins import METRICS
 from benchnav.runner import start as start_module
 from benchnav.runner import task as task_module
@@ -89,7 +91,9 @@ def test_a_navigator_that_cannot_be_made_in_a_worker_fails_there(suite_file, tmp
     assert summary.stored == 4
     (((label, reason), episodes),) = summary.failures.items()
     assert (label, episodes) == ("troubled_navigators:NotThere", 2)
-    assert reason.endswith("cannot be made: OSError: not there.")
+    assert re.search(
+        r"cannot be made: OSError: not there \(troubled_navigators.py:\d+\)\.$", reason
+    )
 
 
 def test_limits_stand_in_the_manifest_and_stay_those_of_the_run(suite_file, tmp_path):
@@ -130,10 +134,13 @@ def test_a_metric_that_raises_costs_its_values_and_the_run_goes_on(suite_file, t
     finally:
         del METRICS._local["tests_broken"]
     assert summary.stored == 2
-    assert summary.missing == {("tests_broken", "ZeroDivisionError: oh"): 1}
+    ((name, fault),) = summary.missing
+    assert name == "tests_broken"
+    assert re.fullmatch(r"ZeroDivisionError: oh \(tests/runner/test_limits\.py:\d+\)", fault)
+    assert "in broken" in summary.tracebacks["walk", kind_of(fault)]
     rows = read_results(tmp_path / "run").to_pylist()
     why = {r["seed"]: r["missing"] for r in rows if r["metric"] == "tests_broken"}
-    assert why == {3: "", 4: "ZeroDivisionError: oh"}
+    assert why == {3: "", 4: fault}
     assert {r["missing"] for r in rows if r["metric"] != "tests_broken"} == {""}
 
 
