@@ -76,9 +76,11 @@ def run_suite(
 ) -> Summary:
     """Run what is not stored yet; afterwards ``out`` holds the whole suite.
 
+    Seeds that a run in ``out`` does not have are added to it.
+
     Args:
         suite: what to run.
-        out: the run folder; missing, empty, or one of the same suite (resumed).
+        out: the run folder; missing, empty, or one of the same suite, resumed or extended.
         workers: processes; None: as many as there are cores; 0: in this process, where nothing
             is limited.
         timeout: [s] that a call of a navigator may last; None: as in ``out``, or as in `Limits`.
@@ -106,6 +108,8 @@ def run_suite(
     folder, limits = start(suite, out, manifest, timeout, memory)
     with folder.writing():
         reasons = {cell.key: cell.reason for cell in cells}
+        if shard is None:
+            folder = folder.extend(suite.seeds)
         folder = folder.amend(reasons)  # what was not installed then may be now
         tasks = _tasks(suite, folder, cells, wanted, summary)
         told.begin(summary.total, summary.stored)
