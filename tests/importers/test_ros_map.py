@@ -115,7 +115,7 @@ CLEAR = {  # black, black and white, of which only the first is opaque
 @pytest.mark.parametrize("map_mode", ["trinary", "scale"])
 def test_a_pixel_that_is_not_opaque_is_unknown(tmp_path, mode, map_mode):
     path = put(tmp_path, False, "tiny.png", mode=map_mode)
-    Image.fromarray(np.array(CLEAR[mode], np.uint8), mode).save(tmp_path / "tiny.png")
+    Image.fromarray(np.array(CLEAR[mode], np.uint8)).save(tmp_path / "tiny.png")
     check(read_map(path), np.array([[1, 0, 0]], bool), np.array([[0, 1, 1]], bool))
 
 
@@ -180,7 +180,7 @@ def test_raw_is_per_cent(tmp_path):
 
 def test_raw_takes_no_notice_of_negate_or_opacity(tmp_path):
     path = put(tmp_path, False, "tiny.png", mode="raw", negate=1)
-    Image.fromarray(np.array([[[0, 0], [100, 255]]], np.uint8), "LA").save(tmp_path / "tiny.png")
+    Image.fromarray(np.array([[[0, 0], [100, 255]]], np.uint8)).save(tmp_path / "tiny.png")
     check(read_map(path), np.array([[0, 1]], bool), np.zeros((1, 2), bool))
 
 

@@ -155,7 +155,7 @@ def _remark_cells(occupancy: Occupancy, unknown_is_free: bool, remark: Remark) -
         remark(
             f"{occupancy.doubtful} of the free cells have the grey"
             f" {ros_map.UNKNOWN_GREY}, which map_saver writes for unknown cells.\n"
-            "If they are unknown, set free_thresh to 0.196 in the map's YAML file and import it again."
+            "If they are unknown, set the map's free_thresh to 0.196 and import it again."
         )
 
 
@@ -246,7 +246,7 @@ def _rows(
     left_out = len(queries.left_out)
     if left_out:
         rows_are = "row is" if left_out == 1 else "rows are"
-        remark(f"{left_out} {rows_are} left out. The first: {queries.left_out[0]}")
+        remark(f"{left_out} {rows_are} left out. The first:\n{queries.left_out[0]}")
     rows = journeys.choose(queries, _MOST if agents is None else agents, bucket)
     wanted = agents or 1
     if len(rows) < wanted:
