@@ -63,7 +63,7 @@ def test_without_a_number_there_are_as_many_agents_as_queries(tmp_path):
     assert mapping["teams"][0]["count"] == 2
     assert remarks[1] == (
         f"1 row is left out. The first:\n{scen}:5: the query must be about hall.map;"
-        " got 'elsewhere.map'."
+        " got 'elsewhere.map'. A map's file must have its published name."
     )
 
 

@@ -153,8 +153,8 @@ def _remark_cells(occupancy: Occupancy, unknown_is_free: bool, remark: Remark) -
         remark("Agents may not enter unknown cells; --unknown-is-free opens them.")
     if occupancy.doubtful:
         remark(
-            f"{occupancy.doubtful} of the free cells have the grey"
-            f" {ros_map.UNKNOWN_GREY}, which map_saver writes for unknown cells.\n"
+            f"{occupancy.doubtful} free cells have the grey {ros_map.UNKNOWN_GREY},"
+            " by which map_saver marks unknown cells.\n"
             "If they are unknown, set the map's free_thresh to 0.196 and import it again."
         )
 
@@ -251,8 +251,11 @@ def _rows(
     wanted = agents or 1
     if len(rows) < wanted:
         within = "" if bucket is None else f" in bucket {bucket}"
+        cure = "Ask for fewer agents."
+        if not rows and bucket is not None:
+            cure = f"The file has buckets {queries.bucket.min()} to {queries.bucket.max()}."
         raise MapError(
-            f"{path}:1: there must be {wanted} queries{within} that share no start and no goal; "
-            f"there are {len(rows)}. Ask for fewer agents."
+            f"{path}:1: there must be {wanted} {'query' if wanted == 1 else 'queries'}{within}"
+            f" that share no start and no goal; there are {len(rows)}. {cure}"
         )
     return rows

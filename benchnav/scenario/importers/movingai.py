@@ -157,7 +157,10 @@ def _query(
 ) -> tuple[int, tuple[int, int], tuple[int, int], float]:
     fields = _fields(where, line, versioned)
     if not _same_map(fields[1], map_name):
-        raise MapError(f"{where}: the query must be about {map_name}; got {_got(fields[1])}.")
+        raise MapError(
+            f"{where}: the query must be about {map_name}; got {_got(fields[1])}."
+            " A map's file must have its published name."
+        )
     bucket, *size, sx, sy, gx, gy = (
         _count(where, fields, i) for i in range(len(fields) - 1) if i != 1
     )
