@@ -144,7 +144,8 @@ class Scenario(Spec):
                 key = (*place, "shape", "file")
                 path = self._folder / shape.file
                 yield key, path
-                image = _image_of(path) if shape.type == "occupancy" else None
+                is_ros = isinstance(shape, Occupancy) and shape.format == "ros"
+                image = _image_of(path) if is_ros else None
                 if image is not None:
                     yield key, image
         for i, group in enumerate(self.dynamic):
@@ -175,8 +176,6 @@ def _image_of(path: Path) -> Path | None:
     from benchnav.errors import ScenarioError
     from benchnav.scenario.yaml_reader import read_yaml
 
-    if path.suffix not in {".yaml", ".yml"}:
-        return None
     try:
         data: Any = read_yaml(path).data
     except ScenarioError:

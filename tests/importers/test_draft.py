@@ -282,3 +282,13 @@ def test_remarks_on_cells_and_journeys(ros, tiny):
     assert remarks[1].startswith("5 free cells have the grey 205")
     assert "set the map's free_thresh to 0.196" in remarks[1]
     assert max(len(line) for remark in remarks for line in remark.splitlines()) <= 80
+
+
+def test_the_image_counts_whatever_the_map_file_is_called(tmp_path):
+    path = warehouse(tmp_path / "a", 10)
+    write_scenario(import_ros_map(path.rename(path.with_name("map.YAML"))), tmp_path / "a.yaml")
+    assert set(load_scenario(tmp_path / "a.yaml").named_files()) == {"map.YAML", "map.pgm"}
+    before = load_scenario(tmp_path / "a.yaml").hash
+    pixels = (tmp_path / "map.pgm").read_bytes()
+    (tmp_path / "map.pgm").write_bytes(pixels[:-1] + bytes([0]))
+    assert load_scenario(tmp_path / "a.yaml").hash != before

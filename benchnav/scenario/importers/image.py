@@ -39,9 +39,10 @@ def read_levels(path: Path) -> tuple[Levels, BoolArray]:
                 return _levels(image)
     except MapError:
         raise
-    except bombs as error:
+    except bombs:
         raise MapError(
-            f"{path}:1: a map has at most {MAX_CELLS} cells; got: {error} Cut it or scale it down."
+            f"{path}:1: a map has at most {MAX_CELLS} cells; the image has many more."
+            " Cut it or scale it down."
         ) from None
     except Exception as error:  # Pillow's decoders raise a dozen kinds
         raise MapError(

@@ -168,7 +168,7 @@ def _query(
     if size and size != [wide, high]:
         raise MapError(
             f"{where}: width and height must be those of the map, {wide} and {high}; "
-            f"got {size[0]} and {size[1]}."
+            f"got {size[0]} and {size[1]}. The file is for a map of that size."
         )
     length = _length(where, fields[-1])
     start, goal = (sx, high - 1 - sy), (gx, high - 1 - gy)
