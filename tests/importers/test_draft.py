@@ -226,6 +226,15 @@ def test_no_map_takes_the_name_of_a_scenario(tmp_path):
     assert pillar_of(tmp_path / "to" / "a.yaml") == pillar_of(tmp_path / "to" / "map.yaml") == 10
 
 
+def test_a_scenario_overwrites_no_map_of_another_one(tmp_path):
+    write_scenario(import_ros_map(warehouse(tmp_path / "a", 10), agents=2), tmp_path / "a.yaml")
+    other = import_ros_map(warehouse(tmp_path / "b", 20), agents=2)
+    for name in ("map.yaml", "map.pgm"):
+        with pytest.raises(UsageError, match=rf"{name} is not a scenario; give the new scenario"):
+            write_scenario(other, tmp_path / name, force=True)
+    assert pillar_of(tmp_path / "a.yaml") == 10
+
+
 def test_a_map_that_has_changed_is_copied_anew_and_the_old_one_stays(tmp_path):
     path = warehouse(tmp_path / "a", 10)
     write_scenario(import_ros_map(path, agents=2), tmp_path / "to" / "one.yaml")

@@ -7,9 +7,10 @@ from typing import Any
 
 import yaml
 
-from benchnav.errors import UsageError
+from benchnav.errors import ScenarioError, UsageError
 from benchnav.scenario.importers import ros_map
 from benchnav.scenario.importers.grid import read_bytes
+from benchnav.scenario.yaml_reader import read_yaml
 
 Mapping = dict[str, Any]
 
@@ -25,8 +26,8 @@ def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> li
     Returns the paths of all files, the scenario first.
 
     Raises:
-        UsageError: the scenario is there already and ``force`` is not given, is a map of
-            its own, or cannot be written.
+        UsageError: a scenario is there already and ``force`` is not given, or another
+            file is, or it cannot be written.
         MapError: a map cannot be read any more.
     """
     out = Path(out)
@@ -34,6 +35,8 @@ def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> li
         contents = _contents(mapping, out)
         if out.exists() and not force:
             raise UsageError(f"{out} must not exist yet; --force overwrites it.")
+        if out.is_file() and not _is_scenario(out):
+            raise UsageError(f"{out} is not a scenario; give the new scenario another name.")
         out.parent.mkdir(parents=True, exist_ok=True)
         for path, content in contents.items():
             if not _holds(path, content):
@@ -95,6 +98,15 @@ def _names(source: Path, out: Path) -> Iterator[str]:
     yield f"{stem}{source.suffix}"
     for number in itertools.count(2):
         yield f"{stem}-{number}{source.suffix}"
+
+
+def _is_scenario(path: Path) -> bool:
+    """Whether a file may be overwritten by a scenario: it is no map and nothing else."""
+    try:
+        data: Any = read_yaml(path).data
+    except ScenarioError:
+        return False
+    return isinstance(data, dict) and "teams" in data
 
 
 def _holds(path: Path, content: bytes) -> bool:

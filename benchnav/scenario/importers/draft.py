@@ -22,11 +22,11 @@ _RADII = tuple(0.2 / 2**k for k in range(6))  # [m]
 _SPEED = 1.0  # [m/s]
 _APART = 0.25  # of the smaller side of where they are: start and goal, at least
 _PATIENCE = 3.0  # the horizon is so many times the time of an undisturbed journey
-_COMMON = {"", "map", "maps", "out", "s", "scenario", "scenarios"}  # names that tell nothing
+_COMMON = {"", "map", "maps", "out", "s", "scenario", "scenarios"}  # names that many maps share
 
 
 def _silent(text: str) -> None:
-    """Keep a remark to oneself."""
+    """Ignore a remark."""
 
 
 def import_movingai(
@@ -54,7 +54,7 @@ def import_movingai(
         cell: [m] a cell.
         radius: [m] of an agent; None: 0.3 cells.
         name: of the scenario; None: ``movingai/`` and the name of the map.
-        remark: called with what there is to know about the map and the journeys.
+        remark: called with each remark about the map and the journeys.
 
     Raises:
         MapError: a file is not what it must be, has too few rows, or no agent has room.
@@ -107,7 +107,7 @@ def import_ros_map(
         unknown_is_free: whether agents may enter cells that the map does not know.
         name: of the scenario; None: ``ros/`` and the name of the map, or of its folder
             where the map is called ``map``.
-        remark: called with what there is to know about the map and the journeys.
+        remark: called with each remark about the map and the journeys.
 
     Raises:
         MapError: the file is not what it must be, or no agent has room.
@@ -129,9 +129,9 @@ def import_ros_map(
 
 
 def default_name(family: str, map_path: Path, out: Path | None = None) -> str:
-    """Return a scenario's name: ``family/`` and the first of these that tells maps apart.
+    """Return ``family/`` and the name of the scenario file, of the map or of its folder.
 
-    The name of the scenario file, of the map's file, and of the map's folder.
+    The first of these counts that is not a name which many maps share.
     """
     folder = map_path.resolve().parent.name
     stems = ([out.stem] if out else []) + [map_path.stem, folder]
