@@ -19,7 +19,7 @@ from benchnav.threads import core_count
     ("arguments", "complaint"),
     [
         (("lits",), "Did you mean 'list'"),
-        (("run",), "Missing argument 'SUITE'"),
+        (("run",), "Missing argument 'SUITE|SCENARIO'"),
         (("run", "quick", "--wrokers", "2"), "--workers"),
         (("run", "quick", "--workers", "two"), "--workers"),
         (("run", "quikc"), "Did you mean 'quick'"),
