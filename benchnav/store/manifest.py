@@ -37,7 +37,7 @@ class Manifest:
     salt: str = ""  # of the randomness that navigators are handed, in hexadecimal digits
     limits: Mapping[str, float] = field(default_factory=dict)  # beyond which an episode fails
     shard: str = ""  # "2/4" where it executes that share alone; its cells then say their seeds
-    # label → {hash: of the code that the stored episodes ran, places: module:attribute of its parts}
+    # label → {hash: of the code that made the episodes, places: module:attribute of its parts}
     sources: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     schema: int = SCHEMA
     versions: Mapping[str, str] = field(default_factory=lambda: versions())
@@ -125,7 +125,8 @@ def load_manifest(run: Path) -> Manifest:
             )
         manifest = Manifest(
             said["suite"], tuple(said["cells"]), said.get("salt", ""), said.get("limits", {}),
-            said.get("shard", ""), said.get("sources", {}), schema, said["versions"], said["platform"], said["created"],
+            said.get("shard", ""), said.get("sources", {}), schema, said["versions"],
+            said["platform"], said["created"],
         )  # fmt: skip
         whole = manifest.suite_hash == said["suite_hash"]
         _refuse_strange_cells(manifest.cells)
