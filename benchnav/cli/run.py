@@ -28,13 +28,16 @@ class Where(StrEnum):
 
 def run(
     suite: Annotated[
-        str, typer.Argument(metavar="SUITE", help="Name of a suite that ships, or a file.")
+        str,
+        typer.Argument(
+            metavar="SUITE|SCENARIO", help="Name of a suite or scenario that ships, or a file."
+        ),
     ],
     out: Annotated[
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Run folder; the same suite goes on where it stopped. [default: new]",
+            help="Run folder; the same suite continues there, also with more seeds. [default: new]",
         ),
     ] = None,
     workers: Annotated[

@@ -20,13 +20,13 @@ def validate(
 
     Every complaint says file:line: key.
     """
+    from benchnav.runner.suite_file import describes_scenario
     from benchnav.scenario.yaml_reader import read_yaml
 
-    data = read_yaml(file).data
-    if isinstance(data, dict) and "scenarios" in data:
-        _suite(file)
-    else:
+    if describes_scenario(read_yaml(file).data):
         _scenario(file, draw)
+    else:
+        _suite(file)
 
 
 def _suite(file: Path) -> None:

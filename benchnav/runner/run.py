@@ -82,9 +82,11 @@ def run_suite(
 ) -> Summary:
     """Run what is not stored yet; afterwards ``out`` holds the whole suite.
 
+    Seeds that a run in ``out`` does not have are added to it.
+
     Args:
         suite: what to run.
-        out: the run folder; missing, empty, or one of the same suite (resumed).
+        out: the run folder; missing, empty, or one of the same suite, resumed or extended.
         workers: processes; None: as many as there are cores; 0: in this process, where nothing
             is limited. What is registered in this process alone runs in it in any case.
         timeout: [s] that a call of a navigator may last; None: as in ``out``, or as in `Limits`.
@@ -118,6 +120,8 @@ def run_suite(
             renewal.refuse(folder)
         summary.older = renewal.episodes
         reasons = {cell.key: cell.reason for cell in cells}
+        if shard is None:
+            folder = folder.extend(suite.seeds)
         folder = renewal.begin(folder.amend(reasons))  # what was not installed then may be now
         target = renewal.target(folder)
         folder.drop_others(target)
@@ -127,20 +131,29 @@ def run_suite(
         summary.in_process = tuple(dict.fromkeys(cell.entry.label for cell in here))
         told.begin(summary.total, summary.stored)
         try:
-            keys = {cell.key for cell in here}
-            away = [task for task in tasks if task.cell.key not in keys]
-            mine = [task for task in tasks if task.cell.key in keys]
-            run_tasks = executor or _locally
-            for chosen, how, number in ((away, run_tasks, workers), (mine, _locally, 0)):
-                with closing(how(chosen, number, told, limits)) as finished:
-                    for task, outcome in finished:
-                        summary.count(task, outcome)
+            with closing(_finished(tasks, here, workers, told, limits, executor)) as finished:
+                for task, outcome in finished:
+                    summary.count(task, outcome)
         finally:
             told.end()
             pool.dismiss()
             not_run = {cell.key: why for cell, why in summary.not_applicable}
             summary.replaced.update(renewal.finish(folder.amend(reasons | not_run)))
     return summary
+
+
+def _finished(
+    tasks: Sequence[Task], here: Sequence[Cell], workers: int | None, progress: Progress,
+    limits: Limits, executor: Executor | None,
+) -> Generator[Finished, None, None]:  # fmt: skip
+    """Run every task; those of the cells ``here`` last, in this process."""
+    keys = {cell.key for cell in here}
+    mine = [task for task in tasks if task.cell.key in keys]
+    away = [task for task in tasks if task.cell.key not in keys]
+    for chosen, run_tasks, count in ((away, executor or _locally, workers), (mine, _locally, 0)):
+        if chosen:
+            with closing(run_tasks(chosen, count, progress, limits)) as finished:
+                yield from finished
 
 
 def _locally(

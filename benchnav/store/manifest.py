@@ -52,13 +52,14 @@ class Manifest:
     @property
     def suite_hash(self) -> str:
         """sha256 of the resolved suite: runs that may share a folder share it."""
-        return _hash(self.suite)
+        text = json.dumps(self.suite, sort_keys=True, separators=(",", ":"))
+        return hashlib.sha256(text.encode()).hexdigest()
 
     @property
-    def plan_hash(self) -> str:
-        """sha256 of the suite without what says which version of the code is meant."""
+    def plan(self) -> dict[str, Any]:
+        """The suite without the fingerprints of files, which count as source."""
         navigators = [_without_files(entry) for entry in self.suite.get("navigators", ())]
-        return _hash({**self.suite, "navigators": navigators})
+        return {**self.suite, "navigators": navigators}
 
     def source_of(self, label: str) -> str:
         """Return the hash of the source of a navigator; "" where the run does not say it."""
@@ -138,11 +139,6 @@ def load_manifest(run: Path) -> Manifest:
     if not whole:
         raise CorruptPartError(f"{path} must be what was written. Its suite was changed.")
     return manifest
-
-
-def _hash(suite: Mapping[str, Any]) -> str:
-    text = json.dumps(suite, sort_keys=True, separators=(",", ":"))
-    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _without_files(entry: Mapping[str, Any]) -> dict[str, Any]:

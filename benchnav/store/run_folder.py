@@ -1,5 +1,6 @@
 """The folder that executing a suite leaves: append-only, resumable, one writer at a time."""
 
+import json
 import os
 import re
 import shutil
@@ -39,7 +40,9 @@ class RunFolder:
 
     @classmethod
     def start(cls, path: Path, manifest: Manifest) -> "RunFolder":
-        """A new run in an empty or missing folder, or the same suite's run, resumed.
+        """Return a new run in an empty or missing folder, or the same suite's run, resumed.
+
+        The run that is found may have other seeds: `extend` adds those that are asked for.
 
         Raises:
             RunConflictError: the folder holds another suite's run, or something else.
@@ -47,11 +50,12 @@ class RunFolder:
         """
         if (path / MANIFEST).exists():
             held = load_manifest(path)
-            if held.plan_hash != manifest.plan_hash:
+            differing = _differing(held, manifest)
+            if differing not in ([], ["seeds"]) or (differing and (held.shard or manifest.shard)):
                 raise RunConflictError(
                     f"{path} must be empty or hold a run of {manifest.name}."
                     f" It holds a run of {held.name}, begun {held.created}."
-                    f"{_difference(held, manifest)} Give another --out."
+                    f" They differ in {', '.join(differing)}. Give another --out."
                 )
             return cls(path, held)
         if path.exists() and (not path.is_dir() or not _is_free(path)):
@@ -61,6 +65,27 @@ class RunFolder:
             )
         _write(path / MANIFEST, manifest.dump())
         return cls(path, manifest)
+
+    def extend(self, seeds: range) -> "RunFolder":
+        """Add ``seeds`` to those of the run; only the process that holds the folder may call it.
+
+        Raises:
+            RunConflictError: a gap would lie between them and the seeds of the run.
+            StoreError: the disk refuses.
+        """
+        manifest = load_manifest(self.path)  # as it is now that no other process writes it
+        first, stop = manifest.suite["seeds"]
+        if seeds.start > stop or seeds.stop < first:
+            raise RunConflictError(
+                f"The seeds {seeds.start}:{seeds.stop} must touch those of the run in {self.path},"
+                f" {first}:{stop}. Ask for --seeds {min(first, seeds.start)}:"
+                f"{max(stop, seeds.stop)}, or give another --out."
+            )
+        both = [min(first, seeds.start), max(stop, seeds.stop)]
+        if both != [first, stop]:
+            manifest = replace(manifest, suite={**manifest.suite, "seeds": both})
+            _write(self.path / MANIFEST, manifest.dump())
+        return RunFolder(self.path, manifest)
 
     def amend(self, reasons: Mapping[str, str]) -> "RunFolder":
         """Say anew which cells are n/a: why, by key; a writer may, while it holds the folder.
@@ -173,6 +198,12 @@ def _write(path: Path, text: str) -> None:
         raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
 
 
-def _difference(held: Manifest, asked: Manifest) -> str:
-    keys = [k for k in asked.suite if asked.suite.get(k) != held.suite.get(k)]
-    return f" They differ in {', '.join(keys)}." if keys else ""
+def _differing(held: Manifest, asked: Manifest) -> list[str]:
+    """Return the keys of the suite in which the two differ."""
+    left, right = held.plan, asked.plan
+    keys = dict.fromkeys([*right, *left])
+    return [key for key in keys if _json(left.get(key)) != _json(right.get(key))]
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, sort_keys=True)  # a tuple was stored as a list
