@@ -15,12 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.source.importable import MAIN
-from benchnav.source.module import CORE, locate
+from benchnav.source.importable import MAIN, is_importable
+from benchnav.source.module import CORE, is_library, locate
 
 _PLAIN = (type(None), bool, int, float, complex, str, bytes, type(...))
 _WRAPPED = ("__func__", "fget", "fset", "func", "py_func", "__wrapped__")
 _DEEPEST = 12
+_MADE_BY_PYTHON = 1 << 9  # Py_TPFLAGS_HEAPTYPE of a class
 
 
 @dataclass
@@ -102,12 +103,17 @@ class LiveSource:
 
 
 def _is_live(thing: Any) -> bool:
-    """Whether no file that can be imported defines it."""
+    """Whether a function or class was made in this session, and stands in no file of its own."""
     module = str(getattr(thing, "__module__", None) or "builtins")
-    if module == MAIN or "<locals>" in thing.__qualname__:
+    if module == MAIN:
         return True
+    if isinstance(thing, type) and not thing.__flags__ & _MADE_BY_PYTHON:
+        return False
     top = module.partition(".")[0]
-    return top != CORE and top not in sys.stdlib_module_names and locate(module) is None
+    if top == CORE or (top in sys.stdlib_module_names and top != "builtins"):
+        return False
+    place = locate(module)
+    return not is_importable(thing) and (place is None or not is_library(place))
 
 
 def _text(function: FunctionType) -> str:
