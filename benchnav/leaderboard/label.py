@@ -43,7 +43,7 @@ def _require_one(tables: Mapping[str, pa.Table], column: str, what: str) -> None
             if known != found:
                 raise UsageError(
                     f"The label {label!r} must stand for one navigator. It stands for two: their"
-                    f" {what} differs ({known[:12]} in {where}, {found[:12]} in {name})."
+                    f" {what} differs ({known[:12]} in {where} and {found[:12]} in {name})."
                     f" {_CURES[column]}, or give one of them a label of its own"
                     f" ({{type: …, label: {label}-2}} in the suite) and run that one again."
                 )

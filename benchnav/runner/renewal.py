@@ -47,9 +47,8 @@ class Renewal:
         if unknown:
             why += f" (whose source was not recorded then: {', '.join(unknown)})"
         raise RunConflictError(
-            f"source changed: {why}. They are those of {', '.join(map(repr, labels))} in"
-            f" {folder.path}, which keeps them until then (in Python: again=True)."
-            " Another --out keeps them for good."
+            f"source changed: {why}. They are of {', '.join(map(repr, labels))}, and stay in"
+            f" {folder.path} until then (in Python: again=True). Another --out keeps both."
         )
 
     def target(self, folder: RunFolder) -> RunFolder:

@@ -157,7 +157,9 @@ def test_the_hash_is_the_same_in_another_folder_and_process(folder, tmp_path_fac
     package(folder)
     other = tmp_path_factory.mktemp("other")
     package(other)
-    script = "from benchnav.source.digest import source_hash; print(source_hash(['a_package.nav:A']))"
+    script = (
+        "from benchnav.source.digest import source_hash; print(source_hash(['a_package.nav:A']))"
+    )
     found = subprocess.run(
         [sys.executable, "-c", script], check=True, capture_output=True, text=True, cwd=other,
         env={**os.environ, "PYTHONPATH": str(other)},
@@ -211,9 +213,7 @@ def test_the_simulator_is_its_versions_business():
     assert closure_of({"type": "benchnav.navigation.hierarchical:Hierarchical"}) == set()
 
 
-@pytest.mark.parametrize(
-    "command", [["{file}"], ["python3", "{file}"], ["sh", "{file}", "--fast"]]
-)
+@pytest.mark.parametrize("command", [["{file}"], ["python3", "{file}"], ["sh", "{file}", "--fast"]])
 def test_the_file_of_a_program_counts(tmp_path, command):
     file = tmp_path / "navigate.py"
     file.write_text("import helper_of_program\n")
