@@ -14,7 +14,7 @@ from benchnav.navigation.configure import Spec, split
 from benchnav.navigation.introduction import Introduction, introduction
 from benchnav.navigation.navigator import Need, Training
 from benchnav.plugins import NAVIGATORS
-from benchnav.source.digest import source_hash
+from benchnav.source.digest import FoundSource, find_source
 from benchnav.source.parts import places_of
 from benchnav.store.manifest import IN_PROCESS, ISOLATED, Mode
 
@@ -37,6 +37,7 @@ class Entry:
     mode: Mode = IN_PROCESS
     places: tuple[str, ...] = ()  # module:attribute of its class and its parts', leader included
     source_hash: str = ""  # of what stands there; "" where not known
+    edited: tuple[str, ...] = ()  # modules of it that this process imported before an edit
 
     @property
     def hash(self) -> str:
@@ -86,7 +87,10 @@ class Meeting:
             unfit=dict(zip(self.sensings, said.unfit, strict=False)),
             uses_map=said.uses_map, mode=ISOLATED if alone else IN_PROCESS, places=places,
         )  # fmt: skip
-        return entry if entry.lacks else replace(entry, source_hash=source_of(entry))
+        if entry.lacks:
+            return entry
+        source = source_of(entry)
+        return replace(entry, source_hash=source.hash, edited=source.edited)
 
     def _leader(self, said: Introduction, where: str) -> Entry | None:
         """Who leads in the rehearsals that a navigator asks for; None where it asks for none."""
@@ -102,10 +106,10 @@ class Meeting:
         return led
 
 
-def source_of(entry: Entry) -> str:
-    """Return the hash of the source that ``entry`` is made of here, now."""
+def source_of(entry: Entry) -> FoundSource:
+    """Return the source that ``entry`` is made of here, now."""
     specs = [entry.spec, *([entry.leader.spec] if entry.leader else [])]
-    return source_hash(entry.places, specs)
+    return find_source(entry.places, specs)
 
 
 def label_of(spec: Spec) -> str:

@@ -26,6 +26,18 @@ def refuse_limits_here(cells: Iterable[Cell], limited: bool) -> None:
         )
 
 
+def refuse_edited(cells: Iterable[Cell]) -> None:
+    """Raise UsageError where this process would run code that is no longer what the files hold."""
+    for cell in cells:
+        if cell.entry.edited:
+            module = cell.entry.edited[0]
+            raise UsageError(
+                f"What runs in this process must be what its files hold. {module} was edited after"
+                f" this process had imported it, and {cell.entry.label!r} would run as it was."
+                f" Restart Python, or call importlib.reload({module}) and load the suite again."
+            )
+
+
 def _places(cell: Cell) -> tuple[str, ...]:
     """Of the evaluated navigator, and of those that drive the scenario's other teams."""
     others = (place for spec in cell.scenario.driver_specs for place in places_of(_full(spec)))

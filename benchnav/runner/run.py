@@ -11,7 +11,7 @@ from benchnav.isolation import pool
 from benchnav.plugins import METRICS
 from benchnav.runner.cell import Cell
 from benchnav.runner.executor import Finished, execute
-from benchnav.runner.in_process import bound_here, refuse_limits_here
+from benchnav.runner.in_process import bound_here, refuse_edited, refuse_limits_here
 from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
 from benchnav.runner.renewal import Renewal
@@ -111,6 +111,11 @@ def run_suite(
     cells = list(suite.cells())
     if executor is None:
         refuse_limits(workers, timeout, memory)
+    here = cells if workers == 0 else bound_here(cells, elsewhere=executor is not None)
+    refuse_edited(here)
+    if workers != 0:
+        refuse_limits_here(here, (timeout, memory) != (None, None))
+        summary.in_process = tuple(dict.fromkeys(cell.entry.label for cell in here))
     wanted = _wanted(suite, cells, shard)
     manifest = planned(suite, cells, wanted, shard)
     folder, limits = start(suite, out, manifest, timeout, memory)
@@ -126,9 +131,6 @@ def run_suite(
         target = renewal.target(folder)
         folder.drop_others(target)
         tasks = _tasks(suite, target, cells, wanted, summary)
-        here = [] if workers == 0 else bound_here(cells, elsewhere=executor is not None)
-        refuse_limits_here(here, (timeout, memory) != (None, None))
-        summary.in_process = tuple(dict.fromkeys(cell.entry.label for cell in here))
         told.begin(summary.total, summary.stored)
         try:
             with closing(_finished(tasks, here, workers, told, limits, executor)) as finished:

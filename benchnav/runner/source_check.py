@@ -18,7 +18,7 @@ class SourceCheck:
         known = not entry.source_hash or entry.source_hash in self._checked
         if known or any(live_object(place) is not None for place in entry.places):
             return
-        found = source_of(entry)
+        found = source_of(entry).hash
         if found != entry.source_hash:
             raise RunConflictError(
                 f"The source of {entry.label!r} must stay as it is until a worker process has"

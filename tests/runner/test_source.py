@@ -1,5 +1,6 @@
 """Code that is edited between runs: old results are never taken for the new code's."""
 
+import importlib
 import os
 import subprocess
 import sys
@@ -257,6 +258,19 @@ def test_a_worker_does_not_run_code_that_was_edited_meanwhile(edit, suite_of, tm
     assert not list(tmp_path.glob(f"r/parts/*/*{SEAL}"))
 
 
+def test_this_process_does_not_run_what_it_imported_before_an_edit(edit, suite_of, tmp_path):
+    run_suite(suite_of("drifts"), tmp_path / "r", workers=0)
+    imported = sys.modules["edited_navigators"]
+    edit(0.25)
+    sys.modules["edited_navigators"] = imported  # a notebook has no reason to import it anew
+    with pytest.raises(UsageError, match="edited_navigators was edited after this process"):
+        run_suite(suite_of("drifts"), tmp_path / "new", workers=0)
+    assert run_suite(suite_of("drifts"), tmp_path / "new", workers=1).stored == 5
+    importlib.reload(imported)
+    run_suite(suite_of("drifts"), tmp_path / "here", workers=0)
+    assert digests(tmp_path / "here") == digests(tmp_path / "new")
+
+
 @pytest.mark.slow
 def test_a_killed_again_ends_as_if_nobody_had_killed_it(edit, suite_of, tmp_path):
     """The real thing: a command, SIGKILL once some new parts are sealed, and the command again."""
@@ -264,8 +278,9 @@ def test_a_killed_again_ends_as_if_nobody_had_killed_it(edit, suite_of, tmp_path
     run_suite(suite_of("drifts", seeds="200"), out, workers=0)
     old = digests(out)
     edit(0.25)
-    command = [sys.executable, "-c", "from benchnav.cli.main import main; main()", "run", str(path), "--navigator", "drifts",
-               "--seeds", "200", "--workers", "1", "--out", str(out)]  # fmt: skip
+    start = [sys.executable, "-c", "from benchnav.cli.main import main; main()", "run", str(path)]
+    options = ["--navigator", "drifts", "--seeds", "200", "--workers", "1", "--out", str(out)]
+    command = [*start, *options]
     refused = subprocess.run(command, capture_output=True, text=True, check=False)
     assert refused.returncode == 1
     assert "source changed: 200 episodes were made by older code" in refused.stderr

@@ -21,7 +21,7 @@ def compare_source(entry: Entry, packed: bool) -> str:
     missing = sorted({module for module in modules if locate(module) is None})
     if missing:
         return f"{entry.label}: not installed here (no module {', '.join(missing)})"
-    found = source_of(entry)
+    found = source_of(entry).hash
     if found == entry.source_hash:
         return f"{entry.label}: the source that ran is installed here ({found})"
     return f"{entry.label}: another source is installed here ({found}; {entry.source_hash} ran)"
