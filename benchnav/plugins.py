@@ -6,7 +6,8 @@ script or notebook registers with a decorator, and ``module:attribute`` is accep
 wherever a name is.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
@@ -62,9 +63,25 @@ class Registry:
         """Every name, sorted, without importing anything."""
         return sorted({*self._entries(), *self._local})
 
+    def __contains__(self, name: str) -> bool:
+        return name in self._local or name in self._entries()
+
     def is_local(self, name: str) -> bool:
         """True where ``name`` is known in this process alone."""
         return name in self._local
+
+    def registered(self, value: str) -> Any:
+        """Return what was registered in this process and is defined at ``value``; else None."""
+        return next((thing for thing, place in self._local.values() if place == value), None)
+
+    def registrations(self) -> "list[Registration]":
+        """Return all that was registered in this process."""
+        return [(self.group, name, value) for name, (_, value) in self._local.items()]
+
+    def adopt(self, name: str, value: str) -> None:
+        """Register what stands at ``value``, as another process did; nothing if it is not there."""
+        with suppress(BrokenPluginError):
+            self._local[name] = (self._load_by_module(value), value)
 
     def source(self, name: str) -> Source:
         """Where ``name`` comes from."""
@@ -153,6 +170,24 @@ CONTROLLERS = Registry("benchnav.controllers", "controller")
 METRICS = Registry("benchnav.metrics", "metric")
 SCENARIOS = Registry("benchnav.scenarios", "scenario")
 TRAINERS = Registry("benchnav.trainers", "trainer")
+
+Registration = tuple[str, str, str]
+"""(group, name, module:attribute)"""
+
+
+def registrations() -> list[Registration]:
+    """Return what was registered in this process, of every kind that episodes are made with."""
+    return [one for registry in _FOR_WORKERS for one in registry.registrations()]
+
+
+def adopt(registrations: Iterable[Registration]) -> None:
+    """Register what another process did, as far as it can be imported here."""
+    by_group = {registry.group: registry for registry in _FOR_WORKERS}
+    for group, name, value in registrations:
+        by_group[group].adopt(name, value)
+
+
+_FOR_WORKERS = (NAVIGATORS, PLANNERS, CONTROLLERS)
 
 register_navigator = NAVIGATORS.register
 register_planner = PLANNERS.register

@@ -103,6 +103,12 @@ def run(
             "--isolate", help="Every navigator in a process of its own that is sent messages."
         ),
     ] = False,
+    again: Annotated[
+        bool,
+        typer.Option(
+            "--again", help="Run again what older code made; it is kept until all is there."
+        ),
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
 ) -> None:
     """Execute a suite into a run folder.
@@ -130,12 +136,12 @@ def run(
     try:
         run_suite(
             asked, folder, workers=workers, timeout=timeout, memory=memory, executor=running,
-            shard=share, progress=progress(quiet), summary=summary,
+            shard=share, again=again, progress=progress(quiet), summary=summary,
         )  # fmt: skip
     except KeyboardInterrupt:
         say(
             f"Interrupted: {summary.stored} of {summary.total} episodes are stored."
-            f" The same command with --out {folder} goes on from there."
+            f" The same command with --out {folder} goes on from there.{_older(summary)}"
         )
         raise
     if not quiet:
@@ -177,6 +183,15 @@ def _announce(suite: "Suite", folder: Path) -> str:
     return f"{suite.name}@{suite.version}: {product}{some}, into {folder}"
 
 
+def _older(summary: "Summary") -> str:
+    """What became of episodes that older code made."""
+    left = summary.older - summary.replaced.total()
+    if not left:
+        return ""
+    count = "episode that older code made is" if left == 1 else "episodes that older code made are"
+    return f" {left} {count} kept until all of their navigator are run again."
+
+
 def _conclude(summary: "Summary", seconds: float) -> str:
     fresh = summary.stored - summary.found
     lines = [f"{summary.stored} episodes stored, {fresh} of them run in {seconds:.1f} s"]
@@ -184,6 +199,17 @@ def _conclude(summary: "Summary", seconds: float) -> str:
         lines[0] += f" ({fresh / seconds:.3g} a second)"
     if summary.redraws:
         lines.append(f"{summary.redraws} draws of worlds were not solvable and drawn again")
+    lines += [
+        f"source changed: {n} {'episode' if n == 1 else 'episodes'} of {who!r} that older code made"
+        f" {'was' if n == 1 else 'were'} replaced"
+        for who, n in sorted(summary.replaced.items())
+    ]
+    if _older(summary):
+        lines.append(_older(summary).strip())
+    if summary.in_process:
+        lines.append(
+            f"{', '.join(map(repr, summary.in_process))} ran in this process, which alone knows it"
+        )
     reasons = Counter[tuple[str, str]]()
     for cell, reason in summary.not_applicable:
         reasons[cell.entry.label, f"{reason} ({cell.track})"] += 1

@@ -86,7 +86,7 @@ def as_json(run: Path, report: "Report", seconds: float) -> str:
         "run": str(run), "verified": report.clean, "seconds": round(seconds, 3),
         "findings": [asdict(finding) for finding in report.findings],
         "checked": dict(sorted(report.counts.items())), "not_checked": report.unchecked,
-        "versions": report.versions,
+        "versions": report.versions, "sources": report.sources,
     }  # fmt: skip
     return dumps(said, indent=1)
 
@@ -104,5 +104,6 @@ def as_text(run: Path, report: "Report", seconds: float) -> str:
         lines.append("")
     lines += [f"  checked      {text}" for text in report.checked]
     lines += [f"  not checked  {text}" for text in report.unchecked]
+    lines += [f"  source       {text}" for text in report.sources]
     lines += [f"  note         {text}" for text in report.versions]
     return "\n".join(lines)

@@ -14,6 +14,7 @@ from benchnav.isolation.remote import Remote, python_path, say_hello
 from benchnav.navigation.configure import Spec, split
 from benchnav.navigation.introduction import Introduction
 from benchnav.plugins import NAVIGATORS
+from benchnav.source.parts import names_known_here
 
 HOST = (sys.executable, "-P", "-m", "benchnav.isolation.host")
 
@@ -41,11 +42,12 @@ def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "
     Nothing of the navigator is imported in this one. Raises also BrokenPluginError where the
     process dies, and UsageError where no other process can host it.
     """
-    name, _ = split(NAVIGATORS, spec, where=where)
-    if NAVIGATORS.is_local(name):
+    name, parameters = split(NAVIGATORS, spec, where=where)
+    for local in names_known_here({"type": name, **parameters}):
         raise UsageError(
-            f"{where + ': ' if where else ''}An isolated navigator must be installed, or named as"
-            f" module:Class. Got {name!r} instead, which is registered in this process alone."
+            f"{where + ': ' if where else ''}An isolated navigator and its parts must be installed,"
+            f" or named as module:Class. Got {local!r} instead, which is registered in this"
+            " process alone."
         )
     fence.require_fence()
     process = Process(HOST)

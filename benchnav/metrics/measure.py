@@ -63,6 +63,7 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
             "seed": who.seed, "role": role.name.lower(), "agents": int(members.sum()),
             "failure": episode.failure, "horizon": clock.horizon, "dt": clock.dt,
             "navigator_hash": who.navigator_hash, "rehearsal": episode.rehearsals,
+            "source_hash": who.source_hash,
             "rehearsal_decisions": episode.rehearsal_decisions,
             "rehearsal_seconds": episode.timings.rehearsal,
         }  # fmt: skip

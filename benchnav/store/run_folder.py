@@ -2,9 +2,12 @@
 
 import json
 import os
+import re
+import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from benchnav.errors import RunConflictError, StoreError
@@ -13,10 +16,13 @@ from benchnav.store.manifest import MANIFEST, Manifest, load_manifest
 from benchnav.store.part import FILES, Part, parts_of
 from benchnav.store.part_writer import TEMPORARY
 
+_SHORT = 10  # digits of a source hash in the name of a folder
+_SUFFIX = re.compile(rf"\.[0-9a-f]{{{_SHORT}}}$")
+
 
 @dataclass(frozen=True)
 class RunFolder:
-    """A run on disk: ``manifest.json`` and ``parts/<cell>/<seeds>.*``."""
+    """A run on disk: ``manifest.json`` and ``parts/<cell>.<source>/<seeds>.*``."""
 
     path: Path
     manifest: Manifest
@@ -89,13 +95,38 @@ class RunFolder:
         cells = tuple({**c, "reason": reasons.get(c["key"], "")} for c in self.manifest.cells)
         if cells == self.manifest.cells:
             return self
-        amended = replace(self.manifest, cells=cells)
-        _write(self.path / MANIFEST, amended.dump())
-        return RunFolder(self.path, amended)
+        return RunFolder(self.path, replace(self.manifest, cells=cells)).kept()
+
+    def kept(self) -> "RunFolder":
+        """Write the manifest. Raises StoreError where the disk refuses."""
+        _write(self.path / MANIFEST, self.manifest.dump())
+        return self
 
     def cell(self, key: str) -> Path:
-        """The folder of one cell's parts."""
-        return self.path / "parts" / key
+        """The folder of one cell's parts, as the code made them that the manifest names."""
+        source = self.manifest.source_of(self._labels.get(key, ""))
+        return self.path / "parts" / (f"{key}.{source[:_SHORT]}" if source else key)
+
+    @cached_property
+    def _labels(self) -> dict[str, str]:
+        return {cell["key"]: cell.get("navigator", "") for cell in self.manifest.cells}
+
+    def label_of(self, key: str) -> str:
+        """Return the navigator of a cell."""
+        return self._labels[key]
+
+    def key_of(self, folder: Path) -> str:
+        """The key of the cell whose parts, by whatever code, stand in ``folder``; "" for none."""
+        name = folder.name
+        key = name if name in self._labels else _SUFFIX.sub("", name)
+        return key if key in self._labels else ""
+
+    def drop_others(self, *kept: "RunFolder") -> None:
+        """Remove what code made that neither this nor ``kept`` name; a writer may."""
+        for folder in self.path.glob("parts/*"):
+            key = self.key_of(folder)
+            if key and all(run.cell(key) != folder for run in (self, *kept)):
+                shutil.rmtree(folder)
 
     def parts(self) -> Iterator[Part]:
         """Every sealed part, in the order of the manifest's cells, then of seeds."""
@@ -169,8 +200,9 @@ def _write(path: Path, text: str) -> None:
 
 def _differing(held: Manifest, asked: Manifest) -> list[str]:
     """Return the keys of the suite in which the two differ."""
-    keys = dict.fromkeys([*asked.suite, *held.suite])
-    return [key for key in keys if _json(held.suite.get(key)) != _json(asked.suite.get(key))]
+    left, right = held.plan, asked.plan
+    keys = dict.fromkeys([*right, *left])
+    return [key for key in keys if _json(left.get(key)) != _json(right.get(key))]
 
 
 def _json(value: object) -> str:

@@ -9,7 +9,6 @@ import time
 import pytest
 
 from benchnav.errors import (
-    BenchnavError,
     RunConflictError,
     UnsolvableError,
     UsageError,
@@ -282,9 +281,10 @@ def test_a_navigator_of_this_process_runs_in_this_process(suite_file, tmp_path):
     register_navigator("mine-for-a-test")(type("Mine", (Walk,), {}))
     chosen = Selection(navigators=("mine-for-a-test",))
     suite = load_suite(str(suite_file), chosen)
-    assert run_suite(suite, tmp_path / "here", workers=0).stored == 6
-    with pytest.raises(BenchnavError, match="no navigator 'mine-for-a-test'"):
-        run_suite(suite, tmp_path / "there", workers=1)
+    for workers in (0, 1):
+        summary = run_suite(suite, tmp_path / f"{workers}", workers=workers)
+        assert summary.stored == 6
+        assert summary.in_process == (("mine-for-a-test",) if workers else ())
 
 
 def _heed_ctrl_c():

@@ -42,6 +42,7 @@ class Report:
     notes: Counter[str] = field(default_factory=Counter)  # what was not checked, and how often
     unknown: set[str] = field(default_factory=set)  # metrics that are not installed here
     versions: list[str] = field(default_factory=list)  # of packages that differ from the run's
+    sources: list[str] = field(default_factory=list)  # a sentence for each navigator
 
     @property
     def clean(self) -> bool:
