@@ -67,7 +67,7 @@ class OmplPlanner(ClearancePlanner):
             path = self._path(map, start, end, radius + extra, checker, seed)
             checks += checker.checks
             if len(path):
-                return Plan(path, True, checks)
+                return Plan(path, True, checks, "", self.left(map, start, goal, radius, extra))
             reason = "no path was found within the budget"
         return Plan(UNSOLVED, False, checks, reason)
 

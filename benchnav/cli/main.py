@@ -31,8 +31,10 @@ from benchnav.errors import (
     UnsolvableError,
     UsageError,
 )
+from benchnav.navigation.trace import notes, trace
 
 INTERRUPTED = 130
+DEBUG = "--debug"
 _Usage: type[Any] = typer.BadParameter.mro()[2]  # click's, which typers carry in changing places
 _ASKED_WRONGLY = (UsageError, InputError, PluginError, UnsolvableError, MissingExtraError)
 
@@ -74,6 +76,7 @@ def _options(
         bool,
         typer.Option("--version", help="Print the version.", callback=_version, is_eager=True),
     ] = False,
+    debug: Annotated[bool, typer.Option(DEBUG, help="Print the traceback of an error.")] = False,
 ) -> None:
     """What stands before a verb."""
 
@@ -85,6 +88,8 @@ def status(arguments: Sequence[str]) -> int:
         sys.stdout.flush()
     except BenchnavError as error:
         say(f"benchnav: {error}")
+        if DEBUG in arguments:
+            say(notes(error) or trace(error))
         return 2 if isinstance(error, _ASKED_WRONGLY) else 1
     except (typer.Abort, KeyboardInterrupt):
         return INTERRUPTED

@@ -1,6 +1,5 @@
 """`benchnav run`: execute a suite."""
 
-from collections import Counter
 from datetime import datetime
 from enum import StrEnum
 from functools import partial
@@ -14,7 +13,7 @@ from benchnav.cli.console import one_of, put, say
 from benchnav.errors import UsageError
 
 if TYPE_CHECKING:
-    from benchnav.runner.run import Executor, Summary
+    from benchnav.runner.run import Executor
     from benchnav.runner.shard import Shard
     from benchnav.runner.suite import Suite
 
@@ -110,12 +109,16 @@ def run(
         ),
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
+    debug: Annotated[
+        bool, typer.Option("--debug", help="Print the tracebacks of what plugins raised.")
+    ] = False,
 ) -> None:
     """Execute a suite into a run folder.
 
     Scenarios × tracks × navigators × seeds. Prints the run folder on stdout;
     `benchnav leaderboard` makes the table from it.
     """
+    from benchnav.cli.conclusion import conclusion, kept_for_now, tracebacks
     from benchnav.runner.progress import progress
     from benchnav.runner.run import Summary, run_suite
     from benchnav.runner.suite import Selection, load_suite
@@ -139,14 +142,18 @@ def run(
             shard=share, again=again, progress=progress(quiet), summary=summary,
         )  # fmt: skip
     except KeyboardInterrupt:
-        say(
-            f"Interrupted: {summary.stored} of {summary.total} episodes are stored."
-            f" The same command with --out {folder} goes on from there.{_older(summary)}"
-        )
+        parts = [
+            f"Interrupted: {summary.stored} of {summary.total} episodes are stored.",
+            f"The same command with --out {folder} continues there.",
+            kept_for_now(summary),
+        ]
+        say(" ".join(part for part in parts if part))
         raise
     if not quiet:
-        say(_conclude(summary, perf_counter() - began))
+        say(conclusion(summary, perf_counter() - began))
         say(f"The table: benchnav leaderboard {folder}")
+    if debug:
+        say(tracebacks(summary))
     put(str(folder))
 
 
@@ -181,61 +188,3 @@ def _announce(suite: "Suite", folder: Path) -> str:
     product = " × ".join(f"{n} {what if n != 1 else what[:-1]}" for n, what in sizes)
     some = f" (in {len(suite.blocks)} blocks of cells)" if suite.blocks else ""
     return f"{suite.name}@{suite.version}: {product}{some}, into {folder}"
-
-
-def _older(summary: "Summary") -> str:
-    """What became of episodes that older code made."""
-    left = summary.older - summary.replaced.total()
-    if not left:
-        return ""
-    count = "episode that older code made is" if left == 1 else "episodes that older code made are"
-    return f" {left} {count} kept until all of their navigator are run again."
-
-
-def _conclude(summary: "Summary", seconds: float) -> str:
-    fresh = summary.stored - summary.found
-    lines = [f"{summary.stored} episodes stored, {fresh} of them run in {seconds:.1f} s"]
-    if fresh and seconds > 0:
-        lines[0] += f" ({fresh / seconds:.3g} a second)"
-    if summary.redraws:
-        lines.append(f"{summary.redraws} draws of worlds were not solvable and drawn again")
-    lines += [
-        f"source changed: {n} {'episode' if n == 1 else 'episodes'} of {who!r} that older code made"
-        f" {'was' if n == 1 else 'were'} replaced"
-        for who, n in sorted(summary.replaced.items())
-    ]
-    if _older(summary):
-        lines.append(_older(summary).strip())
-    if summary.in_process:
-        lines.append(
-            f"{', '.join(map(repr, summary.in_process))} ran in this process, which alone knows it"
-        )
-    reasons = Counter[tuple[str, str]]()
-    for cell, reason in summary.not_applicable:
-        reasons[cell.entry.label, f"{reason} ({cell.track})"] += 1
-    lines += [
-        f"n/a: {who} {why}, {n} {'cell' if n == 1 else 'cells'}"
-        for (who, why), n in sorted(reasons.items())
-    ]
-    lines += [
-        f"failed: {who} in {n} episodes: {why}"
-        for (who, why), n in summary.failures.most_common(10)
-    ]
-    if len(summary.failures) > 10:
-        lines.append(f"… and for {len(summary.failures) - 10} more reasons")
-    lines += [
-        f"the metric {metric} failed for {n} {'value' if n == 1 else 'values'}: {why}"
-        for (metric, why), n in summary.missing.most_common(5)
-    ]
-    lines += [
-        f"warning: {who}: the leader of {team!r} succeeded in no rehearsal in {n}"
-        f" {'world' if n == 1 else 'worlds'} of {scenario}"
-        for (who, scenario, team), n in summary.unled.most_common(10)
-    ]
-    lines += [
-        f"{who} tells of {n} {'world' if n == 1 else 'worlds'} of {scenario}: {text}"
-        for (who, scenario, text), n in summary.remarks.most_common(5)
-    ]
-    if len(summary.remarks) > 5:
-        lines.append(f"… and of {len(summary.remarks) - 5} more things; episodes keep them all")
-    return "\n".join(lines)

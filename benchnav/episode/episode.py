@@ -90,6 +90,7 @@ class Episode:
     rehearsals: int = 0  # that its navigator was granted
     rehearsal_decisions: int = 0  # of agents, in all of them
     remarks: tuple[str, ...] = ()  # what its navigator has to tell of it
+    traceback: str = ""  # of what the navigator raised, as text; "" where it raised nothing
     twist: BoolArray | None = None  # (A,) True: requested are twists; None: older, not known
 
     @property

@@ -22,6 +22,7 @@ from benchnav.navigation.answer import CallFailed, checked, said
 from benchnav.navigation.introduction import meet
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Navigator
+from benchnav.navigation.trace import plain, trace
 
 Answer = tuple[str, dict[str, Any]]
 _SENSINGS = TypeAdapter(list[Sensing])
@@ -44,17 +45,17 @@ class Host:
             return calls[kind](fields)
         except CallFailed as failed:
             suspects = {} if failed.suspects is None else {"suspects": failed.suspects}
-            return "failed", {"reason": failed.reason, **suspects}
+            return "failed", {"reason": failed.reason, "traceback": failed.traceback, **suspects}
         except MissingExtraError as error:
-            return "failed", {"error": type(error).__name__, "reason": str(error)}
-        except BenchnavError as error:
-            known = {"error": type(error).__name__} if kind == "hello" else {}
+            return "failed", {"error": type(error).__name__, "reason": plain(error)}
+        except (Exception, SystemExit) as error:
+            refused = kind == "hello" and isinstance(error, BenchnavError)
+            known = {"error": type(error).__name__} if refused else {}
             return "failed", {
-                "reason": str(error) if known else f"{kind} raised {said(error)}",
+                "reason": plain(error) if refused else f"{kind} raised {said(error)}",
+                "traceback": trace(error),
                 **known,
             }
-        except (Exception, SystemExit) as error:
-            return "failed", {"reason": f"{kind} raised {said(error)}"}
 
     def _hello(self, fields: dict[str, Any]) -> Answer:
         says = json.loads(fields["says"])
@@ -81,7 +82,7 @@ class Host:
         return "command", {"command": checked(answer, active)}
 
     def _remarks(self, fields: dict[str, Any]) -> Answer:
-        told = [str(remark) for remark in self._hosted.remarks(int(fields["row"]))]
+        told = [plain(remark) for remark in self._hosted.remarks(int(fields["row"]))]
         return "remarks", {"says": json.dumps(told)}
 
     @property

@@ -203,6 +203,8 @@ class _Table:
         notes = [
             f"{r.navigator} is not ranked: {r.note}." for r in leaders if r.note and r.episodes
         ]
+        notes += [f"{r.navigator} failed {_closed(r.failure)}" for r in leaders if r.failure]
+        notes += [f"Remark of {r.navigator} {_closed(r.remark)}" for r in leaders if r.remark]
         notes += [
             f"{metric} of {name} {self.at[name, metric].fault}."
             for name in names
@@ -217,6 +219,10 @@ class _Table:
                 " among entries with the same grant alone."
             )
         return tuple(notes)
+
+
+def _closed(text: str) -> str:
+    return text if text.endswith((".", "!", "?")) else f"{text}."
 
 
 def _merit(r: Record) -> tuple[float, float, float]:

@@ -9,6 +9,8 @@ from benchnav.arena.agents import Role
 from benchnav.episode.episode import Episode
 from benchnav.errors import PluginError
 from benchnav.metrics.metric import Metric, evaluate
+from benchnav.navigation.answer import said
+from benchnav.navigation.trace import trace
 from benchnav.plugins import METRICS
 
 
@@ -65,23 +67,18 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
             "navigator_hash": who.navigator_hash, "rehearsal": episode.rehearsals,
             "source_hash": who.source_hash,
             "rehearsal_decisions": episode.rehearsal_decisions,
-            "rehearsal_seconds": episode.timings.rehearsal,
+            "rehearsal_seconds": episode.timings.rehearsal, "remarks": list(episode.remarks),
         }  # fmt: skip
         for metric in metrics:
-            value, defined, missing = math.nan, 0, ""
+            value, defined, missing, traceback = math.nan, 0, "", None
             try:
                 value, defined = evaluate(metric, episode, members)
             except (Exception, SystemExit) as error:
-                missing = _said(error)
+                missing, traceback = said(error), trace(error)
             rows.append(
                 {
                     **common, "metric": metric.name, "value": value, "defined": defined,
-                    "missing": missing,
+                    "missing": missing, "traceback": traceback,
                 }
             )  # fmt: skip
     return rows
-
-
-def _said(error: BaseException) -> str:
-    text = " ".join(f"{type(error).__name__}: {error}".split())
-    return text if len(text) <= 200 else text[:197] + "..."

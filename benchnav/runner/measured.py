@@ -9,6 +9,7 @@ import pyarrow.compute as pc
 from benchnav.episode.episode import Episode
 from benchnav.metrics.measure import measure
 from benchnav.metrics.metric import Metric
+from benchnav.navigation.answer import kind_of
 from benchnav.store.manifest import load_manifest
 from benchnav.store.reading import in_every_track, read_episodes
 from benchnav.store.results import RESULTS
@@ -24,6 +25,13 @@ def failed_metrics(results: pa.Table) -> list[tuple[str, str]]:
     """(metric, how it failed) of every value of `RESULTS` that is missing for that."""
     gaps = results.filter(pc.not_equal(results["missing"], ""))
     return list(zip(gaps["metric"].to_pylist(), gaps["missing"].to_pylist(), strict=True))
+
+
+def tracebacks_of(results: pa.Table) -> dict[str, str]:
+    """Tracebacks of metrics that raised, one for each kind of reason."""
+    raised = results.filter(pc.is_valid(results["traceback"]))
+    reasons, texts = raised["missing"].to_pylist(), raised["traceback"].to_pylist()
+    return {kind_of(why): text for why, text in zip(reasons, texts, strict=True) if text}
 
 
 def measure_again(run: Path, metrics: Sequence[Metric]) -> pa.Table:

@@ -45,6 +45,8 @@ class Summary:
     older: int = 0  # stored episodes that older code made, and that are to be replaced
     replaced: Counter[str] = field(default_factory=Counter)  # of these, those that were, by label
     in_process: tuple[str, ...] = ()  # labels that ran in this process, which alone knows them
+    tracebacks: dict[tuple[str, str], str] = field(default_factory=dict)
+    """One for each (navigator, kind of reason) of what was raised."""
 
     def count(self, task: Task, outcome: Outcome) -> None:
         """A task is finished."""
@@ -56,6 +58,7 @@ class Summary:
         self.unled.update((label, scenario, team) for _, team in outcome.unled)
         self.remarks.update((label, scenario, text) for _, text in outcome.remarks)
         self.missing.update(outcome.missing)
+        self.tracebacks |= {(label, kind): text for kind, text in outcome.tracebacks.items()}
         if outcome.lacks:
             self.total -= len(task.seeds)
             if all(cell != task.cell for cell, _ in self.not_applicable):

@@ -62,6 +62,7 @@ EPISODES = pa.schema(
         ("remarks", pa.list_(pa.string())),
         ("twist", pa.large_list(pa.bool_())),  # of every agent; null: not known
         ("source_hash", pa.string()),  # of the navigator's code and data; null: not known
+        ("traceback", pa.string()),  # of the failure; null where nothing was raised
     ]
 )
 LATER = (
@@ -75,6 +76,7 @@ LATER = (
     "remarks",
     "twist",
     "source_hash",
+    "traceback",
 )  # columns that older parts lack; null there
 DICTIONARY = [*_IDENTITY, "navigator_hash", "source_hash", "failure"]  # columns whose values repeat
 
@@ -103,6 +105,7 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
     columns["memory_bytes"] = [e.timings.memory for e in episodes]
     columns["remarks"] = [list(e.remarks) for e in episodes]
     columns["twist"] = [e.twist for e in episodes]
+    columns["traceback"] = [e.traceback or None for e in episodes]
     columns["rehearsal_seconds"] = [e.timings.rehearsal for e in episodes]
     arrays = [
         values if isinstance(values, pa.Array) else pa.array(values, type=field.type)
@@ -163,6 +166,7 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
         rehearsals=scalar("rehearsals") or 0,
         rehearsal_decisions=scalar("rehearsal_decisions") or 0,
         remarks=tuple(scalar("remarks") or ()),
+        traceback=scalar("traceback") or "",
         twist=None if twist is None else np.array(twist, np.bool_),
         **arrays,
     )

@@ -31,6 +31,8 @@ RESULTS = pa.schema(
         ("rehearsal_seconds", pa.float64()),  # of the navigator that led
         ("missing", pa.string()),  # how the metric failed; "" where it did not, and in older parts
         ("source_hash", pa.string()),  # of the navigator's code and data; "" where not known
+        ("traceback", pa.string()),  # of that; null where nothing was raised, and in older parts
+        ("remarks", pa.list_(pa.string())),  # of the navigator on this episode; null likewise
     ]
 )
 
@@ -42,6 +44,8 @@ LATER = {
     "rehearsal_seconds": 0.0,
     "missing": "",
     "source_hash": "",
+    "traceback": None,
+    "remarks": None,
 }
 """Columns that older parts lack, and what stands for them."""
 
