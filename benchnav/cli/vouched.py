@@ -24,9 +24,9 @@ def vouched(folders: Sequence[RunFolder], now: bool) -> set[str]:
 
 def _verified(folder: RunFolder, now: bool) -> bool:
     from benchnav.store.pack import content_digest
-    from benchnav.store.receipt import has_receipt, receipts_folder
+    from benchnav.store.receipt import any_receipts, has_receipt
 
-    if not now and not receipts_folder().is_dir():
+    if not now and not any_receipts():
         return False
     try:
         return has_receipt(content_digest(folder)) or (now and _verify(folder))
