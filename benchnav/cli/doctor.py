@@ -11,6 +11,7 @@ import typer
 
 from benchnav.cli.console import columns, put
 from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS
+from benchnav.plural import counted
 from benchnav.threads import core_count
 from benchnav.user_folders import user_state
 
@@ -39,7 +40,7 @@ def _machine() -> Iterator[Line]:
     yield "ok", "python", f"{platform.python_version()} ({sys.executable})"
     yield "ok", "machine", platform.platform()
     cores = core_count()
-    yield "ok", "cores", f"{cores}, so `benchnav run` uses {cores} workers"
+    yield "ok", "cores", f"{cores}, so `benchnav run` uses {counted(cores, 'worker')}"
 
 
 def _packages() -> Iterator[Line]:

@@ -12,6 +12,7 @@ import typer
 
 from benchnav.cli.console import one_of, put, say
 from benchnav.errors import UsageError
+from benchnav.plural import counted
 
 if TYPE_CHECKING:
     from benchnav.runner.run import Executor, Summary
@@ -131,7 +132,7 @@ def run(
         )  # fmt: skip
     except KeyboardInterrupt:
         say(
-            f"Interrupted: {summary.stored} of {summary.total} episodes are stored."
+            f"Interrupted: {summary.stored} of {counted(summary.total, 'episode')} stored."
             f" The same command with --out {folder} goes on from there."
         )
         raise
@@ -166,47 +167,50 @@ def _shard(text: str | None) -> "Shard | None":
 
 def _announce(suite: "Suite", folder: Path) -> str:
     sizes = (
-        (len(suite.scenarios), "scenarios"), (len(suite.tracks), "tracks"),
-        (len(suite.entries), "navigators"), (len(suite.seeds), "seeds"),
+        (len(suite.scenarios), "scenario"), (len(suite.tracks), "track"),
+        (len(suite.entries), "navigator"), (len(suite.seeds), "seed"),
     )  # fmt: skip
-    product = " × ".join(f"{n} {what if n != 1 else what[:-1]}" for n, what in sizes)
+    product = " × ".join(counted(n, what) for n, what in sizes)
     some = f" (in {len(suite.blocks)} blocks of cells)" if suite.blocks else ""
     return f"{suite.name}@{suite.version}: {product}{some}, into {folder}"
 
 
 def _conclude(summary: "Summary", seconds: float) -> str:
     fresh = summary.stored - summary.found
-    lines = [f"{summary.stored} episodes stored, {fresh} of them run in {seconds:.1f} s"]
+    lines = [f"{counted(summary.stored, 'episode')} stored, {fresh} of them run in {seconds:.1f} s"]
     if fresh and seconds > 0:
         lines[0] += f" ({fresh / seconds:.3g} a second)"
     if summary.redraws:
-        lines.append(f"{summary.redraws} draws of worlds were not solvable and drawn again")
+        lines.append(
+            f"drawn again, because they were not solvable: {counted(summary.redraws, 'world')}"
+        )
     reasons = Counter[tuple[str, str]]()
     for cell, reason in summary.not_applicable:
         reasons[cell.entry.label, f"{reason} ({cell.track})"] += 1
     lines += [
-        f"n/a: {who} {why}, {n} {'cell' if n == 1 else 'cells'}"
-        for (who, why), n in sorted(reasons.items())
+        f"n/a: {who} {why}, {counted(n, 'cell')}" for (who, why), n in sorted(reasons.items())
     ]
     lines += [
-        f"failed: {who} in {n} episodes: {why}"
+        f"failed: {who} in {counted(n, 'episode')}: {why}"
         for (who, why), n in summary.failures.most_common(10)
     ]
     if len(summary.failures) > 10:
-        lines.append(f"… and for {len(summary.failures) - 10} more reasons")
+        lines.append(f"… and for {counted(len(summary.failures) - 10, 'more reason')}")
     lines += [
-        f"the metric {metric} failed for {n} {'value' if n == 1 else 'values'}: {why}"
+        f"the metric {metric} failed for {counted(n, 'value')}: {why}"
         for (metric, why), n in summary.missing.most_common(5)
     ]
     lines += [
-        f"warning: {who}: the leader of {team!r} succeeded in no rehearsal in {n}"
-        f" {'world' if n == 1 else 'worlds'} of {scenario}"
+        f"warning: {who}: the leader of {team!r} succeeded in no rehearsal in"
+        f" {counted(n, 'world')} of {scenario}"
         for (who, scenario, team), n in summary.unled.most_common(10)
     ]
     lines += [
-        f"{who} tells of {n} {'world' if n == 1 else 'worlds'} of {scenario}: {text}"
+        f"{who} tells of {counted(n, 'world')} of {scenario}: {text}"
         for (who, scenario, text), n in summary.remarks.most_common(5)
     ]
     if len(summary.remarks) > 5:
-        lines.append(f"… and of {len(summary.remarks) - 5} more things; episodes keep them all")
+        lines.append(
+            f"… and of {counted(len(summary.remarks) - 5, 'more thing')}; episodes keep them all"
+        )
     return "\n".join(lines)

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from benchnav.cli.console import say
 from benchnav.errors import StoreError
+from benchnav.plural import counted
 from benchnav.store.run_folder import RunFolder
 
 
@@ -45,7 +46,7 @@ def _verify(folder: RunFolder) -> bool:
     keep(folder, report)
     if not report.clean:
         say(
-            f"{folder.shown} is NOT verified: {len(report.findings)} findings"
+            f"{folder.shown} is NOT verified: {counted(len(report.findings), 'finding')}"
             f" ('benchnav verify {folder.shown}' names them)"
         )
     return report.clean
