@@ -34,10 +34,9 @@ def warn_if_unfinished(folder: "RunFolder") -> None:
         return
     total = sum(len(seeds) for _, seeds in folder.wanted())
     stored = total - sum(map(len, missing.values()))
-    advice = (
-        "." if folder.packed else f": run the same suite with --out {folder.path} to finish it."
-    )
-    say(f"{folder.shown} holds {stored} of {counted(total, 'episode')}{advice}")
+    advice = f": run the same suite with --out {folder.path} to finish it."
+    end = "." if folder.packed else advice
+    say(f"{folder.shown} holds {stored} of {counted(total, 'episode')}{end}")
     for key, seeds in islice(missing.items(), _SHOWN):
         say(f"  missing: {spans(seeds)} of {key}")
     if len(missing) > _SHOWN:

@@ -214,8 +214,8 @@ class _Table:
             notes.append("verified: its runs were re-simulated here; timings cannot be verified.")
         if self.rehearsed:
             notes.append(
-                f"Granted {counted(self.rehearsed, 'rehearsal')} of each world before it was scored; ranked"
-                " among entries with the same grant alone."
+                f"Granted {counted(self.rehearsed, 'rehearsal')} of each world before it was"
+                " scored; ranked among entries with the same grant alone."
             )
         return tuple(notes)
 

@@ -75,9 +75,9 @@ def _said_of_room(scenario: Scenario, crowded: Sequence[int]) -> str:
             margin = radius if scenario.walled else 0.0
             room = most_that_fit(team.start.region, scenario.bounds, 2.0 * radius + gap, margin)
             lines.append(
-                f"\n{scenario.where_start(i)} of {team.name!r} holds at most {counted(room, 'agent')} of"
-                f" radius {radius:g} m that are {gap:g} m apart, packed closely and with nothing"
-                " else there; drawn at random, about half as many find a place."
+                f"\n{scenario.where_start(i)} of {team.name!r} holds at most"
+                f" {counted(room, 'agent')} of radius {radius:g} m that are {gap:g} m apart,"
+                " packed closely and with nothing else there; drawn at random, about half as many find a place."
             )
     return "".join(lines)
 
