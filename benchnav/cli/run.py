@@ -11,6 +11,7 @@ import typer
 
 from benchnav.cli.console import one_of, put, say
 from benchnav.errors import UsageError
+from benchnav.plural import counted
 
 if TYPE_CHECKING:
     from benchnav.runner.run import Executor
@@ -143,7 +144,7 @@ def run(
         )  # fmt: skip
     except KeyboardInterrupt:
         parts = [
-            f"Interrupted: {summary.stored} of {summary.total} episodes are stored.",
+            f"Interrupted: {summary.stored} of {counted(summary.total, 'episode')} stored.",
             f"The same command with --out {folder} continues there.",
             kept_for_now(summary),
         ]
@@ -182,9 +183,9 @@ def _shard(text: str | None) -> "Shard | None":
 
 def _announce(suite: "Suite", folder: Path) -> str:
     sizes = (
-        (len(suite.scenarios), "scenarios"), (len(suite.tracks), "tracks"),
-        (len(suite.entries), "navigators"), (len(suite.seeds), "seeds"),
+        (len(suite.scenarios), "scenario"), (len(suite.tracks), "track"),
+        (len(suite.entries), "navigator"), (len(suite.seeds), "seed"),
     )  # fmt: skip
-    product = " × ".join(f"{n} {what if n != 1 else what[:-1]}" for n, what in sizes)
+    product = " × ".join(counted(n, what) for n, what in sizes)
     some = f" (in {len(suite.blocks)} blocks of cells)" if suite.blocks else ""
     return f"{suite.name}@{suite.version}: {product}{some}, into {folder}"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from benchnav.cli.console import columns, put, say
+from benchnav.plural import counted
 
 if TYPE_CHECKING:
     from benchnav.runner.verify.finding import Report
@@ -94,7 +95,7 @@ def as_json(run: Path, report: "Report", seconds: float) -> str:
 def as_text(run: Path, report: "Report", seconds: float) -> str:
     """For people: the verdict, findings, what was checked and what was not."""
     count = len(report.findings)
-    verdict = "verified" if report.clean else f"NOT verified: {count} finding{'s' * (count > 1)}"
+    verdict = "verified" if report.clean else f"NOT verified: {counted(count, 'finding')}"
     lines = [f"{run}: {verdict}, in {seconds:.1f} s"]
     if count:
         few = report.few(SHOWN)

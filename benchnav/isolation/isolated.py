@@ -11,6 +11,7 @@ from benchnav.errors import BrokenPluginError, NavigatorError, UsageError
 from benchnav.isolation import fence, pool
 from benchnav.isolation.process import Process
 from benchnav.isolation.remote import Remote, python_path, say_hello
+from benchnav.named_module import current_folder
 from benchnav.navigation.configure import Spec, split
 from benchnav.navigation.introduction import Introduction
 from benchnav.plugins import NAVIGATORS
@@ -62,4 +63,4 @@ def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "
 
 def _hello(spec: Spec) -> dict[str, Any]:
     told = spec if isinstance(spec, str) else dict(spec)
-    return {"navigator": told, "path": python_path()}
+    return {"navigator": told, "path": python_path(), "folder": str(current_folder())}

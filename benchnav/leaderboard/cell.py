@@ -4,6 +4,7 @@ import math
 from dataclasses import dataclass
 
 from benchnav.leaderboard.record import PRICE, Record
+from benchnav.plural import counted
 
 PREFIXES = {  # unit → what it is divided by, and then called
     "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")),
@@ -71,7 +72,7 @@ def rehearsal(r: Record) -> Cell:
         return Cell("")
     size, unit = prefixed("s", r.rehearsal_seconds)
     seconds = number(r.rehearsal_seconds / size, r.rehearsal_seconds / size)
-    return Cell(f"{r.rehearsal_decisions:.0f} decisions, {seconds} {unit}")
+    return Cell(f"{counted(round(r.rehearsal_decisions), 'decision')}, {seconds} {unit}")
 
 
 def verified(r: Record) -> Cell:

@@ -19,6 +19,7 @@ from benchnav.leaderboard.price_table import LEGEND as PRICE_LEGEND
 from benchnav.leaderboard.price_table import price_sections
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Leaderboard, Record
 from benchnav.leaderboard.section import Section
+from benchnav.plural import counted
 
 DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
 NARROW = 4  # metrics up to which every cell shows its interval
@@ -90,7 +91,7 @@ def _title(records: list[Record], variants: bool) -> str:
     first = records[0]
     scenario = "all scenarios" if first.scenario == ALL else first.scenario
     counts = {r.episodes for r in records if r.episodes}
-    worlds = f", {counts.pop()} worlds" if len(counts) == 1 else ""
+    worlds = f", {counted(counts.pop(), 'world')}" if len(counts) == 1 else ""
     split = "" if first.split == "test" else f", split {first.split}"
     variant = (
         f", horizon {first.horizon:g} s, dt {first.dt:g} s, hash {first.scenario_hash[:8]}"
@@ -215,8 +216,8 @@ class _Table:
             notes.append("verified: its runs were re-simulated here; timings cannot be verified.")
         if self.rehearsed:
             notes.append(
-                f"Granted {self.rehearsed} rehearsals of each world before it was scored; ranked"
-                " among entries with the same grant alone."
+                f"Granted {counted(self.rehearsed, 'rehearsal')} of each world before it was"
+                " scored; ranked among entries with the same grant alone."
             )
         return tuple(notes)
 

@@ -15,6 +15,7 @@ from benchnav.leaderboard.compare import (
     sign_flip,
 )
 from benchnav.metrics.metric import Metric
+from benchnav.plural import counted
 
 
 @dataclass(frozen=True)
@@ -95,11 +96,13 @@ def _contest(
     for n in range(value.shape[1]):
         if not covered[n]:
             own = int(attempted[:, n].sum())
-            notes[n] = f"attempted {own} worlds and not the same {worlds} as those that are"
+            notes[n] = (
+                f"attempted {counted(own, 'world')} and not the same {worlds} as those that are"
+            )
         elif not known[:, n].any():
             notes[n] = "undefined in every episode"
         elif gaps[n]:
-            notes[n] = f"undefined in {gaps[n]} episodes in which others have a value"
+            notes[n] = f"undefined in {counted(gaps[n], 'episode')} in which others have a value"
         elif len(entrants) < 2:
             notes[n] = "nobody to rank with"
     if len(entrants) < 2:

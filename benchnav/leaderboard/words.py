@@ -12,6 +12,7 @@ from benchnav.leaderboard.duel import Duel
 from benchnav.leaderboard.record import ALL
 from benchnav.leaderboard.tidy import as_csv, as_json
 from benchnav.metrics.metric import Metric
+from benchnav.plural import counted
 
 FORMATS = ("markdown", "csv", "json")
 SMALLEST = 1e-4  # p below which only that is said
@@ -68,7 +69,7 @@ def place(c: Comparison, *, role: bool, split: bool) -> str:
     parts = [scenario, f"track {c.track}"]
     parts += [f"{c.role}s"] if role else []
     parts += [f"split {c.split}"] if split else []
-    return f"{', '.join(parts)} ({c.worlds} world{'' if c.worlds == 1 else 's'})"
+    return f"{', '.join(parts)} ({counted(c.worlds, 'world')})"
 
 
 def sentence(c: Comparison, metric: Metric) -> str:
@@ -135,7 +136,7 @@ def _chance(c: Comparison) -> str:
     if p >= 0.95:
         return "which is what chance does"
     if p >= 0.1:
-        return f"by chance {round(10 * p)} times in 10"
+        return f"by chance {counted(round(10 * p), 'time')} in 10"
     times = math.floor(1 / p)
     return f"by chance once in {times if times < 100 else round(times, -1):,} times"
 
@@ -145,7 +146,7 @@ def _explained(duel: Duel) -> str:
     return (
         f"[low, high]: 95 % interval of the mean difference over the worlds of both."
         f" By chance: how often so much would be seen if neither were better (sign flips of"
-        f" paired worlds), after Holm over the {family}"
-        f" comparison{'' if family == 1 else 's'} above as one family. Rarer than once in 20 it is"
+        f" paired worlds), after Holm over the"
+        f" {counted(family, 'comparison')} above as one family. Rarer than once in 20 it is"
         " called a difference; an interval stands for itself alone, so a tie may leave out 0."
     )

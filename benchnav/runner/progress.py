@@ -4,6 +4,8 @@ import sys
 from time import monotonic
 from typing import Any
 
+from benchnav.plural import counted
+
 
 class Progress:
     """Counts finished episodes, and says nothing."""
@@ -63,7 +65,7 @@ class Lines(Progress):
         self._tenth, self._said = tenth, now
         fresh = max(self._done - self._stored, 1)
         left = (now - self._began) / fresh * (self._total - self._done)
-        text = f"{self._done} of {self._total} episodes"
+        text = f"{self._done} of {counted(self._total, 'episode')}"
         if self._done < self._total:
             text += f", about {_span(left)} left"
         sys.stderr.write(text + "\n")

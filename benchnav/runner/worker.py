@@ -19,6 +19,7 @@ from typing import Any
 from benchnav.errors import BenchnavError
 from benchnav.plugins import Registration, adopt
 from benchnav.runner.watch import Notes, write_to
+from benchnav.streams import prepare_streams, talk
 
 ONE_THREAD = {  # a worker is one core: more threads would only fight those of other workers
     "BENCHNAV_THREADS": "1",
@@ -38,7 +39,9 @@ def serve(
     ``registrations`` are what it knows by name and is not installed.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
+    prepare_streams()
     os.dup2(2, 1)  # what a navigator prints is talk, and results are the parent's
+    sys.stdout = talk(sys.stdout)
     _end_with_parent()
     _go_first()
     write_to(notes)

@@ -10,6 +10,8 @@ from importlib.machinery import ModuleSpec, PathFinder
 from importlib.metadata import packages_distributions
 from pathlib import Path
 
+from benchnav.named_module import current_folder
+
 CORE = "benchnav"  # its version stands for it
 INIT = "__init__.py"
 _LIBRARIES = ("site-packages", "dist-packages")
@@ -37,7 +39,8 @@ class Module:
 def locate(name: str, folders: Sequence[str] = ()) -> Module | None:
     """Return the module called ``name``; None if no file or folder is it.
 
-    ``folders`` are searched before the import path. The file of a package without an
+    ``folders`` are searched before the import path, the current folder after it, as
+    `benchnav.named_module` imports. The file of a package without an
     ``__init__`` does not exist.
     """
     spec: ModuleSpec | None = None
@@ -74,7 +77,7 @@ def _spec(name: str, path: list[str] | None, folders: Sequence[str]) -> ModuleSp
             continue  # a finder that needs the parent package to be imported
         if spec is not None:
             return spec
-    return None
+    return PathFinder.find_spec(name, [str(current_folder())]) if path is None else None
 
 
 def is_library(module: Module) -> bool:

@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, Literal
 
-from benchnav.errors import CorruptPartError, StoreError
+from benchnav.errors import CorruptPartError, NoRunError, StoreError
 from benchnav.store import checked_json
 
 SCHEMA = 4  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source
@@ -106,13 +106,14 @@ def load_manifest(run: Path) -> Manifest:
     """The manifest of a run folder.
 
     Raises:
-        StoreError: the folder is no run, or a newer benchnav wrote it.
+        NoRunError: the folder is no run.
+        StoreError: a newer benchnav wrote it.
         CorruptPartError: its manifest is damaged, or names a cell that no folder may be called.
     """
     path = run / MANIFEST
     if not path.is_file():
         what = "Got a file" if run.is_file() else "It is not there" if not run.exists() else None
-        raise StoreError(
+        raise NoRunError(
             f"{run} must be a run folder, with a {MANIFEST}."
             f" {what or 'It has none'}. 'benchnav run SUITE --out {run}' makes one."
         )

@@ -13,6 +13,7 @@ from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.errors import UnsolvableError, UsageError, did_you_mean
 from benchnav.geometry.rotation import angle_of
+from benchnav.plural import counted
 from benchnav.scenario.packing import most_that_fit
 from benchnav.scenario.sampler import sample, support
 from benchnav.scenario.scenario import Scenario
@@ -57,7 +58,7 @@ def build(scenario: Scenario, split: str, seed: int) -> World:
         except NoPlaceError as reason:
             reasons[str(reason)] += 1
             crowded |= set() if reason.team is None else {reason.team}
-    worst = "; ".join(f"{text} ({n} draws)" for text, n in reasons.most_common(3))
+    worst = "; ".join(f"{text} ({counted(n, 'draw')})" for text, n in reasons.most_common(3))
     raise UnsolvableError(
         f"{scenario.identity}, split {split}, seed {seed}: no world could be drawn in"
         f" {MAX_ATTEMPTS} draws: {worst}.{_said_of_room(scenario, sorted(crowded))}"
@@ -74,9 +75,10 @@ def _said_of_room(scenario: Scenario, crowded: Sequence[int]) -> str:
             margin = radius if scenario.walled else 0.0
             room = most_that_fit(team.start.region, scenario.bounds, 2.0 * radius + gap, margin)
             lines.append(
-                f"\n{scenario.where_start(i)} of {team.name!r} holds at most {room} agents of"
-                f" radius {radius:g} m that are {gap:g} m apart, packed closely and with nothing"
-                " else there; drawn at random, about half as many find a place."
+                f"\n{scenario.where_start(i)} of {team.name!r} holds at most"
+                f" {counted(room, 'agent')} of radius {radius:g} m that are {gap:g} m apart,"
+                " packed closely and with nothing else there; drawn at random, about half as"
+                " many find a place."
             )
     return "".join(lines)
 

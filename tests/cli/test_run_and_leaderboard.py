@@ -100,7 +100,7 @@ def test_an_unfinished_run_says_so_and_a_damaged_one_is_refused(call, run):
 
 def test_what_is_no_run_is_refused(call, tmp_path):
     code, _, stderr = call("leaderboard", tmp_path)
-    assert code == 1
+    assert code == 2
     assert "must be a run folder" in stderr
 
 

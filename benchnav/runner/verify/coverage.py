@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator
 
+from benchnav.plural import counted
 from benchnav.runner.cell import Cell
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.restored import Restored
@@ -38,8 +39,8 @@ def _check_seeds(parts: list[Part], seeds: range, where: str, report: Report) ->
     twice = [seed for seed, count in sorted(held.items()) if count > 1]
     strange = sorted(held.keys() - set(seeds))
     for text, found in (
-        ("lack", missing), ("are there twice", twice), ("are not of the suite", strange)
+        ("missing", missing), ("stored twice", twice), ("not of the suite", strange)
     ):  # fmt: skip
         if found:
             few = ", ".join(map(str, found[:10])) + (", …" if len(found) > 10 else "")
-            report.find("coverage", where, f"{len(found)} seeds {text}: {few}")
+            report.find("coverage", where, f"{counted(len(found), 'seed')} {text}: {few}")

@@ -264,8 +264,8 @@ def test_parts_that_lack_or_are_too_much(forger, findings):
     kinds, report = findings(forger.run)
     assert {"coverage", "identity"} <= kinds
     said = " | ".join(f"{f.where}: {f.what}" for f in report.findings if f.kind == "coverage")
-    for text in ("stray: is no cell", "is n/a", "1 seeds are there twice: 2", "2 seeds are not of",
-                 "rotor: 3 seeds lack: 0, 1, 2"):  # fmt: skip
+    for text in ("stray: is no cell", "is n/a", "1 seed stored twice: 2", "2 seeds not of",
+                 "rotor: 3 seeds missing: 0, 1, 2"):  # fmt: skip
         assert text in said, said
 
 
