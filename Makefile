@@ -6,7 +6,7 @@ OUT ?= runs/quick
 READY := $(VENV)/.ready
 PEERS := .venv-peers
 
-.PHONY: setup run test test-all check lint types layers bench clean
+.PHONY: setup run test test-all wheels check lint types layers bench clean
 
 setup: $(READY)  ## .venv with everything, at the versions of constraints.txt
 
@@ -38,6 +38,9 @@ test: check $(READY)  ## all checks, and all tests but the long ones
 
 test-all: check $(READY)  ## all checks and tests, as CI runs them
 	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal
+
+wheels: $(READY)  ## the built wheel, on every Python that is found
+	$(BIN)/python .ci/try_wheels.py
 
 bench: $(READY) $(PEERS)/.ready  ## speed against peers and limits; writes docs/benchmarks.md
 	$(BIN)/python -m benchmarks --peers $(PEERS)/bin/python --out docs/benchmarks.md
