@@ -10,18 +10,33 @@ from pathlib import Path
 import typer
 
 from benchnav.cli.console import columns, put
-from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS
+from benchnav.errors import BenchnavError, MissingExtraError
+from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, Registry
 from benchnav.plural import counted
 from benchnav.threads import core_count
 from benchnav.user_folders import user_state
 
 _CORE = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pydantic", "pedpy")
 _EXTRAS = {
-    "plan": {"ompl": "ompl", "trimesh": "trimesh", "python-fcl": "fcl"},
-    "learn": {"torch": "torch", "stable-baselines3": "stable_baselines3", "gymnasium": "gymnasium"},
+    "plan": {
+        "ompl": "ompl",
+        "trimesh": "trimesh",
+        "python-fcl": "fcl",
+        "pycollada": "collada",
+        "networkx": "networkx",
+        "mapbox-earcut": "mapbox_earcut",
+    },
+    "learn": {
+        "torch": "torch",
+        "stable-baselines3": "stable_baselines3",
+        "sb3-contrib": "sb3_contrib",
+        "gymnasium": "gymnasium",
+        "pettingzoo": "pettingzoo",
+        "tensorboard": "tensorboard",
+    },
     "view": {"matplotlib": "matplotlib", "plotly": "plotly"},
     "ray": {"ray": "ray"},
-}
+}  # extra → package → module
 Line = tuple[str, str, str]  # verdict, what, detail
 
 
@@ -87,8 +102,30 @@ def _folder(what: str, place: Path, reason: str) -> Line:
 
 def _plugins() -> Iterator[Line]:
     for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS):
-        broken = list(registry.broken())
-        for _, cause in broken:
+        broken = dict(registry.broken())
+        whole = [name for name in registry.names() if name not in broken]
+        incomplete: dict[str, str] = {}
+        for name in whole if registry is not METRICS else ():
+            try:
+                _make(registry, name)
+            except MissingExtraError as error:
+                incomplete[name] = str(error)
+            except BenchnavError as error:
+                broken[name] = str(error)
+        usable = len(registry.names()) - len(incomplete) - len(broken)
+        yield "ok", f"{registry.kind}s", f"{usable} can be used"
+        for cause in dict.fromkeys(incomplete.values()):
+            names = ", ".join(name for name, why in incomplete.items() if why == cause)
+            yield "-", f"{registry.kind}s", f"without {names}. {cause}"
+        for cause in broken.values():
             yield "WRONG", registry.kind, cause
-        whole = len(registry.names()) - len(broken)
-        yield "ok", f"{registry.kind}s", f"{whole} can be used"
+
+
+def _make(registry: Registry, name: str) -> None:
+    """Make the plugin as it stands, unless it has parameters that must be given."""
+    from benchnav.navigation.configure import make
+
+    declared = getattr(registry.load(name), "Config", None)
+    required = getattr(declared, "model_fields", {}).values()
+    if not any(field.is_required() for field in required):
+        make(registry, name)

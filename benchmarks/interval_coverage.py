@@ -1,6 +1,7 @@
 """How often 95 % intervals hold the truth, and how often `compare` sees what is not there.
 
-    python -m benchmarks.coverage [--tables N] [--part rates|differences|means|false-alarms]
+    python -m benchmarks.interval_coverage [--tables N]
+        [--part rates|differences|means|false-alarms]
 
 Tables are simulated as real ones are: worlds with several agents each, which share their
 luck, and two navigators in the same worlds. docs/statistics.md keeps the output for 2,000
