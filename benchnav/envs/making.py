@@ -66,12 +66,12 @@ def make_batch(
     if slots is not None:
         rows = max(slots // max(L, 1), 1)
         if slots != rows * L:
+            least, most = f"at least {L}", f"a multiple of {L}"
+            nearest = f"; the nearest below is {rows * L}" if slots > L else ""
             raise UsageError(
-                f"num_envs must be a multiple of {L}, the learning agents of a world of {scenario}."
-                f" Got {slots} instead; the nearest below is {rows * L}."
-                if slots > L
-                else f"num_envs must be at least {L}, the learning agents of a world of {scenario}."
-                f" Got {slots} instead."
+                "num_envs counts the agents that learn: it must be"
+                f" {most if nearest else least}, the agents of a world of {scenario}."
+                f" Got {slots} instead{nearest}."
             )
     return AgentBatch(pool, rows, chosen, weights, np.random.default_rng(), drivers=drivers)
 
