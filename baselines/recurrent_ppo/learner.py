@@ -29,9 +29,11 @@ class SequencePPO(RecurrentPPO):
             self.device, gamma=self.gamma, gae_lambda=self.gae_lambda, n_envs=self.n_envs,
         )  # fmt: skip
 
-    def collect_rollouts(self, env: Any, callback: Any, rollout_buffer: Any, *args: Any) -> bool:
+    def collect_rollouts(
+        self, env: Any, callback: Any, rollout_buffer: Any, n_rollout_steps: int
+    ) -> bool:
         rollout_buffer.env = env
-        return super().collect_rollouts(env, callback, rollout_buffer, *args)
+        return super().collect_rollouts(env, callback, rollout_buffer, n_rollout_steps)
 
     def forget(self) -> None:
         """Start with empty memories."""

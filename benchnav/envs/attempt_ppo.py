@@ -16,11 +16,13 @@ class AttemptPPO(PPO):
         self.rollout_buffer_class = LiveBuffer
         super()._setup_model()
 
-    def collect_rollouts(self, env: Any, callback: Any, rollout_buffer: Any, *args: Any) -> bool:
+    def collect_rollouts(
+        self, env: Any, callback: Any, rollout_buffer: Any, n_rollout_steps: int
+    ) -> bool:
         rollout_buffer.env = env.unwrapped
         if not isinstance(rollout_buffer.env, AgentVecEnv):
             raise UsageError(
                 f"AttemptPPO learns in an AgentVecEnv. Got {type(rollout_buffer.env).__name__}"
                 " instead; use PPO there."
             )
-        return super().collect_rollouts(env, callback, rollout_buffer, *args)
+        return super().collect_rollouts(env, callback, rollout_buffer, n_rollout_steps)
