@@ -3,9 +3,10 @@
 from typing import Any, cast
 
 import numpy as np
-from stable_baselines3.common.vec_env import VecMonitor
+from stable_baselines3.common.vec_env import VecEnv, VecMonitor
 
 from benchnav.envs.agent_vec_env import AgentVecEnv
+from benchnav.errors import UsageError
 
 
 class AttemptMonitor(VecMonitor):
@@ -17,6 +18,14 @@ class AttemptMonitor(VecMonitor):
     training and in `evaluate_policy`, and no value is passed from an attempt to the idle stretch
     before it.
     """
+
+    def __init__(self, venv: VecEnv, *args: Any, **kwargs: Any) -> None:
+        if not isinstance(venv.unwrapped, AgentVecEnv):
+            raise UsageError(
+                f"AttemptMonitor wraps an AgentVecEnv. Got {type(venv.unwrapped).__name__}"
+                " instead; use VecMonitor there."
+            )
+        super().__init__(venv, *args, **kwargs)
 
     def step_wait(self) -> Any:
         observation, reward, done, infos = super().step_wait()

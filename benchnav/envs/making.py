@@ -16,6 +16,11 @@ from benchnav.errors import ConfigError, UsageError, did_you_mean
 from benchnav.scenario.catalogue import find
 from benchnav.world.build import build
 
+
+class NoRenderingError(UsageError, TypeError):
+    """A wish to render; SB3's `make_vec_env` tries rgb_array and goes on without on a TypeError."""
+
+
 Reward = RewardWeights | Mapping[str, Any] | None
 SPLITS = ("train", "validation")
 
@@ -94,9 +99,9 @@ def drawn_index(
 
 
 def refuse_rendering(render_mode: str | None) -> None:
-    """Raise UsageError where somebody wants to watch."""
+    """Raise NoRenderingError for any mode but None."""
     if render_mode is not None:
-        raise UsageError(
+        raise NoRenderingError(
             f"The render_mode must be None: environments draw nothing. Got {render_mode!r} instead."
         )
 

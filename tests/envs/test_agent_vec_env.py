@@ -3,6 +3,7 @@ import pytest
 import torch
 from sb3_contrib import RecurrentPPO
 from stable_baselines3 import PPO, SAC, TD3
+from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.vec_env import VecFrameStack, VecMonitor, VecNormalize
 
@@ -11,6 +12,7 @@ from benchnav.envs.attempt_monitor import AttemptMonitor
 from benchnav.envs.attempt_ppo import AttemptPPO
 from benchnav.envs.leader_env import LeaderEnv
 from benchnav.envs.making import make_batch
+from benchnav.envs.registration import LEADER
 from benchnav.errors import UsageError
 from tests.envs.recorder import Recorder
 
@@ -193,6 +195,15 @@ def test_ppo_of_attempts_learns_from_decisions_only(tmp_path):
     again.learn(300 * 12)
     with pytest.raises(UsageError, match="in an AgentVecEnv"):
         AttemptPPO("MlpPolicy", LeaderEnv(worlds=1), n_steps=8, batch_size=8, device="cpu").learn(8)
+
+
+def test_the_factory_of_stable_baselines_makes_single_environments():
+    asked = {"scenario": "crowd/circle-crossing", "worlds": 2}
+    with pytest.warns(UserWarning, match="render_mode='rgb_array' that is not in the possible"):
+        env = make_vec_env(LEADER, 2, env_kwargs=asked, seed=0)
+    assert env.reset().shape == (2, 62)
+    with pytest.raises(UsageError, match="AttemptMonitor wraps an AgentVecEnv"):
+        AttemptMonitor(env)
 
 
 def test_mistakes_are_explained():
