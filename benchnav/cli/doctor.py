@@ -10,7 +10,7 @@ from pathlib import Path
 import typer
 
 from benchnav.cli.console import columns, put
-from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS
+from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS
 from benchnav.plural import counted
 from benchnav.threads import core_count
 from benchnav.user_folders import user_state
@@ -86,7 +86,7 @@ def _folder(what: str, place: Path, reason: str) -> Line:
 
 
 def _plugins() -> Iterator[Line]:
-    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS):
+    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, TRAINERS):
         broken = list(registry.broken())
         for _, cause in broken:
             yield "WRONG", registry.kind, cause

@@ -77,7 +77,8 @@ def _said_of_room(scenario: Scenario, crowded: Sequence[int]) -> str:
             lines.append(
                 f"\n{scenario.where_start(i)} of {team.name!r} holds at most"
                 f" {counted(room, 'agent')} of radius {radius:g} m that are {gap:g} m apart,"
-                " packed closely and with nothing else there; drawn at random, about half as many find a place."
+                " packed closely and with nothing else there; drawn at random, about half as many"
+                " find a place."
             )
     return "".join(lines)
 
