@@ -188,7 +188,10 @@ def _value(thing: Any) -> str:
 
 
 def _kind_of(thing: Any) -> str:
-    return f"the class {thing.__qualname__}" if isinstance(thing, type) else repr(thing)[:80]
+    if isinstance(thing, type):
+        return f"the class {thing.__qualname__}"
+    called = getattr(thing, "__qualname__", "")
+    return f"the {type(thing).__name__} {called}" if called else f"a {type(thing).__name__}"
 
 
 def _said(error: BaseException) -> str:

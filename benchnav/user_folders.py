@@ -34,6 +34,14 @@ def user_state() -> UserFolder:
     return _user_folder("XDG_STATE_HOME", ".local/state")
 
 
+def home_is_usable() -> bool:
+    """Whether other libraries can keep their files in the user's home."""
+    try:
+        return os.access(Path.home(), os.W_OK | os.X_OK)
+    except RuntimeError:
+        return False
+
+
 def make_own(folder: Path) -> None:
     """Make ``folder`` where it is missing.
 

@@ -11,7 +11,7 @@ import typer
 
 from benchnav.cli.console import columns, put
 from benchnav.errors import BenchnavError, MissingExtraError
-from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, Registry
+from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS, Registry
 from benchnav.plural import counted
 from benchnav.threads import core_count
 from benchnav.user_folders import user_state
@@ -37,6 +37,7 @@ _EXTRAS = {
     "view": {"matplotlib": "matplotlib", "plotly": "plotly"},
     "ray": {"ray": "ray"},
 }  # extra → package → module
+_MADE = (NAVIGATORS, PLANNERS, CONTROLLERS)  # that `benchnav run` makes from a Config
 Line = tuple[str, str, str]  # verdict, what, detail
 
 
@@ -101,11 +102,11 @@ def _folder(what: str, place: Path, reason: str) -> Line:
 
 
 def _plugins() -> Iterator[Line]:
-    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS):
+    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, TRAINERS):
         broken = dict(registry.broken())
         whole = [name for name in registry.names() if name not in broken]
         incomplete: dict[str, str] = {}
-        for name in whole if registry is not METRICS else ():
+        for name in whole if registry in _MADE else ():
             try:
                 _make(registry, name)
             except MissingExtraError as error:

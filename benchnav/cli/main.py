@@ -95,6 +95,8 @@ def status(arguments: Sequence[str]) -> int:
         return 2 if isinstance(error, _ASKED_WRONGLY) else 1
     except (typer.Abort, KeyboardInterrupt):
         return INTERRUPTED
+    except SystemExit as left:  # typer's, where the reader of a help leaves early
+        return 0 if isinstance(left.__context__, BrokenPipeError) else 1
     except OSError as error:  # of the machine: a folder, a disk, the help on a full one
         drop(sys.stdout)
         place = f"{error.filename}: " if error.filename else ""
