@@ -70,6 +70,7 @@ def _counted(found: Iterator[tuple[dict[str, Any], list[str]]]) -> Texts:
 def _told(texts: Counter[str], episodes: int) -> str:
     """``in 12 of 40 worlds: …; in 1 of 40 worlds: …``."""
     groups = grouped(texts)
-    said = [f"in {n} of {episodes} worlds: {text}" for text, n in groups[:SHOWN]]
+    worlds = "world" if episodes == 1 else "worlds"
+    said = [f"in {n} of {episodes} {worlds}: {text}" for text, n in groups[:SHOWN]]
     more = len(groups) - SHOWN
     return "; ".join([*said, *([f"and {more} more"] if more > 0 else [])])

@@ -21,13 +21,14 @@ from benchnav.navigation.observation import Observation
 from benchnav.navigation.pair import NO_PLANNER
 from benchnav.navigation.path_tracker import PathTracker
 from benchnav.navigation.plan_log import PlanLog, checked_plan
-from benchnav.navigation.planner import Plan, Planner
+from benchnav.navigation.planner import UNSOLVED, Plan, Planner
 from benchnav.navigation.replanning import Policies, Replan, Watch
 from benchnav.navigation.retreat import Retreat
 from benchnav.plugins import CONTROLLERS, PLANNERS, Source
 
 TOUCH = 1e-3  # [m] by which a path may come nearer than its disc's radius: rounding blocks nothing
 LEAST_DISC = 0.5  # of its radius: for a smaller disc no agent that stands too close is planned
+NO_MAP = Plan(UNSOLVED, False, reason="no map is granted")
 CONTACT = 1e-5  # [m] from what is known at which a disc still counts as standing in it
 
 
@@ -202,7 +203,10 @@ class Hierarchical(Navigator):
 
     def _plan(self, row: int, agent: int, map: Map | None, start: FloatArray, time: float) -> None:
         watch, plans = self._watch[row], self.plans[row]
-        if self.planner is None or (map is None and self.mapping is None):
+        if self.planner is None:
+            return
+        if map is None and self.mapping is None:
+            self._logs[row].note(agent, NO_MAP)
             return
         plan, radius = self._answer(row, agent, map, start)
         if not plan.solved and self.mapping is not None and self.mapping.doubt(row, agent):

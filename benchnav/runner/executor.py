@@ -44,7 +44,10 @@ def execute(
     """
     if workers == 0:
         for task in tasks:
-            yield task, work(task, progress.advance)
+            progress.start(0, task.load)
+            outcome = work(task, progress.advance)
+            progress.finish(0)
+            yield task, outcome
         return
     crew = Crew(min(workers, len(tasks)), progress, limits)
     try:
@@ -133,6 +136,8 @@ class Crew:
             raise named(*content)
         if kind == "crashed":
             raise RuntimeError(f"A worker crashed:\n{content}")
+        if worker.task is not None:
+            self.progress.finish(worker.process.pid)
         worker.ready, worker.used, worker.task = True, kind == "done", None
         self._assign(worker)
 
@@ -141,6 +146,7 @@ class Crew:
             return
         task, worker.first = worker.first or self.pending.popleft(), None
         worker.task, worker.told = task, 0
+        self.progress.start(worker.process.pid, task.load)
         with suppress(OSError):  # it died: its end is heard of next
             worker.pipe.send(task)
 
@@ -180,6 +186,7 @@ class Crew:
             self._hire()
             return
         self.progress.advance(-worker.told)
+        self.progress.drop(worker.process.pid)
         if len(task.seeds) > 1:
             self.pending.extendleft(reversed(task.alone()))
             self._hire()

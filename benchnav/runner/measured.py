@@ -1,7 +1,6 @@
 """Episodes → the table of measured values, now or from a stored run."""
 
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -13,6 +12,7 @@ from benchnav.navigation.answer import kind_of
 from benchnav.store.manifest import load_manifest
 from benchnav.store.reading import in_every_track, read_episodes
 from benchnav.store.results import RESULTS
+from benchnav.store.run_path import RunPath
 
 
 def measured(episodes: Iterable[Episode], metrics: Sequence[Metric]) -> pa.Table:
@@ -34,7 +34,7 @@ def tracebacks_of(results: pa.Table) -> dict[str, str]:
     return {kind_of(why): text for why, text in zip(reasons, texts, strict=True) if text}
 
 
-def measure_again(run: Path, metrics: Sequence[Metric]) -> pa.Table:
+def measure_again(run: RunPath, metrics: Sequence[Metric]) -> pa.Table:
     """The table of `RESULTS` of a stored run, computed from its episodes: nothing is run again.
 
     In every track that an episode stands for.

@@ -118,6 +118,7 @@ class _Site:
         elif isinstance(answer, Refusal):
             raise named(answer.name, answer.text)
         else:
+            self.progress.finish(id(foreman))
             yield from map(self._store, answer)
         if self.pending:
             self._assign(foreman)
@@ -126,6 +127,7 @@ class _Site:
 
     def _assign(self, foreman: Any) -> None:
         task = self.pending.popleft()
+        self.progress.start(id(foreman), task.load)
         promise = foreman.work.remote(task, self._files(task))
         self.waiting[promise] = foreman, task
 
@@ -140,6 +142,7 @@ class _Site:
         """Its machine is gone, or cannot be reached: nobody is charged."""
         self.ray.kill(foreman)
         if task is not None:
+            self.progress.drop(id(foreman))
             key = task.cell.key, task.first
             self.losses[key] += 1
             if self.losses[key] > LOSSES:

@@ -4,7 +4,6 @@ from collections import Counter
 from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 
 from benchnav.errors import UsageError
 from benchnav.isolation import pool
@@ -20,6 +19,7 @@ from benchnav.runner.start import planned, refuse_limits, start
 from benchnav.runner.suite import Suite
 from benchnav.runner.task import Outcome, Task, chunks
 from benchnav.store.run_folder import RunFolder
+from benchnav.store.run_path import RunPath, run_path
 from benchnav.threads import core_count
 
 Executor = Callable[[Sequence[Task], int | None, Progress, Limits], Generator[Finished, None, None]]
@@ -72,7 +72,7 @@ def default_workers() -> int:
 
 def run_suite(
     suite: Suite,
-    out: Path,
+    out: RunPath,
     *,
     workers: int | None = None,
     timeout: float | None = None,
@@ -102,13 +102,14 @@ def run_suite(
         summary: filled while the run goes on; None: a new one.
 
     Raises:
-        UsageError: no metric is registered, or a limit cannot be kept.
+        UsageError: no metric is registered, a limit cannot be kept, or ``out`` is no path.
         RunConflictError: ``out`` holds another suite, salt, limit or thing, episodes of older
             code (without ``again``), or another process writes it.
         StoreError: the disk refuses, or a stored part is damaged.
         UnsolvableError: a scenario cannot be drawn.
     """
     _refuse_without_metrics()
+    out = run_path(out)
     told = progress if progress is not None else Progress()
     summary = summary if summary is not None else Summary()
     cells = list(suite.cells())
@@ -135,6 +136,7 @@ def run_suite(
         folder.drop_others(target)
         tasks = _tasks(suite, target, cells, wanted, summary)
         told.begin(summary.total, summary.stored)
+        told.expect(task.load for task in tasks)
         try:
             with closing(_finished(tasks, here, workers, told, limits, executor)) as finished:
                 for task, outcome in finished:

@@ -10,6 +10,7 @@ from benchnav.isolation import fence
 from benchnav.metrics.measure import all_metrics
 from benchnav.navigation.answer import kind_of
 from benchnav.runner.cell import Cell
+from benchnav.runner.estimate import Load
 from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.measured import failed_metrics, measured, tracebacks_of
 from benchnav.runner.rehearsal import Performance, perform
@@ -43,6 +44,11 @@ class Task:
     def seeds(self) -> range:
         """What it runs."""
         return range(self.first, self.stop)
+
+    @property
+    def load(self) -> Load:
+        """For the estimate of the time that is left."""
+        return Load(self.cell.entry.label, self.cell.effort * len(self.seeds))
 
     def alone(self) -> list["Task"]:
         """The same, seed by seed."""

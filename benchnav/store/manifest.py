@@ -8,11 +8,11 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
 from typing import Any, Literal
 
 from benchnav.errors import CorruptPartError, NoRunError, StoreError
 from benchnav.store import checked_json
+from benchnav.store.run_path import RunPath, run_path
 
 SCHEMA = 4  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source
 MANIFEST = "manifest.json"
@@ -102,7 +102,7 @@ def versions() -> dict[str, str]:
     return found
 
 
-def load_manifest(run: Path) -> Manifest:
+def load_manifest(run: RunPath) -> Manifest:
     """The manifest of a run folder.
 
     Raises:
@@ -110,6 +110,7 @@ def load_manifest(run: Path) -> Manifest:
         StoreError: a newer benchnav wrote it.
         CorruptPartError: its manifest is damaged, or names a cell that no folder may be called.
     """
+    run = run_path(run)
     path = run / MANIFEST
     if not path.is_file():
         what = "Got a file" if run.is_file() else "It is not there" if not run.exists() else None

@@ -15,6 +15,7 @@ from benchnav.store.lock import LOCKS, locked
 from benchnav.store.manifest import MANIFEST, Manifest, load_manifest
 from benchnav.store.part import FILES, Part, parts_of
 from benchnav.store.part_writer import TEMPORARY
+from benchnav.store.run_path import RunPath, run_path
 
 _SHORT = 10  # digits of a source hash in the name of a folder
 _SUFFIX = re.compile(rf"\.[0-9a-f]{{{_SHORT}}}$")
@@ -34,12 +35,15 @@ class RunFolder:
         return self.packed or self.path
 
     @classmethod
-    def open(cls, path: Path) -> "RunFolder":
-        """An existing run, for reading. Raises StoreError where there is none."""
-        return cls(path, load_manifest(path))
+    def open(cls, path: RunPath) -> "RunFolder":
+        """An existing run, for reading.
+
+        Raises UsageError where this is no path, StoreError where there is no run.
+        """
+        return cls(run_path(path), load_manifest(path))
 
     @classmethod
-    def start(cls, path: Path, manifest: Manifest) -> "RunFolder":
+    def start(cls, path: RunPath, manifest: Manifest) -> "RunFolder":
         """Return a new run in an empty or missing folder, or the same suite's run, resumed.
 
         The run that is found may have other seeds: `extend` adds those that are asked for.
@@ -48,6 +52,7 @@ class RunFolder:
             RunConflictError: the folder holds another suite's run, or something else.
             StoreError: the folder cannot be made.
         """
+        path = run_path(path)
         if (path / MANIFEST).exists():
             held = load_manifest(path)
             differing = _differing(held, manifest)

@@ -14,6 +14,7 @@ from benchnav.errors import CorruptPartError, NoRunError, StoreError
 from benchnav.store.manifest import load_manifest
 from benchnav.store.pack import FORMAT, INDEX, MEMBER
 from benchnav.store.run_folder import RunFolder
+from benchnav.store.run_path import RunPath, run_path
 
 MOST_MEMBERS = 1_000_000
 _ZIP = b"PK"  # with which every zip archive begins
@@ -21,7 +22,7 @@ MOST_INDEX = 256 << 20  # bytes
 
 
 @contextmanager
-def opened(path: Path) -> Iterator[RunFolder]:
+def opened(path: RunPath) -> Iterator[RunFolder]:
     """A run for reading: a folder as it is, a pack unpacked for as long as this lasts.
 
     Raises:
@@ -29,6 +30,7 @@ def opened(path: Path) -> Iterator[RunFolder]:
         StoreError: the file cannot be read, or another version made the pack.
         CorruptPartError: the pack, or its manifest, is not what was written.
     """
+    path = run_path(path)
     if not path.is_file():
         yield RunFolder.open(path)
         return

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 
 import pytest
 
@@ -158,10 +159,17 @@ def test_failures_and_cells_that_are_n_a_are_told(call, suite, tmp_path, monkeyp
         "--navigator", "rude:Maps",
     )  # fmt: skip
     assert code == 0
-    assert "failed: rude:Rude in 4 episodes: act raised ValueError: no at t = 0 s" in stderr
+    reason = "act raised ValueError: no (rude.py:3)"
+    assert f"failed: rude:Rude in 4 episodes: {reason}\n" in stderr
+    assert "Traceback" not in stderr
     assert "n/a: rude:Maps needs a map (unknown), 1 cell" in stderr
     table = call("leaderboard", tmp_path / "o")[1]
     assert "n/a (needs a map)" in table
+    assert f"rude:Rude failed in 2 of 2 worlds: {reason}." in table
+    stderr = call(
+        "run", suite, "--out", tmp_path / "d", "--workers", 0, "--navigator", "rude:Rude", "--debug"
+    )[2]
+    assert 'File "rude.py", line 3, in act\n' in stderr
 
 
 def test_a_metric_that_fails_is_told_at_the_end_and_under_the_table(call, suite, tmp_path):
@@ -177,14 +185,17 @@ def test_a_metric_that_fails_is_told_at_the_end_and_under_the_table(call, suite,
         arguments = ("--workers", "0", "--track", "known")
         code, _, stderr = call("run", suite, "--out", tmp_path / "r", *arguments)
         assert code == 0
-        assert "the metric tests_broken failed for 2 values: ZeroDivisionError: oh" in stderr
+        fault = re.search(
+            r"tests_broken failed for 2 values: (ZeroDivisionError: oh \(\S+\.py:\d+\))\n", stderr
+        )[1]
         for again in ((), ("--recompute",)):
             _, table, _ = call("leaderboard", tmp_path / "r", "--metric", "tests_broken", *again)
-            assert "tests_broken of orca failed in 2 episodes: ZeroDivisionError: oh." in table
+            plain = table.replace("\\_", "_")
+            assert f"tests_broken of orca failed in 2 episodes: {fault}." in plain
             assert "orca is not ranked: undefined in every episode" in table
         _, text, _ = call("leaderboard", tmp_path / "r", "--format", "json")
     finally:
         del METRICS._local["tests_broken"]
     told = {(r["navigator"], r["metric"]): r["fault"] for r in json.loads(text)}
-    assert told["orca", "tests_broken"] == "failed in 2 episodes: ZeroDivisionError: oh"
+    assert told["orca", "tests_broken"] == f"failed in 2 episodes: {fault}"
     assert {fault for (who, _), fault in told.items() if who != "orca"} == {""}

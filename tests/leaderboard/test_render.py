@@ -52,6 +52,8 @@ def test_markdown_reads_well():
         "| good, 1 failed | 1    | **0.95 [0.78, 1.00]** | 3.92 [3.55, 4.33] s (18) |\n"
         "| bad            | 2    | 0 [0, 0.14]           | –                        |\n"
         "\n"
+        "good failed in 1 of 20 worlds: raised ValueError.  \n"
+        "\n"
         "value [low, high]: mean"
     )
 

@@ -1,6 +1,7 @@
 """A suite is run whole, however often it is interrupted, by however many workers."""
 
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -201,8 +202,14 @@ def test_failures_are_counted_by_reason(suite_file, tmp_path, workers, in_the_ea
     summary = run_suite(load_suite(str(suite_file), chosen), tmp_path / "r", workers=workers)
     failed = [e for e in read_episodes(tmp_path / "r") if e.failure]
     assert all(in_the_east(e) for e in failed)
-    reason = "act raised ValueError: lost my way at t = 0.6 s"
+    ((_, reason),) = summary.failures
+    where = r"act raised ValueError: lost my way \(troubled_navigators.py:\d+\) at t = 0.6 s"
+    assert re.fullmatch(where, reason)
     assert summary.failures == {("troubled_navigators:Raises", reason): len(failed)}
+    ((_, traceback),) = summary.tracebacks.items()
+    assert {e.traceback for e in failed} == {traceback}
+    assert 'raise ValueError("lost my\\nway")' in traceback
+    assert str(tmp_path.parent) not in traceback
     assert 0 < len(failed) < 6
 
 
