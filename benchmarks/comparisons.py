@@ -25,7 +25,8 @@ TABLES = 2000
 CHANCES = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99)
 FAMILY = 20
 FALSE_ALARMS = 0.06  # at most
-AGAIN = 10  # times as many tables where a share is near what is asked
+NEAR = 0.9  # of that, from which on it is measured again
+AGAIN = 10  # with so many times as many tables
 FLIPS = 9_999
 FLOATS = 20_000_000  # drawn at once
 
@@ -110,7 +111,7 @@ def alarms(design: Design, chance: float, crowds: tuple[Crowd, Crowd], tables: i
     """False alarms of one comparison and of `FAMILY`; measured again where they are near."""
     p = rate_p(design, chance, crowds, tables)
     shares = np.array([called(p, 1), called(p, FAMILY)])
-    if tables < AGAIN * AGAIN * TABLES and (shares > 0.75 * FALSE_ALARMS).any():
+    if (shares > NEAR * FALSE_ALARMS).any():
         p = rate_p(design, chance, crowds, AGAIN * tables)
         shares = np.array([called(p, 1), called(p, FAMILY)])
     return shares
