@@ -5,7 +5,7 @@ where p ≥ 0.05. docs/statistics.md says why, and keeps its false alarms, cover
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Self
 
 import numpy as np
@@ -16,7 +16,7 @@ from benchnav.leaderboard.estimate import Column
 from benchnav.leaderboard.interval import students
 
 EVENTS = 2.0  # events that the variance of a bounded metric counts and no world showed
-UNSEEN = 0.5  # of an event as large as the metric's range, which their size begins with
+UNSEEN = 0.5  # of an event as large as the largest difference, which their size begins with
 ROUNDING = 1e-12  # of the largest difference: smaller deviations are rounding
 
 
@@ -29,6 +29,7 @@ class Moments:
     squares: FloatArray  # (C,) sum of squared deviations from the mean
     cubes: FloatArray  # (C,) sum of cubed deviations from the mean
     sizes: FloatArray  # (C,) sum of absolute deviations from the mean
+    largest: FloatArray  # (C,) absolute difference
 
     @classmethod
     def of(cls, differences: FloatArray) -> Self:
@@ -39,9 +40,10 @@ class Moments:
         with np.errstate(invalid="ignore", divide="ignore"):
             mean = value.sum(axis=0) / count
         apart = np.where(known, differences - mean, 0.0)
-        apart[np.abs(apart) <= ROUNDING * np.abs(value).max(axis=0, initial=0.0)] = 0.0
+        largest = np.abs(value).max(axis=0, initial=0.0)
+        apart[np.abs(apart) <= ROUNDING * largest] = 0.0
         squares, cubes = (apart**2).sum(axis=0), (apart**3).sum(axis=0)
-        return cls(count, mean, squares, cubes, np.abs(apart).sum(axis=0))
+        return cls(count, mean, squares, cubes, np.abs(apart).sum(axis=0), largest)
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,17 +66,18 @@ class _Strata:
     squares: FloatArray
     cubes: FloatArray
     sizes: FloatArray
+    largest: FloatArray
     share: FloatArray  # (S, C) of a scenario in the mean: all that have a world count alike
 
     @classmethod
     def of(cls, parts: Sequence[Moments]) -> Self:
-        count, mean, squares, cubes, sizes = (
-            np.array([getattr(part, name) for part in parts])
-            for name in ("count", "mean", "squares", "cubes", "sizes")
+        count, mean, squares, cubes, sizes, largest = (
+            np.array([getattr(part, field.name) for part in parts]) for field in fields(Moments)
         )
         held = count > 0
         share = held / np.maximum(held.sum(axis=0), 1)
-        return cls(count, np.where(held, mean, 0.0), squares, cubes, sizes, share)
+        mean = np.where(held, mean, 0.0)
+        return cls(count, mean, squares, cubes, sizes, largest, share)
 
     @property
     def value(self) -> FloatArray:
@@ -161,8 +164,8 @@ def _event(strata: _Strata, variance: FloatArray, width: FloatArray) -> FloatArr
     for comparing matched proportions", Statistics in Medicine 24 (2005), therefore count a
     world more in each direction. Here the variance counts `EVENTS` more, of the size of the
     deviations that were seen, because a world of many agents seldom differs by its whole
-    range ``width`` (ours). A metric without a range has no such events; if it does not vary
-    either, they have the size of its mean.
+    range ``width`` (ours); that size is taken where no world differs. A metric without a
+    range has no such events, unless it does not vary.
     """
     n = np.maximum(strata.count, 1)
     weight = strata.share / n  # of a world
@@ -170,12 +173,12 @@ def _event(strata: _Strata, variance: FloatArray, width: FloatArray) -> FloatArr
     squares = (weight**2 * strata.squares * n / np.maximum(n - 1, 1)).sum(axis=0)
     sizes = (weight * strata.sizes).sum(axis=0)
     bounded: BoolArray = np.isfinite(width)
-    whole = usual * np.where(bounded, width, 0.0)
+    largest = strata.largest.max(axis=0)
+    whole = usual * np.where((largest == 0.0) & bounded, width, largest)
     with np.errstate(invalid="ignore", divide="ignore"):
         seen = (squares + UNSEEN * whole**2) / (sizes + UNSEEN * whole)
-    flat = np.where(variance == 0.0, usual * np.abs(strata.value), 0.0)
-    found: FloatArray = np.where(bounded, seen, flat)
-    return found
+    found: FloatArray = np.where(whole == 0.0, 0.0, seen)
+    return np.where(bounded | (variance == 0.0), found, 0.0)
 
 
 def least_p(worlds: int) -> float:
