@@ -33,7 +33,9 @@ LEGEND = (
     " ↑ more is better, ↓ less.",
     "rank: 1 + entries significantly better – N − entries significantly worse, by the first metric"
     " that ranks; 1–3 is a tie.",
-    "Paired worlds, sign flips, Holm. Bold: nobody is significantly better."
+    "Significant: the paired 95 % interval over the worlds excludes 0, after Holm. Scenarios are"
+    " fixed: a rank holds for other seeds of these.",
+    "Bold: not significantly worse than any other entry; nothing is bold where all tie."
     " A failed episode counts as the worst: success 0, collided 1.",
 )
 

@@ -144,9 +144,10 @@ def _chance(c: Comparison) -> str:
 def _explained(duel: Duel) -> str:
     family = max(c.family for c in duel.comparisons)
     return (
-        f"[low, high]: 95 % interval of the mean difference over the worlds of both."
-        f" By chance: how often so much would be seen if neither were better (sign flips of"
-        f" paired worlds), after Holm over the"
-        f" {counted(family, 'comparison')} above as one family. Rarer than once in 20 it is"
-        " called a difference; an interval stands for itself alone, so a tie may leave out 0."
+        "[low, high]: 95 % interval of the mean difference over the worlds of both. By chance: how"
+        " often a difference as large would be seen if the true one were 0, by the t-test of the"
+        " same interval, adjusted by Holm's procedure for the"
+        f" {counted(family, 'comparison')} above as one family. Rarer than once in"
+        " 20 it is called a difference. An interval is not adjusted, so a tie may exclude 0."
+        " Scenarios are fixed: other seeds may differ, not other scenarios."
     )
