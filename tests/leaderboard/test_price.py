@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from benchnav.leaderboard import NotApplicable, leaderboard, render
-from benchnav.leaderboard.cell import signed_number
 from benchnav.leaderboard.record import NO_MAP, PRICE
 from tests.leaderboard.tables import METRICS, scores, table
 
@@ -139,10 +138,3 @@ def test_many_scenarios_stand_in_several_tables():
     text = render(board(rows("abcdefg"), not_applicable=()), "markdown", ["success"])
     _, tables = text.split("## Price of ignorance")
     assert tables.count("### success, known − unknown") == 2
-
-
-def test_signs_are_written_out():
-    assert [signed_number(x, 1.0) for x in (0.5, -0.5, 0.0, 0.0001)] == [
-        "+0.50", "−0.50", "0", "0.00",
-    ]  # fmt: skip
-    assert np.isfinite(float(signed_number(2.0, 2.0)))
