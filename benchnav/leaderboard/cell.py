@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from benchnav.leaderboard.digits import figures, number, prefixed, signed
+from benchnav.leaderboard.digits import figure, figures, number, prefixed, signed
 from benchnav.leaderboard.record import PRICE, Record
 
 
@@ -33,17 +33,16 @@ def cell(r: Record | None, *, interval: bool, decided: bool) -> Cell:
 
 def _figures(r: Record, interval: bool) -> tuple[str, str]:
     """The number, with its interval if wanted, and the unit that it is in."""
-    known = not math.isnan(r.low)
-    numbers = (r.value, r.low, r.high) if known else (r.value,)
-    size, name = prefixed(r.unit, max(map(abs, numbers)))
     whole = None if r.unit else 1.0  # of a share
-    texts: tuple[str, ...]
-    if known:
-        texts = figures(r.value / size, r.low / size, r.high / size, whole)
+    if math.isnan(r.low):
+        size, name = prefixed(r.unit, abs(r.value))
+        texts = [number(r.value / size, whole)]
     else:
-        texts = (number(r.value / size, whole),)
+        size, name = prefixed(r.unit, max(map(abs, (r.value, r.low, r.high))))
+        numbers = r.value / size, r.low / size, r.high / size
+        texts = list(figures(*numbers, whole)) if interval else [figure(*numbers, whole)]
     value, *ends = map(signed, texts) if r.track == PRICE else texts
-    return (f"{value} [{', '.join(ends)}]" if interval and ends else value), name
+    return (f"{value} [{', '.join(ends)}]" if ends else value), name
 
 
 def entrant(r: Record) -> Cell:

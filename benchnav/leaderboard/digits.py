@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 PREFIXES = {  # unit → what it is divided by, and then called
     "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")),
@@ -58,21 +58,28 @@ def figures(
         high: upper end.
         whole: end of the range, as 1 is of a rate; without effect where a number exceeds it.
     """
-    numbers = [0.0 if abs(x) <= ROUNDING else x for x in (value, low, high)]
-    scale = max(map(abs, numbers))
-    if not numbers[2] - numbers[1] > NARROWEST * scale:
+    grid, numbers, suffix = _grid((value, low, high), whole)
+    if grid is None:
         text = number(value, whole)
         return text, text, text
-    power = 0 if SMALLEST <= scale < LARGEST else _power(scale)
-    numbers = [x / 10.0**power for x in numbers]
-    whole = None if whole is None or power or scale > whole * (1 + ROUNDING) else whole
-    places = _places(numbers[2] - numbers[1])
-    grid = _Grid(places, whole)
     if not grid.tells_apart(numbers):
-        grid = _Grid(places + 1, whole)
-    suffix = f"e{power:+03d}" if power else ""
+        grid = replace(grid, places=grid.places + 1)
     texts = [text if text == "0" else text + suffix for text in grid.texts(numbers)]
     return texts[0], texts[1], texts[2]
+
+
+def figure(value: float, low: float, high: float, whole: float | None = None) -> str:
+    """Return ``value`` alone, with the decimals that its interval resolves.
+
+    One more is shown where it would look like 0 or ``whole`` and is not.
+    """
+    grid, numbers, suffix = _grid((value, low, high), whole)
+    if grid is None:
+        return number(value, whole)
+    if grid.hides_end(numbers[0]):
+        grid = replace(grid, places=grid.places + 1)
+    text = grid.bound(numbers[0])
+    return text if text == "0" else text + suffix
 
 
 def signed(text: str) -> str:
@@ -96,6 +103,25 @@ def _places(width: float) -> int:
     return max(0, second - power)
 
 
+def _grid(
+    given: tuple[float, float, float], whole: float | None
+) -> tuple["_Grid | None", list[float], str]:
+    """Where (value, low, high) are rounded to, the numbers there, and the exponent behind them.
+
+    None where the interval has no width to choose decimals by.
+    """
+    numbers = [0.0 if abs(x) <= ROUNDING else x for x in given]
+    scale = max(map(abs, numbers))
+    if not numbers[2] - numbers[1] > NARROWEST * scale:
+        return None, numbers, ""
+    power = 0 if SMALLEST <= scale < LARGEST else _power(scale)
+    numbers = [x / 10.0**power for x in numbers]
+    if whole is not None and (power or scale > whole * (1 + ROUNDING)):
+        whole = None
+    places = _places(numbers[2] - numbers[1])
+    return _Grid(places, whole), numbers, f"e{power:+03d}" if power else ""
+
+
 @dataclass(frozen=True)
 class _Grid:
     """Numbers rounded to ``places`` decimals, and what must not be mistaken for one another."""
@@ -106,12 +132,12 @@ class _Grid:
     def tells_apart(self, numbers: Sequence[float]) -> bool:
         """Whether (value, low, high) can be rounded as they are."""
         value, low, high = map(self._steps, numbers)
-        ends = any(self._hides_end(x) for x in numbers[1:])
+        ends = any(self.hides_end(x) for x in numbers[1:])
         return not ends and _apart(numbers, (value, low, high))
 
     def texts(self, numbers: Sequence[float]) -> tuple[str, str, str]:
         """The value, kept within its bounds, and the bounds."""
-        low, high = map(self._bound, numbers[1:])
+        low, high = map(self.bound, numbers[1:])
         if _same(numbers[0], numbers[1]) or _same(numbers[0], numbers[2]):
             return (low if _same(numbers[0], numbers[1]) else high), low, high
         value, least, most = map(self._steps, numbers)
@@ -132,15 +158,16 @@ class _Grid:
             return f"{x:.0f}"
         return None
 
-    def _hides_end(self, x: float) -> bool:
+    def hides_end(self, x: float) -> bool:
         """Whether a number that is not 0 or an end of the range would look like one."""
         steps = abs(self._steps(x))
         ends = (0,) if self.whole is None else (0, self._steps(self.whole))
         return self._exact(x) is None and steps in ends
 
-    def _bound(self, x: float) -> str:
+    def bound(self, x: float) -> str:
+        """A bound, or a number alone."""
         steps = self._steps(x)
-        if not self._hides_end(x):
+        if not self.hides_end(x):
             return self._exact(x) or self._text(steps)
         if steps == 0:
             return "<" + self._text(1) if x > 0 else ">" + self._text(-1)
