@@ -17,6 +17,7 @@ from benchnav.runner.entry import Entry, Meeting, label_of, resolved
 from benchnav.runner.generators import check_salt
 from benchnav.runner.suite_file import SuiteFile, parse_seeds, suite_path
 from benchnav.scenario.catalogue import find
+from benchnav.scenario.document import Document
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
 from benchnav.store.scenario_files import sha256_of
@@ -134,9 +135,12 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     )
     tracks = tuple(selection.tracks or said.tracks)
     _refuse_unknown_tracks(tracks)
-    _refuse_twice("scenario", [s.identity for s in scenarios], path)
-    _refuse_twice("track", tracks, path)
-    _refuse_twice("navigator label", [e.label for e in entries], path)
+    for key, names, selected in (
+        ("scenarios", [s.identity for s in scenarios], selection.scenarios),
+        ("tracks", tracks, selection.tracks),
+        ("navigators", [e.label for e in entries], selection.navigators),
+    ):
+        _refuse_twice(key, names, selected, document)
     seeds = _seeds(selection.seeds or str(said.seeds))
     salt = _salt(selection.salt)
     suite = Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries, salt)
@@ -220,9 +224,22 @@ def _refuse_unknown_tracks(tracks: Sequence[str]) -> None:
             )
 
 
-def _refuse_twice(what: str, names: Sequence[str], path: Path) -> None:
-    for name in names:
-        if names.count(name) > 1:
+def _refuse_twice(
+    key: str, names: Sequence[str], selected: Sequence[str], document: Document
+) -> None:
+    """Raise UsageError for a name that stands twice in the file, or among options if selected."""
+    for k, name in enumerate(names):
+        first = names.index(name)
+        if first == k:
+            continue
+        if selected:
+            same = selected[first] == selected[k]
+            written = "" if same else f", as {selected[first]!r} and as {selected[k]!r}"
             raise UsageError(
-                f"Every {what} of a suite must be there once. {path} has {name!r} more than once."
+                f"--{key[:-1]} must name each of the {key} once. It names {name!r} more than"
+                f" once{written}. Leave one of them out."
             )
+        raise UsageError(
+            f"{document.where((key, k))} must not repeat another of the {key}. It names {name!r}"
+            f" more than once; the first is {key}[{first}]."
+        )
