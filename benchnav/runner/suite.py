@@ -11,6 +11,7 @@ from benchnav.errors import (
     did_you_mean,
 )
 from benchnav.navigation.configure import Spec
+from benchnav.navigation.drivers import check_drivers
 from benchnav.navigation.tracks import TRACKS
 from benchnav.runner.cell import Cell
 from benchnav.runner.entry import Entry, Meeting, label_of, resolved
@@ -128,6 +129,8 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
         scenarios = tuple(find(name) for name in selection.scenarios)
     else:
         scenarios = tuple(find(name, path.parent) for name in said.scenarios)
+    for scenario in scenarios:
+        check_drivers(scenario)
     meeting = Meeting(tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate)
     entries = tuple(
         meeting.entry(spec, "--navigator" if i is None else document.where(("navigators", i)))
