@@ -13,7 +13,8 @@ def visible(text: str) -> str:
 
 def markdown(text: str) -> str:
     """Text that a Markdown table cell shows as it is."""
-    safe = visible(text).replace("&", "&amp;").replace("<", "&lt;").replace("\\", "\\\\")
+    safe = visible(text).replace("&", "&amp;").replace("\\", "\\\\")
+    safe = re.sub(r"<(?![\d+−])", "&lt;", safe)  # before a number it begins no tag
     safe = re.sub(r"([|*`~!])", r"\\\1", safe)
     safe = re.sub(r"(?<![^\W_])_|_(?![^\W_])", r"\\_", safe)  # within a word it does nothing
     return re.sub(r"\](?=[(\[:])", r"\\]", safe)
