@@ -43,9 +43,11 @@ def _suite(file: Path) -> None:
 
 
 def _scenario(file: Path, draw: bool) -> None:
+    from benchnav.navigation.drivers import check_drivers
     from benchnav.scenario.load import load_scenario
 
     scenario = load_scenario(file)
+    check_drivers(scenario)
     put(f"{file} is a scenario, {scenario.identity}, hash {scenario.hash}")
     if not draw:
         return

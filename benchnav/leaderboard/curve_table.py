@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import escape
-from benchnav.leaderboard.cell import number, prefixed
 from benchnav.leaderboard.curve import HORIZON, Point, panels
+from benchnav.leaderboard.digits import figures, number, prefixed
 from benchnav.leaderboard.tidy import as_csv, as_json
 from benchnav.plural import counted
 
@@ -69,8 +69,11 @@ def _text(p: Point | None) -> str:
     if p is None or p.value != p.value:
         return "–"
     bounds = [] if p.axis == HORIZON or p.low != p.low else [p.low, p.high]
-    widest = max(map(abs, (p.value, *bounds)))
-    size, unit = prefixed(p.unit, widest)
-    value, *ends = (number(x / size, widest / size) for x in (p.value, *bounds))
-    interval = f" [{', '.join(ends)}]" if ends else ""
-    return f"{value}{interval}{f' {unit}' if unit else ''}"
+    size, unit = prefixed(p.unit, max(map(abs, (p.value, *bounds))))
+    whole = None if p.unit else 1.0
+    if bounds:
+        value, low, high = figures(p.value / size, p.low / size, p.high / size, whole)
+        value = f"{value} [{low}, {high}]"
+    else:
+        value = number(p.value / size, whole)
+    return f"{value}{f' {unit}' if unit else ''}"

@@ -41,11 +41,12 @@ def _tables(records: list[Record]) -> Iterator[Section]:
     title += f", {counted(counts.pop(), 'world')}" if len(counts) == 1 else ""
     title += "" if first.split == "test" else f", split {first.split}"
     title += f", rehearsal: {first.rehearsal}" if first.rehearsal else ""
+    name = "price", first.metric, first.role, "" if first.split == "test" else first.split
     for start in range(0, len(places), ABREAST):
         block = places[start : start + ABREAST]
         heads = [Cell("all scenarios" if p[1] == ALL else p[1]) for p in block]
         rows = [(Cell(name), *_row([at.get((name, p)) for p in block])) for name in names]
-        yield Section(CHAPTER, title, (Cell("navigator"), *heads), tuple(rows), ())
+        yield Section(CHAPTER, title, name, (Cell("navigator"), *heads), tuple(rows), ())
 
 
 def _place(r: Record) -> Place:

@@ -6,8 +6,9 @@ from collections.abc import Mapping, Sequence
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import escape
-from benchnav.leaderboard.cell import number, prefixed
 from benchnav.leaderboard.comparison import Comparison
+from benchnav.leaderboard.digits import figures, number, prefixed
+from benchnav.leaderboard.digits import signed as with_sign
 from benchnav.leaderboard.duel import Duel
 from benchnav.leaderboard.record import ALL
 from benchnav.leaderboard.tidy import as_csv, as_json
@@ -101,7 +102,7 @@ def _said(c: Comparison, metric: Metric) -> str:
 
 def signed(c: Comparison, metric: Metric) -> str:
     """``A − B = +0.5 points [−2.1, +3.0]``."""
-    value, ends, unit = _figures(metric, c.difference, [c.low, c.high], plus="+")
+    value, ends, unit = _figures(metric, c.difference, [c.low, c.high], plus=True)
     return f"{c.first} − {c.second} = {value}{unit}{ends}"
 
 
@@ -111,21 +112,19 @@ def scaled(metric: Metric, widest: float) -> tuple[float, str]:
 
 
 def _figures(
-    metric: Metric, value: float, bounds: Sequence[float], plus: str = ""
+    metric: Metric, value: float, bounds: Sequence[float], plus: bool = False
 ) -> tuple[str, str, str]:
     """Value, interval and unit, the last two with a space before."""
     known = [x for x in bounds if not math.isnan(x)]
-    widest = max(map(abs, (value, *known)))
-    size, unit = scaled(metric, widest)
-
-    def text(x: float) -> str:
-        said = f"{x / size:.1f}" if metric.rate else number(x / size, widest / size)
-        if float(said) == 0.0:
-            return said.removeprefix("-")
-        return f"{plus}{said}" if x > 0 else said.replace("-", "−", 1)
-
-    interval = f" [{', '.join(map(text, known))}]" if known else ""
-    return text(value), interval, f" {unit}" if unit else ""
+    size, unit = scaled(metric, max(map(abs, (value, *known))))
+    whole = 100.0 if metric.rate else None  # points
+    texts: tuple[str, ...]
+    if known:
+        texts = figures(value / size, known[0] / size, known[1] / size, whole)
+    else:
+        texts = (number(value / size, whole),)
+    first, *ends = (with_sign(text) if plus else with_sign(text).replace("+", "") for text in texts)
+    return first, f" [{', '.join(ends)}]" if ends else "", f" {unit}" if unit else ""
 
 
 def _chance(c: Comparison) -> str:
