@@ -99,7 +99,8 @@ def _room(scenario: Scenario, start: RegionStart, radius: float) -> str:
     room = most_that_fit(start.region, scenario.bounds, 2.0 * radius + gap, margin)
     return (
         f"holds at most {counted(room, 'agent')} of radius {radius:g} m that are {gap:g} m apart,"
-        " packed closely and with nothing else there; drawn at random, about half as many find a place."
+        " packed closely and with nothing else there; drawn at random, about half as many find"
+        " a place."
     )
 
 
