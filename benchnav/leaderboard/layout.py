@@ -62,6 +62,14 @@ def legend(board: Leaderboard) -> tuple[str, ...]:
     return (*LEGEND, PRICE_LEGEND) if priced else LEGEND
 
 
+def granted(rehearsals: int) -> str:
+    """The note of a table of entries that rehearsed."""
+    return (
+        f"Granted {rehearsals} rehearsals of each world before it was scored; ranked among entries"
+        " with the same grant alone."
+    )
+
+
 def _key(r: Record) -> tuple[str, ...]:
     """What stands in one table: the scenario is third, role and grant last."""
     variant = r.scenario_hash, f"{r.horizon!r}", f"{r.dt!r}"
@@ -202,8 +210,5 @@ class _Table:
         if self.verified:
             notes.append("verified: its runs were re-simulated here; timings cannot be verified.")
         if self.rehearsed:
-            notes.append(
-                f"Granted {self.rehearsed} rehearsals of each world before it was scored; ranked"
-                " among entries with the same grant alone."
-            )
+            notes.append(granted(self.rehearsed))
         return tuple(notes)

@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from benchnav.leaderboard.cell import Cell, cell, entrant, rank
+from benchnav.leaderboard.cell import Cell, cell, entrant, rank, rehearsal, training
+from benchnav.leaderboard.layout import granted
 from benchnav.leaderboard.merit import by_merit
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, NO_MAP, PRICE, Leaderboard, Record
 from benchnav.leaderboard.section import Section
@@ -107,4 +108,17 @@ def _notes(leaders: Sequence[Record], idle: set[str]) -> tuple[str, ...]:
     notes += [f"{r.metric} of {r.navigator} {r.fault}." for r in leaders if r.fault]
     if idle:
         notes.append(f"{NO_MAP}, so that there is no difference: {', '.join(sorted(idle))}.")
-    return tuple(notes)
+    return (*notes, *_costs(leaders))
+
+
+def _costs(leaders: Sequence[Record]) -> Iterator[str]:
+    """What navigators learned and rehearsed, which other formats show in columns."""
+    for title, cost in (("training", training), ("rehearsal of a world", rehearsal)):
+        spent = [f"{r.navigator} {text}" for r in leaders if (text := cost(r).text)]
+        if spent:
+            yield f"{title}: {'; '.join(spent)}."
+    if leaders and leaders[0].rehearsal:
+        yield granted(leaders[0].rehearsal)
+    checked = [r.navigator for r in leaders if r.verified]
+    if checked:
+        yield f"verified, re-simulated here: {', '.join(checked)}."
