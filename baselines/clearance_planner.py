@@ -1,5 +1,6 @@
 """What planners for a disc share: how much clearance is tried, and where a blocked goal ends."""
 
+import math
 from abc import abstractmethod
 from collections.abc import Iterator
 from weakref import WeakKeyDictionary
@@ -27,8 +28,8 @@ class ClearanceConfig(PluginConfig):
 class ClearancePlanner(Planner):
     """Plans for the disc enlarged by a clearance, by less of it where that finds nothing.
 
-    The clearance is ½ or ¼ of what is wanted where start or goal are nearer to an
-    obstacle, and 0 where nothing is found with it.
+    The clearance is ½, ¼ or ⅛ of what is wanted where start or goal are nearer to an
+    obstacle. Where nothing is found with it, ⅛ is tried and then 0.
     """
 
     class Config(ClearanceConfig):
@@ -52,15 +53,37 @@ class ClearancePlanner(Planner):
     def clearances(
         self, map: Map, start: FloatArray, goal: FloatArray, radius: float
     ) -> Iterator[float]:
-        """The largest clearance that both ends allow, then 0; none where the start is blocked."""
+        """The largest clearance that both ends allow, ⅛ of what is wanted, 0.
+
+        None where the start is blocked.
+        """
         wanted = self.config.clearance
-        for extra in (wanted, 0.5 * wanted, 0.25 * wanted):
+        least = 0.125 * wanted
+        for extra in (wanted, 0.5 * wanted, 0.25 * wanted, least):
             checker = self.checker(map, radius + extra)
             if extra > 0.0 and all(checker.point_is_free(*p.tolist()) for p in (start, goal)):
                 yield extra
+                if extra > least:
+                    yield least
                 break
         if self.checker(map, radius).point_is_free(*start.tolist()):
             yield 0.0
+
+    def left(
+        self, map: Map, start: FloatArray, goal: FloatArray, radius: float, extra: float
+    ) -> float:
+        """[m] What a path that was found with the clearance ``extra`` leaves, as `Plan.clearance`.
+
+        It passes a narrow place where more was allowed at its ends and found nothing, or where
+        an end has no room beside it.
+        """
+        wanted = self.config.clearance
+        wide, tight = self.checker(map, radius + wanted), self.checker(map, radius)
+        ends = [p for p in (start, goal) if tight.point_is_free(*p.tolist())]
+        allowed = next(iter(self.clearances(map, start, goal, radius)), 0.0)
+        if extra < allowed or any(free_goal(wide, p, 2.0 * wanted) is None for p in ends):
+            return extra
+        return math.inf
 
 
 def problem(start: FloatArray, goal: FloatArray, radius: float, tolerance: float) -> str:

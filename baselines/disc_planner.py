@@ -68,7 +68,7 @@ class DiscPlanner(ClearancePlanner):
             path, more = self._straight_or_found(query)
             checks += more
             if len(path):
-                return Plan(path, True, checks)
+                return Plan(path, True, checks, "", self.left(map, start, goal, radius, extra))
         checker = self.checker(map, radius)
         if not checker.point_is_free(*start.tolist()):
             return Plan(UNSOLVED, False, checks, "the start is blocked")

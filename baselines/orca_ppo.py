@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -55,6 +56,7 @@ class OrcaPpo(Controller):
     """
 
     Config = OrcaPpoConfig
+    adapts_clearance: ClassVar[bool] = True
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)

@@ -16,6 +16,7 @@ from benchnav.threads import run_rows
 
 from .kernel import OWN, avoid, prepare
 
+LEAST_MARGIN = 1e-3  # [m] among edges: without any, rounding is a contact
 LEAST = 64  # agents below which a second thread costs more than it saves
 
 
@@ -32,7 +33,10 @@ class OrcaConfig(PluginConfig):
         0.05, ge=0, description="[m] by which every disc is taken to be larger among neighbours"
     )
     edge_margin: float = Field(
-        0.05, ge=0, description="[m] by which an agent takes itself to be larger among edges"
+        0.05,
+        ge=0,
+        description="[m] by which an agent takes itself to be larger among edges; less where its"
+        " path leaves less",
     )
     neighbours: int = Field(10, ge=0, description="nearest neighbours that are considered")
     perturbation: float = Field(
@@ -65,8 +69,13 @@ class Avoidance:
             own[:, 3] = briefing.dt
             self._told.put(int(row), own=own, offset=offset * self.config.perturbation)
 
-    def velocity(self, observation: Observation, target: FloatArray) -> FloatArray:
-        """(B, A, 2) velocity [m/s] near the one that leads to ``target`` (B, A, 2) [m]."""
+    def velocity(
+        self, observation: Observation, target: FloatArray, clearance: FloatArray | None = None
+    ) -> FloatArray:
+        """(B, A, 2) velocity [m/s] near the one that leads to ``target`` (B, A, 2) [m].
+
+        The margin among edges is at most ``clearance`` (B, A) [m], but for `LEAST_MARGIN`.
+        """
         worlds, agents = observation.active.shape
         rows = worlds * agents
         told, offset = (
@@ -76,9 +85,12 @@ class Avoidance:
         own, answer = np.empty((rows, OWN)), np.zeros((rows, 2))
         run_rows(prepare, rows, *_flat(rows, whole), own, least=LEAST)
         config = self.config
+        edge_margin = np.full(rows, config.edge_margin)
+        if clearance is not None:
+            edge_margin = np.minimum(edge_margin, np.maximum(clearance.ravel(), LEAST_MARGIN))
         run_rows(
             avoid, rows, own, *_flat(rows, (observation.active, *_sensed(observation))),
-            config.neighbours, config.margin, config.edge_margin, 1.0 / config.time_horizon,
+            config.neighbours, config.margin, edge_margin, 1.0 / config.time_horizon,
             1.0 / config.time_horizon_obstacle, answer, least=LEAST,
         )  # fmt: skip
         return answer.reshape(worlds, agents, 2)

@@ -13,10 +13,14 @@ from .avoidance import Avoidance, OrcaConfig
 
 
 class OrcaController(Controller):
-    """Optimal reciprocal collision avoidance, preferring to go to the guide's target."""
+    """Optimal reciprocal collision avoidance, preferring to go to the guide's target.
+
+    Among edges it keeps no more than its path leaves.
+    """
 
     Config = OrcaConfig
     needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
+    adapts_clearance: ClassVar[bool] = True
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
@@ -26,4 +30,4 @@ class OrcaController(Controller):
         self._avoidance.reset(briefings, rows)
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
-        return self._avoidance.velocity(observation, guide.target)
+        return self._avoidance.velocity(observation, guide.target, guide.clearance)

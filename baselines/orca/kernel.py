@@ -90,7 +90,7 @@ def avoid(
     count: IntArray,
     start: FloatArray, end: FloatArray, before: FloatArray, after: FloatArray,
     start_convex: BoolArray, end_convex: BoolArray, edge_count: IntArray,
-    most: int, margin: float, edge_margin: float, rate: float, edge_rate: float,
+    most: int, margin: float, edge_margin: FloatArray, rate: float, edge_rate: float,
     answer: FloatArray,
 ) -> None:  # fmt: skip
     """Write new velocities [m/s] into rows low … high - 1 of ``answer`` (N, 2).
@@ -116,7 +116,7 @@ def avoid(
         edge_count: (N,) valid edges.
         most: neighbours that are used.
         margin: by which every disc is taken to be larger [m] among neighbours.
-        edge_margin: the same of the agent's own disc among edges [m].
+        edge_margin: (N,) the same of the agent's own disc among edges [m].
         rate: 1 / time horizon for neighbours [1/s].
         edge_rate: 1 / time horizon for edges [1/s].
         answer: (N, 2).
@@ -131,7 +131,7 @@ def avoid(
         fixed = 0
         if edge_count[i] > 0:
             fixed = edge_rows(
-                i, px, py, vx, vy, own_radius + edge_margin, edge_rate, start, end, before,
+                i, px, py, vx, vy, own_radius + edge_margin[i], edge_rate, start, end, before,
                 after, start_convex, end_convex, edge_count[i], planes,
             )  # fmt: skip
         n = fixed

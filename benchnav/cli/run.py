@@ -1,6 +1,5 @@
 """`benchnav run`: execute a suite."""
 
-from collections import Counter
 from datetime import datetime
 from enum import StrEnum
 from functools import partial
@@ -12,9 +11,10 @@ import typer
 
 from benchnav.cli.console import one_of, put, say
 from benchnav.errors import UsageError
+from benchnav.plural import counted
 
 if TYPE_CHECKING:
-    from benchnav.runner.run import Executor, Summary
+    from benchnav.runner.run import Executor
     from benchnav.runner.shard import Shard
     from benchnav.runner.suite import Suite
 
@@ -28,13 +28,16 @@ class Where(StrEnum):
 
 def run(
     suite: Annotated[
-        str, typer.Argument(metavar="SUITE", help="Name of a suite that ships, or a file.")
+        str,
+        typer.Argument(
+            metavar="SUITE|SCENARIO", help="Name of a suite or scenario that ships, or a file."
+        ),
     ],
     out: Annotated[
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Run folder; the same suite goes on where it stopped. [default: new]",
+            help="Run folder; the same suite continues there, also with more seeds. [default: new]",
         ),
     ] = None,
     workers: Annotated[
@@ -100,13 +103,23 @@ def run(
             "--isolate", help="Every navigator in a process of its own that is sent messages."
         ),
     ] = False,
+    again: Annotated[
+        bool,
+        typer.Option(
+            "--again", help="Run again what older code made; it is kept until all is there."
+        ),
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
+    debug: Annotated[
+        bool, typer.Option("--debug", help="Print the tracebacks of what plugins raised.")
+    ] = False,
 ) -> None:
     """Execute a suite into a run folder.
 
     Scenarios × tracks × navigators × seeds. Prints the run folder on stdout;
     `benchnav leaderboard` makes the table from it.
     """
+    from benchnav.cli.conclusion import conclusion, kept_for_now, tracebacks
     from benchnav.runner.progress import progress
     from benchnav.runner.run import Summary, run_suite
     from benchnav.runner.suite import Selection, load_suite
@@ -127,17 +140,21 @@ def run(
     try:
         run_suite(
             asked, folder, workers=workers, timeout=timeout, memory=memory, executor=running,
-            shard=share, progress=progress(quiet), summary=summary,
+            shard=share, again=again, progress=progress(quiet), summary=summary,
         )  # fmt: skip
     except KeyboardInterrupt:
-        say(
-            f"Interrupted: {summary.stored} of {summary.total} episodes are stored."
-            f" The same command with --out {folder} goes on from there."
-        )
+        parts = [
+            f"Interrupted: {summary.stored} of {counted(summary.total, 'episode')} stored.",
+            f"The same command with --out {folder} continues there.",
+            kept_for_now(summary),
+        ]
+        say(" ".join(part for part in parts if part))
         raise
     if not quiet:
-        say(_conclude(summary, perf_counter() - began))
+        say(conclusion(summary, perf_counter() - began))
         say(f"The table: benchnav leaderboard {folder}")
+    if debug:
+        say(tracebacks(summary))
     put(str(folder))
 
 
@@ -166,47 +183,9 @@ def _shard(text: str | None) -> "Shard | None":
 
 def _announce(suite: "Suite", folder: Path) -> str:
     sizes = (
-        (len(suite.scenarios), "scenarios"), (len(suite.tracks), "tracks"),
-        (len(suite.entries), "navigators"), (len(suite.seeds), "seeds"),
+        (len(suite.scenarios), "scenario"), (len(suite.tracks), "track"),
+        (len(suite.entries), "navigator"), (len(suite.seeds), "seed"),
     )  # fmt: skip
-    product = " × ".join(f"{n} {what if n != 1 else what[:-1]}" for n, what in sizes)
+    product = " × ".join(counted(n, what) for n, what in sizes)
     some = f" (in {len(suite.blocks)} blocks of cells)" if suite.blocks else ""
     return f"{suite.name}@{suite.version}: {product}{some}, into {folder}"
-
-
-def _conclude(summary: "Summary", seconds: float) -> str:
-    fresh = summary.stored - summary.found
-    lines = [f"{summary.stored} episodes stored, {fresh} of them run in {seconds:.1f} s"]
-    if fresh and seconds > 0:
-        lines[0] += f" ({fresh / seconds:.3g} a second)"
-    if summary.redraws:
-        lines.append(f"{summary.redraws} draws of worlds were not solvable and drawn again")
-    reasons = Counter[tuple[str, str]]()
-    for cell, reason in summary.not_applicable:
-        reasons[cell.entry.label, f"{reason} ({cell.track})"] += 1
-    lines += [
-        f"n/a: {who} {why}, {n} {'cell' if n == 1 else 'cells'}"
-        for (who, why), n in sorted(reasons.items())
-    ]
-    lines += [
-        f"failed: {who} in {n} episodes: {why}"
-        for (who, why), n in summary.failures.most_common(10)
-    ]
-    if len(summary.failures) > 10:
-        lines.append(f"… and for {len(summary.failures) - 10} more reasons")
-    lines += [
-        f"the metric {metric} failed for {n} {'value' if n == 1 else 'values'}: {why}"
-        for (metric, why), n in summary.missing.most_common(5)
-    ]
-    lines += [
-        f"warning: {who}: the leader of {team!r} succeeded in no rehearsal in {n}"
-        f" {'world' if n == 1 else 'worlds'} of {scenario}"
-        for (who, scenario, team), n in summary.unled.most_common(10)
-    ]
-    lines += [
-        f"{who} tells of {n} {'world' if n == 1 else 'worlds'} of {scenario}: {text}"
-        for (who, scenario, text), n in summary.remarks.most_common(5)
-    ]
-    if len(summary.remarks) > 5:
-        lines.append(f"… and of {len(summary.remarks) - 5} more things; episodes keep them all")
-    return "\n".join(lines)

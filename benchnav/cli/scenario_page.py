@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+from benchnav.plural import counted
+
 if TYPE_CHECKING:
     from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
     from benchnav.scenario.region import Region
@@ -125,7 +127,7 @@ def _where(group: "StaticGroup") -> str:
 
 def _region(region: "Region") -> str:
     if region.type == "points":
-        return f"from {len(region.points)} points"
+        return f"from {counted(len(region.points), 'point')}"
     return "anywhere" if region.type == "anywhere" else f"in a {region.type}"
 
 

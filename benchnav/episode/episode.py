@@ -28,8 +28,9 @@ class Identity:
     seed: int
     track: str  # known, stale, partial, unknown
     navigator: str  # the label in the suite
-    navigator_hash: str = ""  # of what the label stands for: configuration, source, version
+    navigator_hash: str = ""  # of what the label stands for: configuration, distributions, mode
     rehearsal: int = 0  # k: the k-th rehearsal before the episode of this seed; 0: that episode
+    source_hash: str = ""  # of the code and data files of the navigator; "" where not known
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +90,7 @@ class Episode:
     rehearsals: int = 0  # that its navigator was granted
     rehearsal_decisions: int = 0  # of agents, in all of them
     remarks: tuple[str, ...] = ()  # what its navigator has to tell of it
+    traceback: str = ""  # of what the navigator raised, as text; "" where it raised nothing
     twist: BoolArray | None = None  # (A,) True: requested are twists; None: older, not known
 
     @property

@@ -18,10 +18,12 @@ from benchnav.errors import BenchnavError, MissingExtraError
 from benchnav.isolation.frame import HEAD, decode, encode, head
 from benchnav.isolation.seen import maps_changed, observation_of
 from benchnav.isolation.told import briefings_of
+from benchnav.named_module import search_in
 from benchnav.navigation.answer import CallFailed, checked, said
 from benchnav.navigation.introduction import meet
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Navigator
+from benchnav.navigation.trace import plain, trace
 
 Answer = tuple[str, dict[str, Any]]
 _SENSINGS = TypeAdapter(list[Sensing])
@@ -44,21 +46,22 @@ class Host:
             return calls[kind](fields)
         except CallFailed as failed:
             suspects = {} if failed.suspects is None else {"suspects": failed.suspects}
-            return "failed", {"reason": failed.reason, **suspects}
+            return "failed", {"reason": failed.reason, "traceback": failed.traceback, **suspects}
         except MissingExtraError as error:
-            return "failed", {"error": type(error).__name__, "reason": str(error)}
-        except BenchnavError as error:
-            known = {"error": type(error).__name__} if kind == "hello" else {}
+            return "failed", {"error": type(error).__name__, "reason": plain(error)}
+        except (Exception, SystemExit) as error:
+            refused = kind == "hello" and isinstance(error, BenchnavError)
+            known = {"error": type(error).__name__} if refused else {}
             return "failed", {
-                "reason": str(error) if known else f"{kind} raised {said(error)}",
+                "reason": plain(error) if refused else f"{kind} raised {said(error)}",
+                "traceback": trace(error),
                 **known,
             }
-        except (Exception, SystemExit) as error:
-            return "failed", {"reason": f"{kind} raised {said(error)}"}
 
     def _hello(self, fields: dict[str, Any]) -> Answer:
         says = json.loads(fields["says"])
         sys.path += [entry for entry in says.get("path", ()) if entry not in sys.path]
+        search_in(says.get("folder", ""))
         spec = says.get("navigator") or {"type": self.name, **says["config"]}
         sensings = _SENSINGS.validate_python(says.get("sensings", []))
         self.maps = {}
@@ -81,7 +84,7 @@ class Host:
         return "command", {"command": checked(answer, active)}
 
     def _remarks(self, fields: dict[str, Any]) -> Answer:
-        told = [str(remark) for remark in self._hosted.remarks(int(fields["row"]))]
+        told = [plain(remark) for remark in self._hosted.remarks(int(fields["row"]))]
         return "remarks", {"says": json.dumps(told)}
 
     @property

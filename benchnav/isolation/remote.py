@@ -12,7 +12,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.errors import MissingExtraError, NavigatorError, named
+from benchnav.errors import BenchnavError, MissingExtraError, NavigatorError, named
 from benchnav.isolation.process import Process
 from benchnav.isolation.seen import seen
 from benchnav.isolation.told import told
@@ -23,6 +23,7 @@ from benchnav.navigation.introduction import Introduction
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Navigator, Need, Training
 from benchnav.navigation.observation import Observation
+from benchnav.navigation.trace import bounded, plain
 
 PROTOCOL = 1  # version of the messages
 STARTING = 120.0  # [s] that a process may take to say who it is
@@ -148,11 +149,12 @@ def ask(process: Process, kind: str, fields: Mapping[str, Any], patience: float)
     """
     got, answer = process.ask(kind, fields, patience)
     if got == "failed" and isinstance(answer.get("reason"), str):
+        reason, traceback = plain(answer["reason"]), bounded(answer.get("traceback", ""))
         if answer.get("error") and (kind == "hello" or answer["error"] == _LACKING):
-            raise named(answer["error"], answer["reason"])
+            raise _noted(named(answer["error"], reason), traceback)
         if kind == "hello":
-            raise NavigatorError(answer["reason"])
-        raise CallFailed(answer["reason"], answer.get("suspects"))
+            raise _noted(NavigatorError(reason), traceback)
+        raise CallFailed(reason, answer.get("suspects"), traceback)
     wanted = _ANSWERS[kind]
     field = {"ready": "says", "command": "command", "remarks": "says"}.get(wanted)
     if got != wanted or (field is not None and field not in answer):
@@ -163,6 +165,13 @@ def ask(process: Process, kind: str, fields: Mapping[str, Any], patience: float)
 
 
 _LACKING = MissingExtraError.__name__
+
+
+def _noted(error: BenchnavError, traceback: str) -> BenchnavError:
+    """The error, with the traceback of the process that it comes from beneath its own."""
+    if traceback:
+        error.add_note(traceback)
+    return error
 
 
 def python_path() -> list[str]:

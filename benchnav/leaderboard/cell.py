@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from benchnav.leaderboard.digits import figure, figures, number, prefixed, signed
 from benchnav.leaderboard.record import PRICE, Record
+from benchnav.plural import counted
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ def rehearsal(r: Record) -> Cell:
         return Cell("")
     size, unit = prefixed("s", r.rehearsal_seconds)
     seconds = number(r.rehearsal_seconds / size)
-    return Cell(f"{r.rehearsal_decisions:.0f} decisions, {seconds} {unit}")
+    return Cell(f"{counted(round(r.rehearsal_decisions), 'decision')}, {seconds} {unit}")
 
 
 def verified(r: Record) -> Cell:

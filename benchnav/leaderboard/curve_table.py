@@ -7,6 +7,7 @@ from benchnav.leaderboard import escape
 from benchnav.leaderboard.curve import HORIZON, Point, panels
 from benchnav.leaderboard.digits import figures, number, prefixed
 from benchnav.leaderboard.tidy import as_csv, as_json
+from benchnav.plural import counted
 
 FORMATS = ("markdown", "csv", "json")
 COLUMNS = 10  # places on the axis in a table for people
@@ -38,7 +39,7 @@ def titled(points: Sequence[Point], role: bool = True) -> str:
     p = points[0]
     worlds = {q.worlds for q in points}
     parts = [p.scenario, f"track {p.track}", *([f"{p.role}s"] if role else [])]
-    parts += [f"{min(worlds)} worlds"] if len(worlds) == 1 else []
+    parts += [counted(min(worlds), "world")] if len(worlds) == 1 else []
     parts += [f"split {p.split}"] if p.split != "test" else []
     parts += [f"rehearsal: {p.rehearsal}"] if p.rehearsal else []
     return ", ".join(parts)

@@ -11,6 +11,7 @@ from benchnav.leaderboard.price_table import LEGEND as PRICE_LEGEND
 from benchnav.leaderboard.price_table import price_sections
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Leaderboard, Record
 from benchnav.leaderboard.section import Section
+from benchnav.plural import counted
 
 NARROW = 4  # metrics up to which every cell shows its interval
 INTERVALS = 2  # metrics that show it in a wider table
@@ -23,7 +24,9 @@ LEGEND = (
     " ↑ more is better, ↓ less.",
     "rank: 1 + entries significantly better – N − entries significantly worse, by the first metric"
     " that ranks; 1–3 is a tie.",
-    "Paired worlds, sign flips, Holm. Bold: nobody is significantly better."
+    "Significant: the paired 95 % interval over the worlds excludes 0, after Holm. Scenarios are"
+    " fixed: a rank holds for other seeds of these.",
+    "Bold: not significantly worse than any other entry; nothing is bold where all tie."
     " A failed episode counts as the worst: success 0, collided 1.",
 )
 
@@ -62,11 +65,18 @@ def legend(board: Leaderboard) -> tuple[str, ...]:
     return (*LEGEND, PRICE_LEGEND) if priced else LEGEND
 
 
+def failures_and_remarks(leaders: Sequence[Record]) -> list[str]:
+    """The notes on what went wrong in the episodes of navigators."""
+    failures = [f"{r.navigator} failed {_closed(r.failure)}" for r in leaders if r.failure]
+    remarks = [f"Remark of {r.navigator} {_closed(r.remark)}" for r in leaders if r.remark]
+    return failures + remarks
+
+
 def granted(rehearsals: int) -> str:
     """The note of a table of entries that rehearsed."""
     return (
-        f"Granted {rehearsals} rehearsals of each world before it was scored; ranked among entries"
-        " with the same grant alone."
+        f"Granted {counted(rehearsals, 'rehearsal')} of each world before it was scored; ranked"
+        " among entries with the same grant alone."
     )
 
 
@@ -80,7 +90,7 @@ def _title(records: list[Record], variants: bool) -> str:
     first = records[0]
     scenario = "all scenarios" if first.scenario == ALL else first.scenario
     counts = {r.episodes for r in records if r.episodes}
-    worlds = f", {counts.pop()} worlds" if len(counts) == 1 else ""
+    worlds = f", {counted(counts.pop(), 'world')}" if len(counts) == 1 else ""
     split = "" if first.split == "test" else f", split {first.split}"
     variant = (
         f", horizon {first.horizon:g} s, dt {first.dt:g} s, hash {first.scenario_hash[:8]}"
@@ -201,6 +211,7 @@ class _Table:
         notes = [
             f"{r.navigator} is not ranked: {r.note}." for r in leaders if r.note and r.episodes
         ]
+        notes += failures_and_remarks(leaders)
         notes += [
             f"{metric} of {name} {self.at[name, metric].fault}."
             for name in names
@@ -212,3 +223,7 @@ class _Table:
         if self.rehearsed:
             notes.append(granted(self.rehearsed))
         return tuple(notes)
+
+
+def _closed(text: str) -> str:
+    return text if text.endswith((".", "!", "?")) else f"{text}."

@@ -57,6 +57,8 @@ class Record:
     rehearsal_seconds: float = math.nan  # of the navigator that led, mean over worlds
     mode: str = ""  # "in-process" or "isolated"; "" where the runs are not known
     fault: str = ""  # where and how the metric failed; "" if it did not
+    failure: str = ""  # in how many worlds the navigator failed, and why; "" if it did not
+    remark: str = ""  # what the navigator tells of its episodes, and of how many; "" if nothing
     verified: bool = False  # its runs were verified here, and it is no timing
 
 

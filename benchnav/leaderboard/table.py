@@ -31,6 +31,7 @@ from benchnav.leaderboard.record import (
     NotApplicable,
     Record,
 )
+from benchnav.leaderboard.remark import failures, remarks, with_texts
 from benchnav.leaderboard.standing import Standing, standings
 from benchnav.metrics.metric import Metric
 
@@ -73,6 +74,8 @@ def leaderboard(
     records += prices(found, metrics, mapless, not_applicable)
     failed = faults(results)
     records = [with_fault(_with_training(record, training), failed) for record in records]
+    texts = failures(results), remarks(results)
+    records = [with_texts(record, *texts) for record in records]
     records = [replace(r, verified=_is_verified(r, verified, metrics)) for r in records]
     records = [replace(record, mode=modes.get(record.navigator, "")) for record in records]
     order = {name: place for place, name in enumerate(metrics)}

@@ -13,6 +13,7 @@ from benchnav.leaderboard.duel import Duel
 from benchnav.leaderboard.record import ALL
 from benchnav.leaderboard.tidy import as_csv, as_json
 from benchnav.metrics.metric import Metric
+from benchnav.plural import counted
 
 FORMATS = ("markdown", "csv", "json")
 SMALLEST = 1e-4  # p below which only that is said
@@ -69,7 +70,7 @@ def place(c: Comparison, *, role: bool, split: bool) -> str:
     parts = [scenario, f"track {c.track}"]
     parts += [f"{c.role}s"] if role else []
     parts += [f"split {c.split}"] if split else []
-    return f"{', '.join(parts)} ({c.worlds} world{'' if c.worlds == 1 else 's'})"
+    return f"{', '.join(parts)} ({counted(c.worlds, 'world')})"
 
 
 def sentence(c: Comparison, metric: Metric) -> str:
@@ -134,7 +135,7 @@ def _chance(c: Comparison) -> str:
     if p >= 0.95:
         return "which is what chance does"
     if p >= 0.1:
-        return f"by chance {round(10 * p)} times in 10"
+        return f"by chance {counted(round(10 * p), 'time')} in 10"
     times = math.floor(1 / p)
     return f"by chance once in {times if times < 100 else round(times, -1):,} times"
 
@@ -142,9 +143,10 @@ def _chance(c: Comparison) -> str:
 def _explained(duel: Duel) -> str:
     family = max(c.family for c in duel.comparisons)
     return (
-        f"[low, high]: 95 % interval of the mean difference over the worlds of both."
-        f" By chance: how often so much would be seen if neither were better (sign flips of"
-        f" paired worlds), after Holm over the {family}"
-        f" comparison{'' if family == 1 else 's'} above as one family. Rarer than once in 20 it is"
-        " called a difference; an interval stands for itself alone, so a tie may leave out 0."
+        "[low, high]: 95 % interval of the mean difference over the worlds of both. By chance: how"
+        " often a difference as large would be seen if the true one were 0, by the t-test of the"
+        " same interval, adjusted by Holm's procedure for the"
+        f" {counted(family, 'comparison')} above as one family. Rarer than once in"
+        " 20 it is called a difference. An interval is not adjusted, so a tie may exclude 0."
+        " Scenarios are fixed: other seeds may differ, not other scenarios."
     )

@@ -9,26 +9,14 @@ from benchnav.arena.agents import Role
 from benchnav.episode.episode import Episode
 from benchnav.errors import PluginError
 from benchnav.metrics.metric import Metric, evaluate
+from benchnav.navigation.answer import said
+from benchnav.navigation.trace import trace
 from benchnav.plugins import METRICS
 
 
 def load_metric(name: str) -> Metric:
-    """The registered metric of this name.
-
-    Raises PluginError where the name stands for something else, and what the registry
-    raises where there is no such name or it cannot be imported.
-    """
-    metric = METRICS.load(name)
-    if not isinstance(metric, Metric):
-        raise PluginError(
-            f"The metric {name!r} must be a benchnav.metrics.metric.Metric."
-            f" Got {type(metric).__name__} from {METRICS.source(name).value}."
-        )
-    if ":" not in name and metric.name != name:
-        raise PluginError(
-            f"The metric registered as {name!r} must carry that name. Got {metric.name!r}"
-            f" from {METRICS.source(name).value}."
-        )
+    """The registered metric of this name. Raises what the registry raises."""
+    metric: Metric = METRICS.load(name)
     return metric
 
 
@@ -63,24 +51,20 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
             "seed": who.seed, "role": role.name.lower(), "agents": int(members.sum()),
             "failure": episode.failure, "horizon": clock.horizon, "dt": clock.dt,
             "navigator_hash": who.navigator_hash, "rehearsal": episode.rehearsals,
+            "source_hash": who.source_hash,
             "rehearsal_decisions": episode.rehearsal_decisions,
-            "rehearsal_seconds": episode.timings.rehearsal,
+            "rehearsal_seconds": episode.timings.rehearsal, "remarks": list(episode.remarks),
         }  # fmt: skip
         for metric in metrics:
-            value, defined, missing = math.nan, 0, ""
+            value, defined, missing, traceback = math.nan, 0, "", None
             try:
                 value, defined = evaluate(metric, episode, members)
             except (Exception, SystemExit) as error:
-                missing = _said(error)
+                missing, traceback = said(error), trace(error)
             rows.append(
                 {
                     **common, "metric": metric.name, "value": value, "defined": defined,
-                    "missing": missing,
+                    "missing": missing, "traceback": traceback,
                 }
             )  # fmt: skip
     return rows
-
-
-def _said(error: BaseException) -> str:
-    text = " ".join(f"{type(error).__name__}: {error}".split())
-    return text if len(text) <= 200 else text[:197] + "..."

@@ -1,18 +1,27 @@
 """Checks what a navigator answered before it may touch the state, and says what went wrong."""
 
+import re
+from collections import Counter
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.navigation.trace import class_name, location, plain
+
+_PLACE = re.compile(r" (\([^()]+:\d+\))\.?( at t = \S+ s)?$")
+_NUMBER = re.compile(r"-?\d[\d.]*(e[-+]?\d+)?")
+_TIME = re.compile(r" at t = \S+ s$")
 
 
 class CallFailed(Exception):
     """A call of a navigator failed; nobody is charged before it failed for one world alone."""
 
-    def __init__(self, reason: str, suspects: IntArray | None = None) -> None:
+    def __init__(self, reason: str, suspects: IntArray | None = None, traceback: str = "") -> None:
         super().__init__(reason)
         self.reason = reason
+        self.traceback = traceback  # as text; "" where nothing was raised
         self.suspects = suspects  # places in the call that gave garbage; None: cannot be told
 
 
@@ -45,19 +54,37 @@ def checked(answer: Any, active: BoolArray) -> FloatArray:
 
 
 def said(error: BaseException) -> str:
-    """What an exception says, on one line of a reason."""
-    shown = short(str(error))
-    return f"{type(error).__name__}: {shown}" if shown else type(error).__name__
+    """What an exception says and where it was raised, on one line of a reason."""
+    name, text, place = class_name(error), short(error), location(error)
+    return (f"{name}: {text}" if text else name) + (f" ({place})" if place else "")
 
 
-def short(text: str) -> str:
-    """On one line, of at most 300 letters."""
-    text = " ".join(text.split())
-    return text if len(text) <= 300 else text[:297] + "..."
+def short(text: object) -> str:
+    """On one line, of at most 300 letters; whatever is no text yet is made one."""
+    line = " ".join(plain(text).split())
+    return line if len(line) <= 300 else line[:297] + "..."
+
+
+def kind_of(reason: str) -> str:
+    """What reasons share that tell of one fault: their numbers, and when it was, do not count.
+
+    Where a line of code is named, the exception and the line alone count.
+    """
+    place = _PLACE.search(reason)
+    return reason.partition(": ")[0] + place[1] if place else _NUMBER.sub("#", reason)
+
+
+def grouped(reasons: Mapping[str, int]) -> list[tuple[str, int]]:
+    """(reason, how many) of each kind, the commonest first; reasons are told without the time."""
+    kinds: dict[str, Counter[str]] = {}
+    for reason, count in reasons.items():
+        kinds.setdefault(kind_of(reason), Counter())[_TIME.sub("", reason)] += count
+    found = [(texts.most_common(1)[0][0], texts.total()) for texts in kinds.values()]
+    return sorted(found, key=lambda group: (-group[1], group[0]))
 
 
 def _name(value: Any) -> str:
-    return "None" if value is None else f"a {type(value).__name__}"
+    return "None" if value is None else f"a {class_name(value)}"
 
 
 def _kind(answer: Any, command: np.ndarray) -> str:

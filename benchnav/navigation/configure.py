@@ -16,6 +16,7 @@ from benchnav.errors import (
     UnknownPluginError,
     did_you_mean,
 )
+from benchnav.navigation.answer import said
 from benchnav.navigation.pair import HIERARCHICAL, hint, is_pair, parameters_of
 from benchnav.plugins import NAVIGATORS, Registry
 
@@ -44,11 +45,10 @@ def make(registry: Registry, spec: Spec, *, where: Where = "") -> Any:
         return plugin(config)
     except BenchnavError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         name, _ = _written(registry, spec, where)
         raise BrokenPluginError(
-            f"{_at(where)}The {registry.kind} {name!r} cannot be made:"
-            f" {type(error).__name__}: {error}."
+            f"{_at(where)}The {registry.kind} {name!r} cannot be made: {said(error)}."
         ) from error
 
 
@@ -78,7 +78,15 @@ def configure(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[Any
             raise ConfigError(_at(where) + "\n".join(text for _, text in lines)) from None
         raise ConfigError("\n".join(_at(where, key) + text for key, text in lines)) from None
     except PluginError as error:  # of a part that the Config names
-        raise type(error)(_at(where) + str(error)) from None
+        raise type(error)(_at(where) + str(error)) from error.__cause__
+    except BenchnavError:
+        raise
+    except (Exception, SystemExit) as error:
+        written, _ = _written(registry, spec, where)
+        raise BrokenPluginError(
+            f"{_at(where)}The Config of the {registry.kind} {written!r} cannot be made:"
+            f" {said(error)}."
+        ) from error
 
 
 def split(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[str, dict[str, Any]]:

@@ -19,6 +19,10 @@ class Guide:
     target: FloatArray  # (B, A, 2) [m] point on the path, a lookahead ahead of the agent
     remaining: FloatArray  # (B, A) [m] path length from the agent's projection to the end
     has_path: BoolArray  # (B, A) False where planning found nothing (target is then the goal)
+    clearance: FloatArray | None = None
+    """(B, A) [m] that the path leaves beside the agent in its narrowest place: a controller that
+    keeps more from walls cannot follow it. inf where that is enough or not known; None: unknown
+    for all."""
 
 
 class Controller(ABC):
@@ -28,6 +32,7 @@ class Controller(ABC):
     needs: ClassVar[frozenset[Need]] = frozenset()
     command: ClassVar[CommandKind] = "velocity"
     lookahead: ClassVar[float] = 1.0  # [m] of path to its target, at most, unless told otherwise
+    adapts_clearance: ClassVar[bool] = False  # keeps no more from walls than `Guide.clearance`
     cut: ClassVar[float] = 0.1  # [m] by which it may miss corners, unless told otherwise
 
     def __init__(self, config: PluginConfig | None = None) -> None:

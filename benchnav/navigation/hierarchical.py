@@ -20,13 +20,15 @@ from benchnav.navigation.navigator import Navigator, Need, PluginConfig, Trainin
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.pair import NO_PLANNER
 from benchnav.navigation.path_tracker import PathTracker
-from benchnav.navigation.planner import Plan, Planner
+from benchnav.navigation.plan_log import PlanLog, checked_plan
+from benchnav.navigation.planner import UNSOLVED, Plan, Planner
 from benchnav.navigation.replanning import Policies, Replan, Watch
 from benchnav.navigation.retreat import Retreat
 from benchnav.plugins import CONTROLLERS, PLANNERS, Source
 
 TOUCH = 1e-3  # [m] by which a path may come nearer than its disc's radius: rounding blocks nothing
 LEAST_DISC = 0.5  # of its radius: for a smaller disc no agent that stands too close is planned
+NO_MAP = Plan(UNSOLVED, False, reason="no map is granted")
 CONTACT = 1e-5  # [m] from what is known at which a disc still counts as standing in it
 
 
@@ -35,9 +37,9 @@ class Hierarchical(Navigator):
 
     The map is the granted one, or with ``mapping`` what the agent makes of that and of
     what it senses, in the track `unknown` from nothing. Where planning fails, the agent
-    keeps the path that it has; without one its target is the goal. `plans` says what
-    planning answered. ``PLANNER+CONTROLLER`` and ``mapping+PLANNER+CONTROLLER`` are
-    names of such navigators (`benchnav.navigation.pair`).
+    keeps the path that it has; without one its target is the goal. `remarks` say so, and
+    why; `plans` holds what planning answered last. ``PLANNER+CONTROLLER`` and
+    ``mapping+PLANNER+CONTROLLER`` are names of such navigators (`benchnav.navigation.pair`).
     """
 
     class Config(GuidedConfig):
@@ -72,6 +74,7 @@ class Hierarchical(Navigator):
             self.controller.lookahead if c.lookahead is None else c.lookahead,
             self.controller.cut if c.cut is None else c.cut,
         )
+        self._logs: dict[int, PlanLog] = {}
         self._watch: dict[int, Watch] = {}
         self._retreats: dict[int, Retreat] = {}
 
@@ -122,8 +125,14 @@ class Hierarchical(Navigator):
             self._watch[row] = Watch(briefing)
             self._retreats[row] = Retreat(briefing.start)
             self.plans[row] = []
+            self._logs[row] = PlanLog(len(briefing))
             for agent in range(len(briefing)):
                 self._plan(row, agent, briefing.map, briefing.start[agent], 0.0)
+
+    def remarks(self, row: int) -> Sequence[str]:
+        if row not in self._logs:
+            return ()
+        return self._logs[row].remarks(adapts=self.controller.adapts_clearance)
 
     def act(self, observation: Observation) -> FloatArray:
         if self.mapping is not None:
@@ -194,18 +203,22 @@ class Hierarchical(Navigator):
 
     def _plan(self, row: int, agent: int, map: Map | None, start: FloatArray, time: float) -> None:
         watch, plans = self._watch[row], self.plans[row]
-        if self.planner is None or (map is None and self.mapping is None):
+        if self.planner is None:
+            return
+        if map is None and self.mapping is None:
+            self._logs[row].note(agent, NO_MAP)
             return
         plan, radius = self._answer(row, agent, map, start)
         if not plan.solved and self.mapping is not None and self.mapping.doubt(row, agent):
             plan, radius = self._answer(row, agent, map, start)
         plans[agent : agent + 1] = [plan]
+        self._logs[row].note(agent, plan)
         watch.planned[agent], watch.blocked[agent] = time, False
         watch.version[agent] = watch.looked[agent] = self._versions(row, map)[agent]
         watch.solved[agent] = plan.solved
         if plan.solved:
             watch.radius[agent] = radius
-            self._tracker.follow(row, agent, plan.path)
+            self._tracker.follow(row, agent, plan.path, plan.clearance)
 
     def _answer(
         self, row: int, agent: int, map: Map | None, start: FloatArray
@@ -216,7 +229,8 @@ class Hierarchical(Navigator):
         told, radius = self._watch[row].briefing, self._disc(row, agent, start)
         rng = self._watch[row].streams[agent]
         goal, tolerance = told.goal[agent], told.goal_tolerance
-        return self.planner.plan(known, start, goal, radius, tolerance, rng), radius
+        plan = self.planner.plan(known, start, goal, radius, tolerance, rng)
+        return checked_plan(plan, self.planner), radius
 
     def _disc(self, row: int, agent: int, start: FloatArray) -> float:
         """[m] The agent's radius, or less where it stands in what it mapped: a disc's octagon."""

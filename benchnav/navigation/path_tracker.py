@@ -35,6 +35,7 @@ class PathTracker:
         self._segment = np.zeros((0, 0), np.int64)
         self._progress = np.zeros((0, 0))
         self._ahead = np.zeros((0, 0))
+        self._clearance = np.zeros((0, 0))
 
     def reset(self, row: int, step_length: FloatArray) -> None:
         """Forget the paths of ``row``; ``step_length`` (A,) [m] is what an agent drives in a step.
@@ -44,10 +45,16 @@ class PathTracker:
         agents = len(step_length)
         self._reserve(row + 1, agents, 0)
         self._count[row] = 0
+        self._clearance[row] = np.inf
         self._ahead[row, :agents] = np.maximum(self.lookahead, 2.0 * step_length)
 
-    def follow(self, row: int, agent: int, path: FloatArray) -> None:
-        """Start ``agent`` of ``row`` on ``path`` (W, 2) [m]; no path where W is 0."""
+    def follow(
+        self, row: int, agent: int, path: FloatArray, clearance: float | None = None
+    ) -> None:
+        """Start ``agent`` of ``row`` on ``path`` (W, 2) [m]; no path where W is 0.
+
+        It leaves ``clearance`` [m] beside the agent; None: as the path before.
+        """
         distinct = np.ones(len(path), np.bool_)
         distinct[1:] = np.any(path[1:] != path[:-1], axis=1)
         path = path[distinct]
@@ -59,6 +66,8 @@ class PathTracker:
         self._count[row, agent] = count
         self._segment[row, agent] = 0
         self._progress[row, agent] = 0.0
+        if clearance is not None:
+            self._clearance[row, agent] = clearance
 
     def guide(self, observation: Observation) -> Guide:
         """Advance the active agents along their paths and say where to go."""
@@ -73,7 +82,8 @@ class PathTracker:
             self._path, self._arc, self._count, self._ahead, self.cut,
             self._progress, self._segment, target, remaining,
         )  # fmt: skip
-        return Guide(target, remaining, self._count[rows, :agents] > 0)
+        has_path = self._count[rows, :agents] > 0
+        return Guide(target, remaining, has_path, self._clearance[rows, :agents])
 
     def rest(self, row: int, agent: int) -> FloatArray:
         """(W, 2) [m] what is left of a path, from where the agent was last seen; none if W is 0."""
@@ -98,6 +108,7 @@ class PathTracker:
         self._segment = _grown(self._segment, at)
         self._progress = _grown(self._progress, at)
         self._ahead = _grown(self._ahead, at)
+        self._clearance = _grown(self._clearance, at)
 
 
 def _grown(old: AnyArray, shape: tuple[int, ...]) -> AnyArray:

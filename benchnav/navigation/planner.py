@@ -1,5 +1,6 @@
 """The contract of a planner: map, start, goal → path."""
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -19,6 +20,7 @@ class Plan:
     solved: bool
     checks: int = 0  # motions that were checked for validity
     reason: str = ""  # why unsolved
+    clearance: float = math.inf  # [m] left beside the disc in the narrowest place; inf: enough
 
     @property
     def length(self) -> float:
@@ -54,4 +56,9 @@ class Planner(ABC):
         tolerance: float,
         rng: np.random.Generator,
     ) -> Plan:
-        """A path (W, 2) for a disc of ``radius`` [m] that ends within ``tolerance`` [m] of goal."""
+        """A path (W, 2) for a disc of ``radius`` [m] that ends within ``tolerance`` [m] of goal.
+
+        Where there is none, or none is found, the plan is not solved and gives the reason in a
+        few words: it is kept with the episode and shown beside the results. What this raises,
+        or returns that is no plan, fails the episode.
+        """

@@ -1,6 +1,7 @@
 """One navigator at work in a batch: what it is told, what it sees, what it answers."""
 
 from collections.abc import Sequence
+from itertools import islice
 from time import perf_counter
 
 import numpy as np
@@ -14,9 +15,10 @@ from benchnav.navigation.briefing import Briefing, brief
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.rehearsal import Rehearsal, copied
+from benchnav.navigation.trace import trace
 from benchnav.navigation.tracks import granted_map
 from benchnav.runner.guard import Guard
-from benchnav.runner.watch import calling
+from benchnav.runner.watch import Call, calling
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
 
@@ -73,11 +75,13 @@ class Driver:
             with calling("reset"):
                 self.navigator.reset(briefings, rows)
         except CallFailed as failed:
-            raise CallFailed(f"{self._blame}{failed.reason}", failed.suspects) from None
+            reason = f"{self._blame}{failed.reason}"
+            raise CallFailed(reason, failed.suspects, failed.traceback) from None
         except MissingExtraError:
             raise  # what is not installed is no failure of the navigator
         except (Exception, SystemExit) as error:
-            raise CallFailed(f"{self._blame}reset raised {said(error)}") from error
+            reason, traceback = _raised("reset", error)
+            raise CallFailed(self._blame + reason, traceback=traceback) from error
         seconds = perf_counter() - began
         self._require_intact(self._blame)
         return seconds
@@ -108,11 +112,12 @@ class Driver:
             self._require_intact()
         except CallFailed as failed:
             who = None if failed.suspects is None else observation.rows[failed.suspects]
-            raise CallFailed(self._at(failed.reason, time), who) from None
+            raise CallFailed(self._at(failed.reason, time), who, failed.traceback) from None
         except MissingExtraError:
             raise  # what is not installed is no failure of the navigator
         except (Exception, SystemExit) as error:
-            raise CallFailed(self._at(f"act raised {said(error)}", time)) from error
+            reason, traceback = _raised("act", error, time)
+            raise CallFailed(self._at(reason, time), traceback=traceback) from error
         world, agent = np.nonzero(active)
         row = observation.rows[world]
         command[row, self.chosen[row, agent]] = told[world, agent]
@@ -122,10 +127,9 @@ class Driver:
         """What it has to tell of the world in ``row``; what it cannot tell is lost."""
         try:
             with calling("remarks"):
-                told = [str(remark) for remark in self.navigator.remarks(row)]
+                return tuple(map(short, islice(self.navigator.remarks(row), _REMARKS)))
         except (Exception, SystemExit) as error:
-            return (f"remarks raised {said(error)}",)
-        return tuple(short(text) for text in told[:_REMARKS])
+            return (_raised("remarks", error)[0],)
 
     def _require_intact(self, blame: str = "") -> None:
         replaced = self._guard.replaced() if self._guard is not None else ""
@@ -177,6 +181,12 @@ class Driver:
             goal_tolerance=world.rules.goal_tolerance, decision_budget=clock.decision_budget,
             map=self._maps[b], rng=rng, rehearsals=tuple(map(copied, self._rehearsals[b])),
         )  # fmt: skip
+
+
+def _raised(call: Call, error: BaseException, time: float = 0.0) -> tuple[str, str]:
+    """(reason, traceback) of what a call raised; to read it calls the plugin's code too."""
+    with calling(call, time):
+        return f"{call} raised {said(error)}", trace(error)
 
 
 def _chosen(worlds: Sequence[World], which: int) -> IntArray:

@@ -13,6 +13,7 @@ from time import monotonic
 from typing import Any
 
 from benchnav.errors import BenchnavError, named
+from benchnav.plugins import registrations
 from benchnav.runner.limits import Limits
 from benchnav.runner.process_tree import kill, resident
 from benchnav.runner.progress import Progress
@@ -43,7 +44,10 @@ def execute(
     """
     if workers == 0:
         for task in tasks:
-            yield task, work(task, progress.advance)
+            progress.start(0, task.load)
+            outcome = work(task, progress.advance)
+            progress.finish(0)
+            yield task, outcome
         return
     crew = Crew(min(workers, len(tasks)), progress, limits)
     try:
@@ -117,7 +121,7 @@ class Crew:
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
         notes = context.RawArray("d", SIZE)
-        process = context.Process(target=serve, args=(theirs, notes), daemon=True)
+        process = context.Process(target=serve, args=(theirs, notes, registrations()), daemon=True)
         with _environment(ONE_THREAD):
             process.start()
         theirs.close()
@@ -132,6 +136,8 @@ class Crew:
             raise named(*content)
         if kind == "crashed":
             raise RuntimeError(f"A worker crashed:\n{content}")
+        if worker.task is not None:
+            self.progress.finish(worker.process.pid)
         worker.ready, worker.used, worker.task = True, kind == "done", None
         self._assign(worker)
 
@@ -140,6 +146,7 @@ class Crew:
             return
         task, worker.first = worker.first or self.pending.popleft(), None
         worker.task, worker.told = task, 0
+        self.progress.start(worker.process.pid, task.load)
         with suppress(OSError):  # it died: its end is heard of next
             worker.pipe.send(task)
 
@@ -179,6 +186,7 @@ class Crew:
             self._hire()
             return
         self.progress.advance(-worker.told)
+        self.progress.drop(worker.process.pid)
         if len(task.seeds) > 1:
             self.pending.extendleft(reversed(task.alone()))
             self._hire()

@@ -1,7 +1,6 @@
 """Episodes → the table of measured values, now or from a stored run."""
 
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -9,9 +8,11 @@ import pyarrow.compute as pc
 from benchnav.episode.episode import Episode
 from benchnav.metrics.measure import measure
 from benchnav.metrics.metric import Metric
+from benchnav.navigation.answer import kind_of
 from benchnav.store.manifest import load_manifest
 from benchnav.store.reading import in_every_track, read_episodes
 from benchnav.store.results import RESULTS
+from benchnav.store.run_path import RunPath
 
 
 def measured(episodes: Iterable[Episode], metrics: Sequence[Metric]) -> pa.Table:
@@ -26,7 +27,14 @@ def failed_metrics(results: pa.Table) -> list[tuple[str, str]]:
     return list(zip(gaps["metric"].to_pylist(), gaps["missing"].to_pylist(), strict=True))
 
 
-def measure_again(run: Path, metrics: Sequence[Metric]) -> pa.Table:
+def tracebacks_of(results: pa.Table) -> dict[str, str]:
+    """Tracebacks of metrics that raised, one for each kind of reason."""
+    raised = results.filter(pc.is_valid(results["traceback"]))
+    reasons, texts = raised["missing"].to_pylist(), raised["traceback"].to_pylist()
+    return {kind_of(why): text for why, text in zip(reasons, texts, strict=True) if text}
+
+
+def measure_again(run: RunPath, metrics: Sequence[Metric]) -> pa.Table:
     """The table of `RESULTS` of a stored run, computed from its episodes: nothing is run again.
 
     In every track that an episode stands for.

@@ -15,6 +15,8 @@ from time import monotonic
 from typing import Any
 
 from benchnav.errors import BenchnavError, MissingExtraError, named
+from benchnav.named_module import current_folder
+from benchnav.plugins import registrations
 from benchnav.runner.executor import Finished
 from benchnav.runner.foreman import Delivery, Foreman, Refusal
 from benchnav.runner.limits import Limits
@@ -98,7 +100,8 @@ class _Site:
             self.ray.kill(foreman)
 
     def _hire(self) -> None:
-        foreman = self.ray.remote(num_cpus=1)(Foreman).remote(self.limits, sys.path)
+        path = [*sys.path, str(current_folder())]  # a navigator may lie there: module:Class
+        foreman = self.ray.remote(num_cpus=1)(Foreman).remote(self.limits, path, registrations())
         self.waiting[foreman.introduce.remote()] = foreman, None
 
     def _heed(self, promise: Any) -> Iterator[Finished]:
@@ -115,6 +118,7 @@ class _Site:
         elif isinstance(answer, Refusal):
             raise named(answer.name, answer.text)
         else:
+            self.progress.finish(id(foreman))
             yield from map(self._store, answer)
         if self.pending:
             self._assign(foreman)
@@ -123,6 +127,7 @@ class _Site:
 
     def _assign(self, foreman: Any) -> None:
         task = self.pending.popleft()
+        self.progress.start(id(foreman), task.load)
         promise = foreman.work.remote(task, self._files(task))
         self.waiting[promise] = foreman, task
 
@@ -137,6 +142,7 @@ class _Site:
         """Its machine is gone, or cannot be reached: nobody is charged."""
         self.ray.kill(foreman)
         if task is not None:
+            self.progress.drop(id(foreman))
             key = task.cell.key, task.first
             self.losses[key] += 1
             if self.losses[key] > LOSSES:

@@ -28,6 +28,7 @@ class Rehearsed:
     episodes: list[Episode] = field(default_factory=list)
     grant: list[Rehearsal] = field(default_factory=list)  # what the navigator is handed
     failure: str = ""  # why the navigator that led failed; "" if it did not
+    traceback: str = ""  # of that
 
     @property
     def seconds(self) -> float:
@@ -103,6 +104,7 @@ def _rehearse(
             if episode.failure:
                 name = split(NAVIGATORS, leading)[0]
                 done.failure = f"in rehearsal {k}, {name!r} that led: {episode.failure}"
+                done.traceback = episode.traceback
 
 
 def granted(episode: Episode, place: IntArray) -> Rehearsal:
@@ -135,5 +137,6 @@ def _charged(assignment: Assignment, episode: Episode, done: Rehearsed) -> Perfo
         rehearsal_decisions=done.decisions,
         timings=replace(episode.timings, rehearsal=done.seconds),
         reproducible=reproducible,
+        traceback=episode.traceback or done.traceback,
     )
     return Performance(charged, done)

@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -17,6 +17,7 @@ from benchnav.navigation.answer import CallFailed
 from benchnav.navigation.configure import Spec, make, split
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.rehearsal import Rehearsal
+from benchnav.navigation.trace import notes, trace
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.driver import Driver
 from benchnav.runner.generators import generator, place
@@ -42,7 +43,8 @@ class Assignment:
     navigator: Spec
     background: tuple[Spec, ...] = ()  # navigators of the scenario's other teams
     salt: str = ""  # of the run; no navigator is handed it
-    navigator_hash: str = ""  # of its configuration, source and version
+    navigator_hash: str = ""  # of its configuration, distributions and mode
+    source_hash: str = ""  # of its code and data files
     rehearsals: int = 0  # that the navigator asks for
     leader: Spec | None = None  # who drives the leaders in them
     rehearsal: int = 0  # k: this is the k-th of them
@@ -58,7 +60,7 @@ class Assignment:
         """Of the episode with this seed."""
         return Identity(
             self.scenario, self.scenario_hash, self.split, seed, self.track, self.label,
-            self.navigator_hash, self.rehearsal,
+            self.navigator_hash, self.rehearsal, self.source_hash,
         )  # fmt: skip
 
 
@@ -131,8 +133,9 @@ def _split(batch: list[Seeded], failed: CallFailed) -> list[list[Seeded]]:
 
 
 def _lockstep(
-    assignment: Assignment, batch: list[Seeded], charge: str, grants: Grants
+    assignment: Assignment, batch: list[Seeded], charge: str, grants: Grants, traceback: str = ""
 ) -> list[Episode]:
+    """The episodes of a batch; with a ``charge``, which has a ``traceback``, nothing is run."""
     simulation = Simulation([world for _, world in batch])
     recorder = Recorder(simulation)
     recorder.record_state()
@@ -145,16 +148,17 @@ def _lockstep(
             drivers = drivers_of(assignment, simulation, told)
             planning = drive(assignment, drivers, recorder, [seed for seed, _ in batch])
         except NavigatorError as error:  # its process does not start, in whatever world
-            return _lockstep(assignment, batch, str(error), grants)
+            return _lockstep(assignment, batch, str(error), grants, notes(error))
         except CallFailed as failed:
             if len(batch) > 1:
                 raise
-            failure = failed.reason
+            failure, traceback = failed.reason, failed.traceback
             _charge(simulation, recorder)
     reproducible = all(driver.navigator.reproducible for driver in drivers)
     remarks = [drivers[0].remarks(row) if drivers else () for row in range(len(batch))]
     identities = [assignment.identity(seed) for seed, _ in batch]
-    return recorder.episodes(identities, planning, failure, reproducible, remarks)
+    episodes = recorder.episodes(identities, planning, failure, reproducible, remarks)
+    return [replace(episode, traceback=traceback) for episode in episodes]
 
 
 def drive(
@@ -208,7 +212,7 @@ def _made(spec: Spec, blame: str, cell: tuple[str, ...] = ()) -> Navigator:
             navigator: Navigator = Isolated(spec, cell) if apart else make(NAVIGATORS, spec)
             _ = navigator.required  # for which a process of its own is started
     except BrokenPluginError as error:
-        raise CallFailed(f"{blame}{error}") from error
+        raise CallFailed(f"{blame}{error}", traceback=notes(error) or trace(error)) from error
     return navigator
 
 

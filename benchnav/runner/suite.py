@@ -1,5 +1,6 @@
 """A suite, resolved: a lazy product of scenarios, tracks and navigators over seeds."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -16,13 +17,15 @@ from benchnav.navigation.tracks import TRACKS
 from benchnav.runner.cell import Cell
 from benchnav.runner.entry import Entry, Meeting, label_of, resolved
 from benchnav.runner.generators import check_salt
-from benchnav.runner.suite_file import SuiteFile, parse_seeds, suite_path
+from benchnav.runner.suite_file import SuiteFile, is_scenario, parse_seeds, suite_path
 from benchnav.scenario.catalogue import find
 from benchnav.scenario.document import Document
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
 from benchnav.store.scenario_files import sha256_of
 from benchnav.world.build import sensing_of
+
+FIRST_LOOK = "quick"  # the suite that lends its navigators, tracks and seeds to a scenario alone
 
 
 @dataclass(frozen=True)
@@ -114,13 +117,18 @@ class Suite:
 
 
 def load_suite(name: str, selection: Selection = Selection()) -> Suite:
-    """The suite that ships as ``name`` or stands in that file, with what was selected.
+    """Return the suite called ``name`` or in that file, with the selection applied.
+
+    The name or file of a scenario gives a suite of that scenario: its navigators, tracks and
+    seeds are those of the suite `FIRST_LOOK` where nothing is selected.
 
     Raises:
         UsageError: no such suite, track, seeds or salt; a label or scenario twice.
         ScenarioError: the suite file or a scenario is wrong.
         PluginError: a navigator cannot be used.
     """
+    if is_scenario(name):
+        return _suite_of_one(name, selection)
     path = suite_path(name)
     document = read_yaml(path)
     said = validate(SuiteFile, document)
@@ -148,6 +156,15 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     salt = _salt(selection.salt)
     suite = Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries, salt)
     return replace(suite, blocks=_blocks(said, suite, path)) if said.blocks else suite
+
+
+def _suite_of_one(name: str, selection: Selection) -> Suite:
+    """Return a suite of the scenario called ``name``, and of those that are selected with it."""
+    chosen = replace(selection, scenarios=(name, *selection.scenarios))
+    suite = load_suite(FIRST_LOOK, chosen)
+    scenario = suite.scenarios[0]
+    called = re.sub(r"[^a-z0-9]+", "-", scenario.name.lower()).strip("-")[:60]
+    return replace(suite, name=called or "scenario", version=scenario.version, blocks=())
 
 
 def _blocks(said: SuiteFile, suite: Suite, path: Path) -> tuple[Block, ...]:

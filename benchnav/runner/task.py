@@ -1,6 +1,6 @@
 """The unit of work: one cell for a range of seeds."""
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -8,9 +8,11 @@ from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.isolation import fence
 from benchnav.metrics.measure import all_metrics
+from benchnav.navigation.answer import kind_of
 from benchnav.runner.cell import Cell
+from benchnav.runner.estimate import Load
 from benchnav.runner.latency import latency, peak_memory
-from benchnav.runner.measured import failed_metrics, measured
+from benchnav.runner.measured import failed_metrics, measured, tracebacks_of
 from benchnav.runner.rehearsal import Performance, perform
 from benchnav.runner.rollout import Assignment, Seeded
 from benchnav.store.part import Part
@@ -43,6 +45,11 @@ class Task:
         """What it runs."""
         return range(self.first, self.stop)
 
+    @property
+    def load(self) -> Load:
+        """For the estimate of the time that is left."""
+        return Load(self.cell.entry.label, self.cell.effort * len(self.seeds))
+
     def alone(self) -> list["Task"]:
         """The same, seed by seed."""
         return [replace(self, first=seed, stop=seed + 1) for seed in self.seeds]
@@ -61,6 +68,7 @@ class Outcome:
     remarks: tuple[tuple[int, str], ...] = field(default=())  # (seed, what the navigator tells)
     missing: tuple[tuple[str, str], ...] = field(default=())  # (metric, how it failed), by value
     lacks: str = ""  # what is not installed, and how to: then nothing was stored
+    tracebacks: Mapping[str, str] = field(default_factory=dict)  # by kind of reason, of one each
 
 
 def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
@@ -103,6 +111,7 @@ def _work(task: Task, tick: Callable[[int], None]) -> Outcome:
     unled: list[tuple[int, str]] = []
     remarks: list[tuple[int, str]] = []
     missing: list[tuple[str, str]] = []
+    tracebacks: dict[str, str] = {}
     with PartWriter(Part(task.folder, task.first, task.stop)) as writer:
         for batch in perform(task.assignment, worlds, task.charge):
             episodes = _timed(task, batch)
@@ -110,13 +119,17 @@ def _work(task: Task, tick: Callable[[int], None]) -> Outcome:
             results = measured(_ticking(episodes, tick), metrics)
             writer.add(episodes, results, rehearsals)
             missing += failed_metrics(results)
+            tracebacks |= {kind_of(e.failure): e.traceback for e in episodes if e.traceback}
+            tracebacks |= tracebacks_of(results)
             failures += [(e.identity.seed, e.failure) for e in episodes if e.failure]
             remarks += [(e.identity.seed, text) for e in episodes for text in e.remarks]
             unled += [(p.episode.identity.seed, team) for p in batch for team in p.unled]
         writer.seal()
     redraws = sum(world.redraws for _, world in worlds)
     failed, alone, said = (tuple(sorted(found)) for found in (failures, unled, remarks))
-    return Outcome(len(worlds), redraws, failed, alone, said, tuple(missing))
+    return Outcome(
+        len(worlds), redraws, failed, alone, said, tuple(missing), tracebacks=tracebacks
+    )  # fmt: skip
 
 
 def _timed(task: Task, batch: list[Performance]) -> list[Episode]:

@@ -30,6 +30,8 @@ Distance = Annotated[float, Field(ge=0, le=FAR)]
 Bounds = Annotated[
     tuple[Coordinate, Coordinate, Coordinate, Coordinate], AfterValidator(_ordered)
 ]  # xmin, ymin, xmax, ymax [m]
+NAME_PATTERN = r"^[a-z0-9]+([_-][a-z0-9]+)*(/[a-z0-9]+([_-][a-z0-9]+)*)*$"  # family/name
+MAX_NAME = 100  # characters of a scenario's name
 Name = Annotated[str, Field(pattern=r"^[a-z0-9]+([_-][a-z0-9]+)*$", max_length=60)]
 
 

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 from pydantic import Field, PrivateAttr, model_validator
 
 from benchnav.errors import did_you_mean
-from benchnav.scenario.base import Bounds, Spec, inside
+from benchnav.scenario.base import MAX_NAME, NAME_PATTERN, Bounds, Spec, inside
 from benchnav.scenario.document import PathKey, dotted
 from benchnav.scenario.law import RecordedTrack
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
@@ -41,8 +41,8 @@ class Scenario(Spec):
     """What a scenario file says. Metres, seconds, radians; x right, y up."""
 
     name: str = Field(
-        pattern=r"^[a-z0-9]+([_-][a-z0-9]+)*(/[a-z0-9]+([_-][a-z0-9]+)*)*$",
-        max_length=100,
+        pattern=NAME_PATTERN,
+        max_length=MAX_NAME,
         description="family/name",
     )
     version: int = Field(1, ge=1, le=10**6, description="rises when results stop being comparable")
@@ -153,7 +153,8 @@ class Scenario(Spec):
                 key = (*place, "shape", "file")
                 path = self._folder / shape.file
                 yield key, path
-                image = _image_of(path) if shape.type == "occupancy" else None
+                is_ros = isinstance(shape, Occupancy) and shape.format == "ros"
+                image = _image_of(path) if is_ros else None
                 if image is not None:
                     yield key, image
         for i, group in enumerate(self.dynamic):
@@ -184,8 +185,6 @@ def _image_of(path: Path) -> Path | None:
     from benchnav.errors import ScenarioError
     from benchnav.scenario.yaml_reader import read_yaml
 
-    if path.suffix not in {".yaml", ".yml"}:
-        return None
     try:
         data: Any = read_yaml(path).data
     except ScenarioError:

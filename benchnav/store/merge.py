@@ -14,6 +14,7 @@ from benchnav.store.manifest import Manifest
 from benchnav.store.part import FILES, SEAL, Part, parts_of
 from benchnav.store.part_writer import PartWriter, receive
 from benchnav.store.run_folder import RunFolder
+from benchnav.store.run_path import RunPath, run_path
 from benchnav.store.scenario_files import FOLDER, keep_files
 from benchnav.store.spans import spans
 
@@ -30,18 +31,19 @@ class Merged:
     _digests: dict[str, dict[int, str]] = field(default_factory=dict)  # by cell and seed
 
 
-def merge(runs: Sequence[Path], out: Path) -> Merged:
-    """Copy every part of ``runs`` into ``out``; what is there already must be the same.
+def merge(given: Sequence[RunPath], into: RunPath) -> Merged:
+    """Copy every part of some runs into another; what is there already must be the same.
 
     Args:
-        runs: of one suite, with one salt, one set of limits and the same versions.
-        out: a new folder, or a run of the same that more is merged into.
+        given: runs of one suite, with one salt, one set of limits and the same versions.
+        into: a new folder, or a run of the same that more is merged into.
 
     Raises:
-        UsageError: there is nothing to merge, or ``out`` is one of ``runs``.
+        UsageError: there is nothing to merge, or ``into`` is one of them.
         RunConflictError: the runs do not belong together, or differ where they overlap.
         StoreError: the disk refuses, a folder is no run, or a part is damaged.
     """
+    runs, out = [run_path(run) for run in given], run_path(into)
     if not runs or any(out.resolve() == run.resolve() for run in runs):
         raise UsageError(f"Runs must be merged into another folder. Got {out} for both.")
     folders = [RunFolder.open(run) for run in runs]
@@ -71,6 +73,19 @@ def _refuse_different(one: RunFolder, other: RunFolder) -> None:
                 f"Runs that are merged must share their {name.replace('_', ' ')}."
                 f" {one.path} has {_short(here)}, {other.path} has {_short(there)}."
             )
+    _refuse_other_source(one, other)
+
+
+def _refuse_other_source(one: RunFolder, other: RunFolder) -> None:
+    """Raise RunConflictError where two runs were made with different code of a navigator."""
+    for label in one.manifest.sources.keys() & other.manifest.sources.keys():
+        here, there = one.manifest.source_of(label), other.manifest.source_of(label)
+        if here != there:
+            raise RunConflictError(
+                f"Runs that are merged must share the source of {label!r}. {one.path} has {here},"
+                f" {other.path} has {there}. Run one of them again with the code of the other"
+                " (benchnav run … --again)."
+            )
 
 
 def _short(said: object) -> str:
@@ -85,7 +100,8 @@ def _joined(manifests: Sequence[Manifest]) -> Manifest:
     for cell in manifests[0].cells:
         said: Mapping[str, Any] = {k: v for k, v in cell.items() if k != "seeds"}
         cells.append({**said, "reason": ""} if cell["key"] in could else said)
-    return replace(manifests[0], cells=tuple(cells), shard="")
+    sources = {label: source for m in manifests for label, source in m.sources.items()}
+    return replace(manifests[0], cells=tuple(cells), shard="", sources=sources)
 
 
 def _copy_files(run: Path, out: Path) -> None:

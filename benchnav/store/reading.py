@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.compute as pc
@@ -11,40 +10,46 @@ from benchnav.episode.episode import Episode
 from benchnav.store.manifest import Manifest
 from benchnav.store.results import RESULTS
 from benchnav.store.run_folder import RunFolder
+from benchnav.store.run_path import RunPath
 
 
-def read_episodes(run: Path) -> Iterator[Episode]:
+def read_episodes(run: RunPath) -> Iterator[Episode]:
     """Every scored episode of a run: cell by cell, by seed.
 
-    Raises StoreError where the folder is no run, CorruptPartError for a damaged part.
+    Raises UsageError where ``run`` is no path, StoreError where the folder is no run,
+    CorruptPartError for a damaged part.
     """
-    for part in RunFolder.open(run).parts():
-        yield from part.episodes()
+    parts = RunFolder.open(run).parts()
+    return (episode for part in parts for episode in part.episodes())
 
 
-def read_episodes_in_every_track(run: Path) -> Iterator[Episode]:
+def read_episodes_in_every_track(run: RunPath) -> Iterator[Episode]:
     """The same, each once more for every other track that it stands for.
 
     Raises as `read_episodes` does.
     """
-    cells = RunFolder.open(run).manifest.cells
+    return _in_every_track(RunFolder.open(run))
+
+
+def _in_every_track(run: RunFolder) -> Iterator[Episode]:
+    cells = run.manifest.cells
     also = {(c["scenario"], c["track"], c["navigator"]): c.get("also", ()) for c in cells}
-    for episode in read_episodes(run):
+    for episode in read_episodes(run.path):
         said = episode.identity
         for track in (*also.get((said.scenario, said.track, said.navigator), ()), said.track):
             yield replace(episode, identity=replace(said, track=track))
 
 
-def read_rehearsals(run: Path) -> Iterator[Episode]:
+def read_rehearsals(run: RunPath) -> Iterator[Episode]:
     """Every stored rehearsal of a run: cell by cell, by seed, in order.
 
     Raises as `read_episodes` does.
     """
-    for part in RunFolder.open(run).parts():
-        yield from part.rehearsals()
+    parts = RunFolder.open(run).parts()
+    return (episode for part in parts for episode in part.rehearsals())
 
 
-def read_results(run: Path) -> pa.Table:
+def read_results(run: RunPath) -> pa.Table:
     """The table of `RESULTS` of a run, in every track that an episode stands for.
 
     Raises as `read_episodes` does.

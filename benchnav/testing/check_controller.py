@@ -17,12 +17,13 @@ from benchnav.testing.requirement import Subject, maker, require, require_config
 LOOKAHEAD = 1.0  # [m]
 
 
-def check_controller(controller: Subject) -> None:
+def check_controller(controller: Subject, sensing: Sensing | None = None) -> None:
     """Hold a controller to what every controller must be.
 
     Args:
         controller: a registered name, ``{type: name, …parameters}``, a class, or any
             function that makes a fresh instance.
+        sensing: the sensors of the worlds that it is tried in, as `check_navigator` takes them.
 
     Raises:
         AssertionError: it breaks the contract; the text says how.
@@ -33,7 +34,7 @@ def check_controller(controller: Subject) -> None:
     require(isinstance(made, Controller), f"{name} must derive from Controller.")
     require_config(made)
     named = type(name, (_Guided,), {})  # so that complaints name the controller
-    check_navigator(lambda: named(make()))
+    check_navigator(lambda: named(make()), sensing)
 
 
 class _Guided(Navigator):

@@ -6,18 +6,20 @@ sentence that says what is wrong. How well a navigator does is not asked.
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
 
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import World
+from benchnav.navigation.answer import said, short
 from benchnav.navigation.navigator import Navigator, Need
 from benchnav.plugins import NAVIGATORS
 from benchnav.testing.observations import (
     answers_of,
     briefings_of,
+    called,
     contents,
     masked,
     observations_of,
@@ -30,24 +32,30 @@ from benchnav.testing.requirement import (
     require_config,
     require_same,
 )
-from benchnav.testing.scenes import SENSING, USUAL, renumbered, scene
+from benchnav.testing.scenes import USUAL, renumbered, scene
+from benchnav.testing.sensings import accepted
 
 Make = Callable[[], Navigator]
+Worlds = tuple[World, ...]
 
 
-def check_navigator(navigator: Subject) -> None:
+def check_navigator(navigator: Subject, sensing: Sensing | None = None) -> None:
     """Hold a navigator to what every navigator must be.
 
     Args:
         navigator: a registered name, ``{type: name, …parameters}``, a class, or any
             function that makes a fresh instance.
+        sensing: the sensors of the worlds that it is tried in; None: usual ones, or others that
+            it accepts (`Navigator.unfit`).
 
     Raises:
         AssertionError: it breaks the contract; the text says how.
     """
     make: Make = maker(NAVIGATORS, navigator)
+    check_declaration(make)
+    worlds = _scenes(make(), sensing)
     for check in CHECKS:
-        check(make)
+        check(make, worlds)
 
 
 def check_declaration(make: Make) -> None:
@@ -72,16 +80,16 @@ def check_declaration(make: Make) -> None:
     )
 
 
-def check_answer(make: Make) -> None:
+def check_answer(make: Make, worlds: Worlds) -> None:
     """Finite commands of the right shape, with nothing but what it needs; nothing is changed."""
     navigator = make()
     name, needs = type(navigator).__name__, navigator.required
-    told = briefings_of(_scenes(make), needs, navigator.rehearsal)
+    told = briefings_of(worlds, needs, navigator.rehearsal)
     before = [contents(briefing) for briefing in told]
     with global_generators_untouched(name):
         _call(name, "reset", needs, navigator.reset, told, np.arange(len(told)))
     _unchanged(name, "briefing", before, [contents(briefing) for briefing in told])
-    for observation in observations_of(_scenes(make), needs):
+    for observation in observations_of(worlds, needs):
         copy, shape = contents(observation), (*observation.active.shape, 2)
         with global_generators_untouched(name):
             answer = _call(name, "act", needs, navigator.act, observation)
@@ -93,34 +101,37 @@ def check_answer(make: Make) -> None:
         require(finite, f"{name}.act must return finite commands for all active agents.")
 
 
-def check_repeatable(make: Make) -> None:
+def check_repeatable(make: Make, worlds: Worlds) -> None:
     """The same briefing and observations give the same commands: of another instance too."""
     navigator = make()
     if navigator.reproducible:
-        first, name = answers_of(navigator, _scenes(make)), type(navigator).__name__
-        again = answers_of(navigator, _scenes(make))
+        first, name = answers_of(navigator, worlds), type(navigator).__name__
+        again = answers_of(navigator, worlds)
         require_same(first, again, name, "after a second reset with the same briefings")
-        require_same(first, answers_of(make(), _scenes(make)), name, "in another instance")
+        require_same(first, answers_of(make(), worlds), name, "in another instance")
 
 
-def check_batch(make: Make) -> None:
+def check_batch(make: Make, worlds: Worlds) -> None:
     """A world's commands do not depend on which others share the call, or on where it stands."""
     if not make().reproducible:
         return
-    worlds, together, name = _scenes(make), answers_of(make(), _scenes(make)), type(make()).__name__
-    alone = [answers_of(make(), [world], np.array([7]))[0] for world in worlds]
+    together, name = answers_of(make(), worlds), type(make()).__name__
+    alone = [
+        answers_of(make(), [world], np.array([7]), circumstance="for a world in row 7")[0]
+        for world in worlds
+    ]
     require_same(together, alone, name, "for a world alone as in a batch")
-    turned = answers_of(make(), worlds[::-1], np.array([4, 9, 2]))[::-1]
+    where = "for worlds in rows 4, 9 and 2"
+    turned = answers_of(make(), worlds[::-1], np.array([4, 9, 2]), circumstance=where)[::-1]
     require_same(together, turned, name, "whatever the order of worlds and their rows")
-    padded = answers_of(make(), worlds, padding=3)
+    padded = answers_of(make(), worlds, padding=3, circumstance="with more padding")
     require_same(together, padded, name, "with more padding")
 
 
-def check_order_of_agents(make: Make) -> None:
+def check_order_of_agents(make: Make, worlds: Worlds) -> None:
     """Numbering the agents otherwise renumbers the commands, and does nothing else."""
     if not make().reproducible:
         return
-    worlds = _scenes(make)
     orders = [np.roll(np.arange(len(world.agents))[::-1], 1) for world in worlds]
     other = [renumbered(world, order) for world, order in zip(worlds, orders, strict=True)]
     expected = [a[:, order] for a, order in zip(answers_of(make(), worlds), orders, strict=True)]
@@ -128,28 +139,28 @@ def check_order_of_agents(make: Make) -> None:
     require_same(expected, answers_of(make(), other), name, "whatever the order of agents")
 
 
-def check_rows(make: Make) -> None:
+def check_rows(make: Make, worlds: Worlds) -> None:
     """State belongs to a row: what other rows do, and when they start over, leaves no trace."""
     navigator = make()
     if not navigator.reproducible:
         return
-    kept, disturbing, _ = _scenes(make)
+    kept, disturbing, _ = worlds
     needs, row, other = navigator.required, np.array([0]), np.array([1])
     expected = answers_of(make(), [kept], row)
     asked = navigator.rehearsal
-    navigator.reset(briefings_of([kept, disturbing], needs, asked), np.array([0, 1]))
+    name, call = type(navigator).__name__, partial(called, navigator, "in one row of several")
+    call("reset", briefings_of([kept, disturbing], needs, asked), np.array([0, 1]))
     got = []
     noise = observations_of([disturbing], needs, other)
     for k, observation in enumerate(observations_of([kept], needs, row)):
         if k == 3:
-            navigator.reset(briefings_of([disturbing], needs, asked), other)
-        navigator.act(noise[k % 3])
-        got.append(masked(navigator.act(observation), observation)[0])
-    name = type(navigator).__name__
+            call("reset", briefings_of([disturbing], needs, asked), other)
+        call("act", noise[k % 3])
+        got.append(masked(call("act", observation), observation)[0])
     require_same(expected, [np.stack(got)], name, "whatever happens in other rows")
 
 
-def check_map(make: Make) -> None:
+def check_map(make: Make, worlds: Worlds) -> None:
     """Who says that it uses no map needs none, and answers the same with one."""
     navigator, name = make(), type(make()).__name__
     if navigator.uses_map or not navigator.reproducible:
@@ -158,31 +169,35 @@ def check_map(make: Make) -> None:
         Need.MAP not in navigator.required,
         f"{name} must not need a map where it says that it uses none.",
     )
-    without = answers_of(navigator, _scenes(make))
-    with_map = answers_of(make(), _scenes(make), shown=frozenset({Need.MAP}))
+    without = answers_of(navigator, worlds)
+    with_map = answers_of(make(), worlds, shown=frozenset({Need.MAP}))
     require_same(without, with_map, name, "with a map as without, for it says that it uses none")
 
 
-CHECKS: tuple[Callable[[Make], None], ...] = (
-    check_declaration, check_answer, check_repeatable, check_batch, check_order_of_agents,
+CHECKS: tuple[Callable[[Make, Worlds], None], ...] = (
+    check_answer, check_repeatable, check_batch, check_order_of_agents,
     check_rows, check_map,
 )  # fmt: skip
 
 
-def _scenes(make: Make) -> tuple[World, ...]:
-    """Worlds with unusual sensors, or with those of scenarios where it can drive no others."""
-    navigator = make()
-    for sensing in (SENSING, USUAL):
-        if not navigator.unfit(sensing):
-            return _drawn(sensing)
-    raise AssertionError(
-        f"{type(navigator).__name__} must be able to drive agents with the sensors that scenarios"
-        f" give unless they say otherwise. It cannot: {navigator.unfit(USUAL)}."
-    )
+def _scenes(navigator: Navigator, sensing: Sensing | None) -> Worlds:
+    """Worlds with these sensors, or with some that the navigator can drive with."""
+    name = type(navigator).__name__
+    chosen = accepted(navigator) if sensing is None else sensing
+    if chosen is None:
+        raise AssertionError(
+            f"{name} must be able to drive agents with some sensors. Of all that were tried it"
+            f" accepts none; of those that scenarios usually have, {name}.unfit says:"
+            f" {short(navigator.unfit(USUAL))}. Give the sensors that it is made for:"
+            " check_navigator(…, sensing=Sensing(…))."
+        )
+    why = navigator.unfit(chosen)
+    require(not why, f"{name} must accept the sensing that it is checked with. It says: {why}.")
+    return _drawn(chosen)
 
 
 @lru_cache
-def _drawn(sensing: Sensing) -> tuple[World, ...]:
+def _drawn(sensing: Sensing) -> Worlds:
     drawn = scene(1, 3), scene(2, 5), scene(3, 1)
     return tuple(replace(world, sensing=sensing) for world in drawn)
 
@@ -193,9 +208,13 @@ def _call(
     try:
         return call(*told)
     except Exception as error:
+        hint = (
+            f" Where it is made for certain sensors, {name}.unfit(sensing) must say why it cannot"
+            " drive with others."
+        )
         raise AssertionError(
             f"{name}.{what} must work with what it needs ({', '.join(sorted(needs)) or 'nothing'})"
-            f" and nothing more. It raised {type(error).__name__}: {error}."
+            f" and nothing more. It raised {said(error)}.{hint if needs - {Need.MAP} else ''}"
         ) from error
 
 

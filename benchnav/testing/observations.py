@@ -14,6 +14,7 @@ import numpy as np
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
+from benchnav.navigation.answer import said
 from benchnav.navigation.briefing import Briefing, brief
 from benchnav.navigation.navigator import Navigator, Need
 from benchnav.navigation.observation import Observation
@@ -116,22 +117,37 @@ def answers_of(
     rows: IntArray | None = None,
     padding: int = 0,
     shown: frozenset[Need] = frozenset(),
+    circumstance: str = "",
 ) -> list[FloatArray]:
     """What a navigator commands after a reset: for each world (FRAMES, A, 2), NaN if inactive.
 
-    It is told what it needs, and ``shown`` beyond that.
+    It is told what it needs, and ``shown`` beyond that. Raises AssertionError where it raises,
+    with the ``circumstance``.
     """
     needs = navigator.required | shown
     places = np.arange(len(worlds)) if rows is None else rows
-    navigator.reset(briefings_of(worlds, needs, navigator.rehearsal), places.copy())
+    told = briefings_of(worlds, needs, navigator.rehearsal)
+    called(navigator, circumstance, "reset", told, places.copy())
     frames = [
-        masked(navigator.act(observation), observation)
+        masked(called(navigator, circumstance, "act", observation), observation)
         for observation in observations_of(worlds, needs, places, padding)
     ]
     return [
         np.stack([frame[b, : len(world.agents)] for frame in frames])
         for b, world in enumerate(worlds)
     ]
+
+
+def called(navigator: Navigator, circumstance: str, call: str, *told: Any) -> Any:
+    """What ``reset`` or ``act`` returns. Raises AssertionError, with the rule, where it raises."""
+    try:
+        return getattr(navigator, call)(*told)
+    except Exception as error:
+        name, when = type(navigator).__name__, f" {circumstance}" if circumstance else ""
+        raise AssertionError(
+            f"{name}.{call} must work{when}: what is kept of a world belongs under its row, which"
+            f" reset is given and the observation has as `rows`. It raised {said(error)}."
+        ) from error
 
 
 def masked(answer: Any, observation: Observation) -> FloatArray:

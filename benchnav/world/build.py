@@ -13,6 +13,7 @@ from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.errors import UnsolvableError, UsageError, did_you_mean
 from benchnav.geometry.rotation import angle_of
+from benchnav.plural import counted
 from benchnav.scenario.packing import most_that_fit
 from benchnav.scenario.sampler import sample, support
 from benchnav.scenario.scenario import Scenario
@@ -58,7 +59,7 @@ def build(scenario: Scenario, split: str, seed: int) -> World:
             reasons[str(reason)] += 1
             if reason.team is not None:
                 failed.setdefault((reason.team, reason.part), reason.fault)
-    worst = "; ".join(f"{text} ({n} draws)" for text, n in reasons.most_common(3))
+    worst = "; ".join(f"{text} ({counted(n, 'draw')})" for text, n in reasons.most_common(3))
     raise UnsolvableError(
         f"{scenario.identity}, split {split}, seed {seed}: no world could be drawn in"
         f" {MAX_ATTEMPTS} draws: {worst}.{_said_of_teams(scenario, failed)}"
@@ -97,8 +98,9 @@ def _room(scenario: Scenario, start: RegionStart, radius: float) -> str:
     gap = start.separation
     room = most_that_fit(start.region, scenario.bounds, 2.0 * radius + gap, margin)
     return (
-        f"holds at most {room} agents of radius {radius:g} m that are {gap:g} m apart, packed"
-        " closely and with nothing else there; drawn at random, about half as many find a place."
+        f"holds at most {counted(room, 'agent')} of radius {radius:g} m that are {gap:g} m apart,"
+        " packed closely and with nothing else there; drawn at random, about half as many find"
+        " a place."
     )
 
 

@@ -36,8 +36,8 @@ def test_single_steps_of_pyrvo(steps, scene):
         z["position"][order], z["velocity"][order], z["radius"][order],
         np.ones(order.shape, np.int8), (order >= 0).sum(1),
         z["start"], z["end"], z["before"], z["after"], z["start_convex"], z["end_convex"],
-        z["edge_count"], order.shape[1], 0.0, 0.0, 1.0 / z["horizon"], 1.0 / z["edge_horizon"],
-        answer,
+        z["edge_count"], order.shape[1], 0.0, np.zeros(agents), 1.0 / z["horizon"],
+        1.0 / z["edge_horizon"], answer,
     )  # fmt: skip
     assert np.abs(answer - z["answer"]).max() < 1e-4
     assert np.abs(answer - z["wanted"]).max() > 0.1  # the scene asks for something

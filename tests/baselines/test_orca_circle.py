@@ -42,7 +42,7 @@ def step(position, velocity, goal, setting, dt):
         position[order], velocity[order], np.full(order.shape, setting["radius"] * 1.0),
         np.ones(order.shape, np.int8), count,
         nothing, nothing, nothing, nothing, flag, flag, np.zeros(agents, np.int64),
-        setting["maxNeighbors"], 0.0, 0.0, 1 / setting["timeHorizon"],
+        setting["maxNeighbors"], 0.0, np.zeros(agents), 1 / setting["timeHorizon"],
         1 / setting["timeHorizonObst"], answer,
     )  # fmt: skip
     return position + dt * answer, answer

@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 
 import pytest
 
@@ -90,7 +91,7 @@ def test_an_unfinished_run_says_so_and_a_damaged_one_is_refused(call, run):
     code, _, stderr = call("leaderboard", run)
     assert code == 0
     assert f"{run} holds 2 of 4 episodes" in stderr
-    assert f"missing: seeds 0–1 of {parts[0].parent.name}" in stderr
+    assert f"missing: seeds 0–1 of {parts[0].parent.name.rpartition('.')[0]}" in stderr
     damaged = next(iter(parts[1].parent.glob(f"*{RESULTS_FILE}")))
     damaged.write_bytes(b"x" * damaged.stat().st_size)
     code, stdout, stderr = call("leaderboard", run)
@@ -100,15 +101,34 @@ def test_an_unfinished_run_says_so_and_a_damaged_one_is_refused(call, run):
 
 def test_what_is_no_run_is_refused(call, tmp_path):
     code, _, stderr = call("leaderboard", tmp_path)
-    assert code == 1
+    assert code == 2
     assert "must be a run folder" in stderr
 
 
 def test_another_suites_folder_is_refused_by_both_names(call, suite, run):
-    code, _, stderr = call("run", suite, "--out", run, "--seeds", 3, "--workers", 0)
+    code, _, stderr = call("run", suite, "--out", run, "--navigator", "orca", "--workers", 0)
     assert code == 1
     assert stderr.count("tiny@1 (") == 2
-    assert "They differ in seeds" in stderr
+    assert "They differ in navigators." in stderr
+
+
+def test_a_scenario_by_name_or_file_runs_as_a_suite_of_one(call, suite, tmp_path):
+    chosen = ("--navigator", "straight-line", "--seeds", 1, "--workers", 0)
+    for name, called in (
+        (suite.parent / "open.yaml", "tiny-open@1"),
+        ("trap/u:mouth=3", "trap-u@1"),
+    ):
+        code, stdout, stderr = call("run", name, "--out", tmp_path / called, *chosen)
+        assert code == 0
+        assert f"{called}: 1 scenario × 1 track × 1 navigator × 1 seed" in stderr
+        assert "straight-line" in call("leaderboard", stdout.strip())[1]
+
+
+def test_what_is_neither_suite_nor_scenario_is_answered_with_both(call):
+    code, _, stderr = call("run", "trap/v")
+    assert code == 2
+    assert "the name of a scenario, or a file" in stderr
+    assert "Did you mean 'trap/u'?" in stderr
 
 
 def test_navigators_scenarios_tracks_and_seeds_can_be_chosen(call, suite, tmp_path):
@@ -139,10 +159,17 @@ def test_failures_and_cells_that_are_n_a_are_told(call, suite, tmp_path, monkeyp
         "--navigator", "rude:Maps",
     )  # fmt: skip
     assert code == 0
-    assert "failed: rude:Rude in 4 episodes: act raised ValueError: no at t = 0 s" in stderr
+    reason = "act raised ValueError: no (rude.py:3)"
+    assert f"failed: rude:Rude in 4 episodes: {reason}\n" in stderr
+    assert "Traceback" not in stderr
     assert "n/a: rude:Maps needs a map (unknown), 1 cell" in stderr
     table = call("leaderboard", tmp_path / "o")[1]
     assert "n/a (needs a map)" in table
+    assert f"rude:Rude failed in 2 of 2 worlds: {reason}." in table
+    stderr = call(
+        "run", suite, "--out", tmp_path / "d", "--workers", 0, "--navigator", "rude:Rude", "--debug"
+    )[2]
+    assert 'File "rude.py", line 3, in act\n' in stderr
 
 
 def test_a_metric_that_fails_is_told_at_the_end_and_under_the_table(call, suite, tmp_path):
@@ -158,14 +185,17 @@ def test_a_metric_that_fails_is_told_at_the_end_and_under_the_table(call, suite,
         arguments = ("--workers", "0", "--track", "known")
         code, _, stderr = call("run", suite, "--out", tmp_path / "r", *arguments)
         assert code == 0
-        assert "the metric tests_broken failed for 2 values: ZeroDivisionError: oh" in stderr
+        fault = re.search(
+            r"tests_broken failed for 2 values: (ZeroDivisionError: oh \(\S+\.py:\d+\))\n", stderr
+        )[1]
         for again in ((), ("--recompute",)):
             _, table, _ = call("leaderboard", tmp_path / "r", "--metric", "tests_broken", *again)
-            assert "tests_broken of orca failed in 2 episodes: ZeroDivisionError: oh." in table
+            plain = table.replace("\\_", "_")
+            assert f"tests_broken of orca failed in 2 episodes: {fault}." in plain
             assert "orca is not ranked: undefined in every episode" in table
         _, text, _ = call("leaderboard", tmp_path / "r", "--format", "json")
     finally:
         del METRICS._local["tests_broken"]
     told = {(r["navigator"], r["metric"]): r["fault"] for r in json.loads(text)}
-    assert told["orca", "tests_broken"] == "failed in 2 episodes: ZeroDivisionError: oh"
+    assert told["orca", "tests_broken"] == f"failed in 2 episodes: {fault}"
     assert {fault for (who, _), fault in told.items() if who != "orca"} == {""}

@@ -1,13 +1,13 @@
 """How often 95 % intervals hold the truth, and how often `compare` is wrong about equals.
 
-Smaller than `python -m benchmarks.coverage`, which docs/statistics.md keeps the output of: 1,000
-tables tell a share of 0.95 to ± 0.014 (two standard errors), by which the limits are wider.
+Smaller than `python -m benchmarks.interval_coverage`, whose output docs/statistics.md keeps:
+1,000 tables tell a share of 0.95 to ± 0.014 (two standard errors), by which the limits are wider.
 """
 
 import numpy as np
 import pytest
 
-from benchmarks.coverage import (
+from benchmarks.interval_coverage import (
     APART,
     CORRELATIONS,
     CROWDS,

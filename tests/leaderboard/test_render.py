@@ -52,6 +52,8 @@ def test_markdown_reads_well():
         "| good, 1 failed | 1    | **0.950 [0.777, 0.997]** | 3.9 [3.6, 4.3] s (18) |\n"
         "| bad            | 2    | 0 [0, 0.14]              | –                     |\n"
         "\n"
+        "good failed in 1 of 20 worlds: raised ValueError.  \n"
+        "\n"
         "value [low, high]: mean"
     )
 

@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import Leaderboard, NotApplicable, comparisons, leaderboard
-from benchnav.leaderboard.label import COLUMN as HASH
 from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE
 from tests.leaderboard.tables import METRICS, metric, row, scores, simulated, table
 
+HASH = "navigator_hash"
 NAVIGATORS = ("a", "b", "c", "d")
 
 

@@ -283,10 +283,13 @@ def test_a_leader_that_fails_is_charged_to_the_entry_with_its_reason(suite, tmp_
     episodes = list(read_episodes(tmp_path / "r"))
     bad = [e.world.agents.start[0, 0] < -5.5 for e in episodes]
     assert 0 < sum(bad) < 8
-    reason = (
+    ((_, reason),) = summary.failures
+    assert reason.startswith(
         "in rehearsal 1, 'rehearsing_navigators:Lost' that led: act raised ValueError: lost the way"
-        " at t = 0.6 s"
+        " (rehearsing_navigators.py:"
     )
+    assert reason.endswith(") at t = 0.6 s")
+    assert all(("lost the way" in e.traceback) == b for e, b in zip(episodes, bad, strict=True))
     assert [e.failure for e in episodes] == [reason if b else "" for b in bad]
     assert summary.failures == {("told", reason): sum(bad)}
     assert {e.rehearsals for e in episodes} == {2}  # failed ones rank with the others

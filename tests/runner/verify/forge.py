@@ -83,6 +83,8 @@ def flipped(value):
     if isinstance(value, list):
         middle = len(value) // 2
         return [*value[:middle], flipped(value[middle]), *value[middle + 1 :]] if value else ["x"]
+    if value is None:
+        return "x"
     raise AssertionError(value)
 
 
