@@ -1,17 +1,20 @@
 """Each check is failed by something that deserves it, and says why."""
 
 import random
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from pydantic import BaseModel
 
+from benchnav.arena.sensing import RaySensor
 from benchnav.navigation.controller import Controller
 from benchnav.navigation.navigator import AgentNavigator, Navigator, Need, PluginConfig
 from benchnav.navigation.planner import UNSOLVED, Plan, Planner
 from benchnav.testing.check_controller import check_controller
 from benchnav.testing.check_navigator import check_navigator
 from benchnav.testing.check_planner import START, check_planner
+from benchnav.testing.scenes import USUAL
 
 
 class Good(Navigator):
@@ -312,3 +315,78 @@ def test_an_unsound_planner_is_told_why(bad, sentence):
     with pytest.raises(AssertionError) as complaint:
         check_planner(bad)
     assert str(complaint.value).startswith(sentence)
+
+
+class ByPlace(Good):
+    """Keeps worlds by their place in the call."""
+
+    def reset(self, briefings, rows):
+        self.told = dict(enumerate(briefings))
+
+    def act(self, observation):
+        return np.stack(
+            [self._of(w, int(r)) for w, r in enumerate(observation.rows)]
+        ) * super().act(observation)
+
+    def _of(self, place, row):
+        return np.full((1, 1), self.told[row].dt)
+
+
+class ByCount(ByPlace):
+    def reset(self, briefings, rows):
+        self.told = list(briefings)
+
+
+class ByOrder(ByPlace):
+    def reset(self, briefings, rows):
+        self.told = dict(zip(rows.tolist(), briefings, strict=True))
+
+    def _of(self, place, row):
+        return super()._of(place, place)
+
+
+@pytest.mark.parametrize("navigator", [ByPlace, ByCount, ByOrder])
+def test_a_wrong_row_is_answered_with_a_sentence(navigator):
+    rule = (
+        rf"{navigator.__name__}.act must work for .* row.*: what is kept of a world belongs under"
+    )
+    with pytest.raises(AssertionError, match=rule) as wrong:
+        check_navigator(navigator)
+    assert "test_checks.py:" in str(wrong.value)
+
+
+class Choosy(Good):
+    """Needs certain rays."""
+
+    needs = frozenset({Need.RAYS})
+    count, thick, fan = 9, True, np.pi
+
+    def unfit(self, sensing):
+        rays = sensing.rays
+        fits = (rays.count, rays.thick, rays.fan) == (self.count, self.thick, self.fan)
+        return "" if fits else f"needs {self.count} rays"
+
+    def act(self, observation):
+        assert observation.rays.distance.shape[-1] == self.count
+        return super().act(observation)
+
+
+class AllRound(Choosy):
+    count, thick, fan = 72, False, 2.0 * np.pi
+
+
+class Unheard(Choosy):
+    count, fan = 77, 1.234
+
+
+@pytest.mark.parametrize("navigator", [Choosy, AllRound])
+def test_scenes_have_the_sensors_that_a_navigator_accepts(navigator):
+    check_navigator(navigator)
+
+
+def test_sensors_that_nobody_guesses_may_be_given():
+    with pytest.raises(AssertionError, match=r"accepts none; .*needs 77 rays. .*sensing=Sensing"):
+        check_navigator(Unheard)
+    check_navigator(Unheard, sensing=replace(USUAL, rays=RaySensor(77, 1.234, 8.0, True)))
+    with pytest.raises(AssertionError, match="It says: needs 77 rays"):
+        check_navigator(Unheard, sensing=USUAL)

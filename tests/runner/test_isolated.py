@@ -30,7 +30,9 @@ def nobody_stays():
 
 
 def told(episodes):
-    return {seed: (e.digest, e.failure, e.reproducible) for seed, e in episodes.items()}
+    return {
+        seed: (e.digest, e.failure, e.traceback, e.reproducible) for seed, e in episodes.items()
+    }
 
 
 @pytest.mark.parametrize(
