@@ -65,6 +65,21 @@ def legend(board: Leaderboard) -> tuple[str, ...]:
     return (*LEGEND, PRICE_LEGEND) if priced else LEGEND
 
 
+def failures_and_remarks(leaders: Sequence[Record]) -> list[str]:
+    """The notes on what went wrong in the episodes of navigators."""
+    failures = [f"{r.navigator} failed {_closed(r.failure)}" for r in leaders if r.failure]
+    remarks = [f"Remark of {r.navigator} {_closed(r.remark)}" for r in leaders if r.remark]
+    return failures + remarks
+
+
+def granted(rehearsals: int) -> str:
+    """The note of a table of entries that rehearsed."""
+    return (
+        f"Granted {counted(rehearsals, 'rehearsal')} of each world before it was scored; ranked"
+        " among entries with the same grant alone."
+    )
+
+
 def _key(r: Record) -> tuple[str, ...]:
     """What stands in one table: the scenario is third, role and grant last."""
     variant = r.scenario_hash, f"{r.horizon!r}", f"{r.dt!r}"
@@ -196,8 +211,7 @@ class _Table:
         notes = [
             f"{r.navigator} is not ranked: {r.note}." for r in leaders if r.note and r.episodes
         ]
-        notes += [f"{r.navigator} failed {_closed(r.failure)}" for r in leaders if r.failure]
-        notes += [f"Remark of {r.navigator} {_closed(r.remark)}" for r in leaders if r.remark]
+        notes += failures_and_remarks(leaders)
         notes += [
             f"{metric} of {name} {self.at[name, metric].fault}."
             for name in names
@@ -207,10 +221,7 @@ class _Table:
         if self.verified:
             notes.append("verified: its runs were re-simulated here; timings cannot be verified.")
         if self.rehearsed:
-            notes.append(
-                f"Granted {counted(self.rehearsed, 'rehearsal')} of each world before it was"
-                " scored; ranked among entries with the same grant alone."
-            )
+            notes.append(granted(self.rehearsed))
         return tuple(notes)
 
 

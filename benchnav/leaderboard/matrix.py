@@ -3,10 +3,12 @@
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from benchnav.leaderboard.cell import Cell, cell, entrant, rank
+from benchnav.leaderboard.cell import Cell, cell, entrant, rank, rehearsal, training
+from benchnav.leaderboard.layout import failures_and_remarks, granted
 from benchnav.leaderboard.merit import by_merit
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, NO_MAP, PRICE, Leaderboard, Record
 from benchnav.leaderboard.section import Section
+from benchnav.plural import counted
 
 Place = tuple[bool, str, str, float, float]
 BETTER = {"higher": " (higher is better)", "lower": " (lower is better)", None: ""}
@@ -80,9 +82,9 @@ def _title(records: Sequence[Record], places: Sequence[Place]) -> str:
     priced = first.track == PRICE
     where = "track known less track unknown" if priced else f"track {first.track}"
     where += "" if first.split == "test" else f", split {first.split}"
-    where += f", {first.rehearsal} rehearsals granted" if first.rehearsal else ""
+    where += f", {counted(first.rehearsal, 'rehearsal')} granted" if first.rehearsal else ""
     counts = {r.episodes for r in records if r.episodes and r.scenario != ALL}
-    worlds = f"{counts.pop()} worlds" if len(counts) == 1 else "the worlds"
+    worlds = counted(counts.pop(), "world") if len(counts) == 1 else "the worlds"
     several = f"each scenario, and over all scenarios with {INTERVAL}"
     of = several if len(places) > 1 else f"{places[0][1]}, with {INTERVAL}"
     better = "" if priced else BETTER[first.better]
@@ -104,7 +106,21 @@ def _notes(leaders: Sequence[Record], idle: set[str]) -> tuple[str, ...]:
         elif r.note and r.track != PRICE:
             reasons.setdefault(f"not ranked ({r.note})", []).append(r.navigator)
     notes = [f"{reason}: {', '.join(names)}." for reason, names in reasons.items()]
+    notes += failures_and_remarks([r for r in leaders if r.track != PRICE])
     notes += [f"{r.metric} of {r.navigator} {r.fault}." for r in leaders if r.fault]
     if idle:
         notes.append(f"{NO_MAP}, so that there is no difference: {', '.join(sorted(idle))}.")
-    return tuple(notes)
+    return (*notes, *_costs(leaders))
+
+
+def _costs(leaders: Sequence[Record]) -> Iterator[str]:
+    """What navigators learned and rehearsed, which other formats show in columns."""
+    for title, cost in (("training", training), ("rehearsal of a world", rehearsal)):
+        spent = [f"{r.navigator} {text}" for r in leaders if (text := cost(r).text)]
+        if spent:
+            yield f"{title}: {'; '.join(spent)}."
+    if leaders and leaders[0].rehearsal:
+        yield granted(leaders[0].rehearsal)
+    checked = [r.navigator for r in leaders if r.verified]
+    if checked:
+        yield f"verified, re-simulated here: {', '.join(checked)}."
