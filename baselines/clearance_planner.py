@@ -2,7 +2,7 @@
 
 import math
 from abc import abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -28,7 +28,7 @@ class ClearanceConfig(PluginConfig):
 class ClearancePlanner(Planner):
     """Plans for the disc enlarged by a clearance, by less of it where that finds nothing.
 
-    The clearance is ½, ¼ or ⅛ of what is wanted where start or goal are nearer to an
+    The clearance is ½ or ¼ of what is wanted where start or goal are nearer to an
     obstacle. Where nothing is found with it, ⅛ is tried and then 0.
     """
 
@@ -53,20 +53,21 @@ class ClearancePlanner(Planner):
     def clearances(
         self, map: Map, start: FloatArray, goal: FloatArray, radius: float
     ) -> Iterator[float]:
-        """The largest clearance that both ends allow, ⅛ of what is wanted, 0.
+        """The largest clearance that both ends allow, then ⅛ of what is wanted, then 0.
 
-        None where the start is blocked.
+        Where both ends do not even allow ¼, ⅛ is tried only if one stands in a narrow place. None
+        where the start is blocked.
         """
         wanted = self.config.clearance
-        least = 0.125 * wanted
-        for extra in (wanted, 0.5 * wanted, 0.25 * wanted, least):
-            checker = self.checker(map, radius + extra)
-            if extra > 0.0 and all(checker.point_is_free(*p.tolist()) for p in (start, goal)):
-                yield extra
-                if extra > least:
-                    yield least
-                break
-        if self.checker(map, radius).point_is_free(*start.tolist()):
+        least, ends = 0.125 * wanted, (start, goal)
+        shares = (extra for extra in (wanted, 0.5 * wanted, 0.25 * wanted) if extra > 0.0)
+        first = next((e for e in shares if self._are_free(map, ends, radius + e)), 0.0)
+        if first:
+            yield first
+        tried = least > 0.0 and (first > 0.0 or self._is_narrow(map, ends, radius))
+        if tried and self._are_free(map, ends, radius + least):
+            yield least
+        if self._are_free(map, (start,), radius):
             yield 0.0
 
     def left(
@@ -74,16 +75,28 @@ class ClearancePlanner(Planner):
     ) -> float:
         """[m] What a path that was found with the clearance ``extra`` leaves, as `Plan.clearance`.
 
-        It passes a narrow place where more was allowed at its ends and found nothing, or where
-        an end has no room beside it.
+        It passes a narrow place where nothing was found with what its ends allow, or where an end
+        stands in one.
+        """
+        allowed = next(self.clearances(map, start, goal, radius), 0.0)
+        narrow = extra < allowed or self._is_narrow(map, (start, goal), radius)
+        return extra if narrow else math.inf
+
+    def _are_free(self, map: Map, places: Sequence[FloatArray], reach: float) -> bool:
+        checker = self.checker(map, reach)
+        return all(checker.point_is_free(*place.tolist()) for place in places)
+
+    def _is_narrow(self, map: Map, places: Sequence[FloatArray], radius: float) -> bool:
+        """Whether one has no room beside it, in which the clearance that is wanted is kept.
+
+        Places that are blocked themselves do not count: there a path ends before them.
         """
         wanted = self.config.clearance
-        wide, tight = self.checker(map, radius + wanted), self.checker(map, radius)
-        ends = [p for p in (start, goal) if tight.point_is_free(*p.tolist())]
-        allowed = next(iter(self.clearances(map, start, goal, radius)), 0.0)
-        if extra < allowed or any(free_goal(wide, p, 2.0 * wanted) is None for p in ends):
-            return extra
-        return math.inf
+        wide = self.checker(map, radius + wanted)
+        return any(
+            self._are_free(map, (place,), radius) and free_goal(wide, place, 2.0 * wanted) is None
+            for place in places
+        )
 
 
 def problem(start: FloatArray, goal: FloatArray, radius: float, tolerance: float) -> str:

@@ -54,7 +54,9 @@ def test_a_plan_says_how_little_room_a_narrow_place_leaves(planner):
 
 def test_an_end_beside_one_wall_is_not_a_narrow_place():
     assert plan("navmesh", 1.2, start=(9.58, 6.0)).clearance == np.inf
+    assert plan("navmesh", 1.2, start=(9.595, 6.0)).clearance == np.inf
     assert plan("navmesh", 0.66, start=(10.0, 10.0)).clearance <= 0.03
+    assert 0.0 < plan("navmesh", 0.62, start=(10.0, 10.0)).clearance <= 0.01
 
 
 def episode(navigator, gap):
