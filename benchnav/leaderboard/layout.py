@@ -26,8 +26,8 @@ LEGEND = (
     " that ranks; 1–3 is a tie.",
     "Significant: the paired 95 % interval over the worlds excludes 0, after Holm. Scenarios are"
     " fixed: a rank holds for other seeds of these.",
-    "Bold: not significantly worse than any other entry; nothing is bold where all tie."
-    " A failed episode counts as the worst: success 0, collided 1.",
+    "Bold: not significantly worse than any other entry; nothing is bold where all tie.",
+    "A failed episode counts as the worst: success 0, collided 1.",
 )
 
 
