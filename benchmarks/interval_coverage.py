@@ -26,7 +26,8 @@ TABLES = 2000
 WORLDS = (50, 100, 200)
 RATES = (0.01, 0.02, 0.05, *(k / 10 for k in range(1, 10)), 0.95, 0.98, 0.99)
 APART = 0.1  # between the rates of two navigators that differ
-WITHIN = (0.93, 0.97)  # what is asked for rates of 0.05 to 0.95; beyond, the first alone
+WITHIN = (0.93, 0.97)  # what is asked; near 0 and 1, where few worlds tell, the first alone
+EDGE, DIFFERENCE_EDGE = 0.05, 0.1  # how near, of rates and of their differences
 
 
 CORRELATIONS = ((1, 0.0), (4, 0.1), (4, 0.3), (10, 0.1))  # agents, correlation within a world
@@ -105,13 +106,15 @@ def mean_coverage(shape: str, worlds: int, tables: int, percentiles: bool = Fals
     return held(found.low, found.high, truth)
 
 
-def asked(chance: float, share: float) -> bool:
-    """Whether a coverage is what is asked of a rate."""
+def asked(chance: float, share: float, edge: float = EDGE) -> bool:
+    """Whether a coverage is what is asked of a rate; nearer than ``edge`` to 0 or 1, at least."""
     low, high = WITHIN
-    return share >= low and (share <= high or not 0.05 <= chance <= 0.95)
+    return share >= low and (share <= high or not edge <= chance <= 1 - edge)
 
 
-def cells(measure: Callable[[float, int], float], tables: int) -> tuple[str, ...]:
+def cells(
+    measure: Callable[[float, int], float], tables: int, edge: float = EDGE
+) -> tuple[str, ...]:
     """Coverage at each of `RATES`, and whether all are what is asked.
 
     2,000 tables tell a coverage to ± 0.01: what falls outside is measured again (*) with
@@ -120,9 +123,9 @@ def cells(measure: Callable[[float, int], float], tables: int) -> tuple[str, ...
     texts, good = [], True
     for p in RATES:
         share, mark = measure(p, tables), ""
-        if not asked(p, share):
+        if not asked(p, share, edge):
             share, mark = measure(p, 10 * tables), "*"
-            good &= asked(p, share)
+            good &= asked(p, share, edge)
         texts.append(f"{share:.3f}{mark}")
     return (*texts, "yes" if good else "no")
 
@@ -144,7 +147,7 @@ def difference_rows(tables: int) -> Iterator[Row]:
     for crowd, apart, n in product(CROWDS, (0.0, APART), WORLDS):
         measure = partial(difference_coverage, apart=apart, crowd=crowd, worlds=n)
         name = f"{apart:g} nearer ½" if apart else "as A"
-        yield (crowd.name, name, f"{n}", *cells(measure, tables))
+        yield (crowd.name, name, f"{n}", *cells(measure, tables, DIFFERENCE_EDGE))
 
 
 def mean_rows(tables: int) -> Iterator[Row]:

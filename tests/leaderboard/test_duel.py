@@ -35,12 +35,12 @@ def words(rows, first, second, *names):
 def test_a_difference_is_told_in_words():
     (line,) = words(ROWS, "bad", "good")
     assert line.startswith(
-        "- leaders/static@1, track unknown (20 worlds): bad succeeds 100 points less often [8"
+        "- leaders/static@1, track unknown (20 worlds): bad succeeds 100 points less often [85, "
     )
     assert line.endswith("; by chance less than once in 10,000 times.")
     lines = words(ROWS, "good", "fair")
     assert len(lines) == 3
-    assert "good succeeds 50 points more often [2" in lines[0]
+    assert "good succeeds 50 points more often [25, 75]" in lines[0]
     assert lines[2].startswith("- all scenarios, track unknown (40 worlds): good succeeds 50 ")
 
 

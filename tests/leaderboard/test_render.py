@@ -67,10 +67,21 @@ def test_unranked_entries_come_last_with_their_reason(board):
     assert re.match(r"\| mapper +\| – +\| n/a \(needs a map\) +\|", first[-1])
 
 
-def test_ties_are_bold_only_where_somebody_is_worse():
+@pytest.mark.parametrize("format", ["markdown", "latex", "html"])
+def test_nothing_is_bold_where_all_tie_and_the_legend_says_so(format):
+    marks = {"markdown": "**", "latex": "textbf{", "html": "<strong>"}
     tied = leaderboard(table(scores({"a": [1.0, 0.0], "b": [0.0, 1.0]})), METRICS)
-    assert "**" not in render(tied, "markdown").split("value [")[0]
-    assert "| 1–2 " in render(tied, "markdown")
+    text = render(tied, format)
+    assert marks[format] not in text
+    assert "Bold: not significantly worse than any other entry; nothing is bold where all" in text
+    one = leaderboard(table(scores({"a": [1.0] * 20, "b": [0.0] * 20})), METRICS)
+    assert render(one, format).count(marks[format]) == (2 if format == "markdown" else 1)
+
+
+def test_the_legend_says_what_a_rank_means(board):
+    text = " ".join(render(board, "markdown").split())
+    assert "Scenarios are fixed: a rank holds for other seeds of these." in text
+    assert "the paired 95 % interval over the worlds excludes 0, after Holm" in text
 
 
 def test_many_metrics_stand_below_each_other():
