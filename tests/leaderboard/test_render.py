@@ -106,7 +106,7 @@ def test_another_split_is_named():
 def test_other_coverage_is_explained_below_the_table():
     rows = scores({"a": [1.0, 0.0], "b": [1.0, 0.0], "c": [1.0, None]})
     text = render(leaderboard(table(rows), METRICS), "markdown")
-    assert "c is not ranked: attempted 1 worlds and not the same 2 as those that are." in text
+    assert "c is not ranked: attempted 1 world and not the same 2 as those that are." in text
 
 
 def test_the_aggregate_shows_the_middle_half(board):
