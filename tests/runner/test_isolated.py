@@ -180,7 +180,8 @@ def test_the_suite_knows_of_isolated_navigators_what_it_knows_of_others():
 def test_what_another_process_cannot_import_is_refused():
     @NAVIGATORS.register("of-this-process")
     class Local(AgentNavigator):
-        pass
+        def act_agent(self, view, briefing):
+            return view.goal - view.position
 
     try:
         with pytest.raises(UsageError, match="registered in this process alone"):
