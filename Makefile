@@ -16,7 +16,7 @@ $(READY): pyproject.toml setup.py constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "benchnav needs Python 3.11 or newer, this is " + sys.version)'
 	@$(STEP) 'Making the environment $(VENV)' $(PYTHON) -m venv $(VENV)
 	@$(STEP) 'Installing pip and setuptools' $(PIP) --upgrade 'pip>=25.1' setuptools
-	@$(STEP) 'Installing benchnav with all it needs (minutes)' $(PIP) -e '.[all]' --group dev
+	@$(STEP) 'Installing benchnav (minutes)' $(PIP) -e '.[all]' --group dev
 	@touch $@
 
 run: $(READY)  ## the suite `quick`, and its leaderboard

@@ -27,7 +27,8 @@ def main() -> None:
             reader.join(0.5)
             if monotonic() - shown > (0.5 if sys.stdout.isatty() else EVERY):
                 shown = monotonic()
-                show(f"{text} … {shown - begin:.0f} s  {lines[-1]}")
+                now = next(line for line in reversed(lines) if not line.startswith("WARNING"))
+                show(f"{text} … {shown - begin:.0f} s  {now}")
     if process.returncode:
         show(f"{text}: failed\n")
         print("\n".join(lines[1:]), file=sys.stderr)
