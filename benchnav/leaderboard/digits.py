@@ -11,6 +11,7 @@ PREFIXES = {  # unit → what it is divided by, and then called
 ROUNDING = 1e-12  # smaller numbers are left over from arithmetic
 NARROWEST = 1e-6  # width of an interval, relative to its numbers, that still chooses the digits
 SMALLEST, LARGEST = 1e-4, 1e6  # numbers outside are written with an exponent
+FIGURES_ALONE = 4  # at most, of a number whose interval is not shown
 TWO_FIGURES = 3.0  # a half-width whose first figure is below this has a second one
 
 
@@ -69,13 +70,17 @@ def figures(
 
 
 def figure(value: float, low: float, high: float, whole: float | None = None) -> str:
-    """Return ``value`` alone, with the decimals that its interval resolves.
+    """Return ``value`` alone, with the decimals that its interval resolves, to four figures.
 
     One more is shown where it would look like 0 or ``whole`` and is not.
     """
     grid, numbers, suffix = _grid((value, low, high), whole)
     if grid is None:
         return number(value, whole)
+    if numbers[0] != 0.0:
+        grid = replace(
+            grid, places=min(grid.places, max(0, FIGURES_ALONE - 1 - _power(numbers[0])))
+        )
     if grid.hides_end(numbers[0]):
         grid = replace(grid, places=grid.places + 1)
     text = grid.bound(numbers[0])

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from benchnav.leaderboard.digits import NARROWEST, figures, number, signed
+from benchnav.leaderboard.digits import LARGEST, NARROWEST, figure, figures, number, signed
 
 RATES = st.floats(0.0, 1.0)
 NUMBERS = st.floats(-1e9, 1e9)
@@ -17,8 +17,9 @@ def intervals(numbers):
     return st.tuples(numbers, numbers, numbers).map(sorted).map(lambda x: (x[1], x[0], x[2]))
 
 
-def same(a, b):
-    return math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12)
+def same(a, b, scale=1.0):
+    """Whether they differ by rounding only; large numbers share an exponent, which scales it."""
+    return math.isclose(a, b, rel_tol=1e-9, abs_tol=1e-12 * (scale if scale >= LARGEST else 1.0))
 
 
 def resolved(value, low, high):
@@ -65,13 +66,21 @@ def test_decimals_follow_the_width(numbers, text):
     assert f"{value} [{low}, {high}]" == text
 
 
+def test_a_value_alone_has_at_most_four_figures():
+    assert figure(0.998743, 0.998741, 0.998745, 1.0) == "0.9987"
+    assert figure(9.83861, 9.83859, 9.83863) == "9.839"
+    assert figure(0.999987, 0.999985, 0.999989, 1.0) == "0.99999"
+    assert figure(1234.567, 1234.563, 1234.571) == "1235"
+
+
 @given(intervals(RATES) | intervals(NUMBERS) | intervals(st.floats(-1e-6, 1e-6)))
 @example((0.995, 0.9949, 0.99501))
+@example((1e-5, 0.0, 1e8))
 def test_what_differs_does_not_look_alike(numbers):
     resolved(*numbers)
     texts = figures(*numbers, 1.0)
     for k in (1, 2):
-        assert (texts[0] == texts[k]) == same(numbers[0], numbers[k])
+        assert (texts[0] == texts[k]) == same(numbers[0], numbers[k], max(map(abs, numbers)))
     assert texts[1] != texts[2]
 
 
