@@ -5,17 +5,19 @@ BIN := $(VENV)/bin
 OUT ?= runs/quick
 READY := $(VENV)/.ready
 PEERS := .venv-peers
+STEP := $(PYTHON) .ci/step.py
+PIP := $(BIN)/python -m pip install -c constraints.txt
 
-.PHONY: setup run test test-all check lint types layers bench clean
+.PHONY: setup run test test-all wheels check lint types layers bench clean
 
 setup: $(READY)  ## .venv with everything, at the versions of constraints.txt
 
-$(READY): pyproject.toml constraints.txt
-	$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "benchnav needs Python 3.11 or newer, this is " + sys.version)'
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --upgrade -c constraints.txt 'pip>=25.1' setuptools
-	$(BIN)/python -m pip install --quiet -c constraints.txt -e '.[all]' --group dev
-	touch $@
+$(READY): pyproject.toml setup.py constraints.txt
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11) and "benchnav needs Python 3.11 or newer, this is " + sys.version)'
+	@$(STEP) 'Making the environment $(VENV)' $(PYTHON) -m venv $(VENV)
+	@$(STEP) 'Installing pip and setuptools' $(PIP) --upgrade 'pip>=25.1' setuptools
+	@$(STEP) 'Installing benchnav (minutes)' $(PIP) -e '.[all]' --group dev
+	@touch $@
 
 run: $(READY)  ## the suite `quick`, and its leaderboard
 	$(BIN)/benchnav run quick --out $(OUT)
@@ -39,13 +41,16 @@ test: check $(READY)  ## all checks, and all tests but the long ones
 test-all: check $(READY)  ## all checks and tests, as CI runs them
 	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal
 
+wheels: $(READY)  ## the built wheel, on every Python that is found
+	$(BIN)/python .ci/try_wheels.py
+
 bench: $(READY) $(PEERS)/.ready  ## speed against peers and limits; writes docs/benchmarks.md
 	$(BIN)/python -m benchmarks --peers $(PEERS)/bin/python --out docs/benchmarks.md
 
 $(PEERS)/.ready: benchmarks/constraints.txt
-	$(PYTHON) -m venv $(PEERS)
-	$(PEERS)/bin/python -m pip install --quiet -r benchmarks/constraints.txt
-	touch $@
+	@$(STEP) 'Making the environment $(PEERS)' $(PYTHON) -m venv $(PEERS)
+	@$(STEP) 'Installing the peers' $(PEERS)/bin/python -m pip install -r benchmarks/constraints.txt
+	@touch $@
 
 clean:
 	rm -rf $(VENV) $(PEERS) build dist *.egg-info

@@ -1,7 +1,8 @@
-"""All measurements as one table: ``python -m benchmarks [--peers PYTHON] [--out FILE]``."""
+"""All measurements as one table: ``python -m benchmarks --peers PYTHON [--out FILE]``."""
 
 import argparse
 import platform
+import sys
 from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -13,15 +14,17 @@ PACKAGES = ("benchnav", "numpy", "numba", "shapely", "pyarrow")
 
 
 def main() -> None:
-    """Measure, print, and keep the table where asked."""
+    """Measure and print; keep the table where asked, unless a row was not measured."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--peers", help="interpreter that has pyrvo and navground")
+    parser.add_argument("--peers", required=True, help="interpreter that has pyrvo and navground")
     parser.add_argument("--out", type=Path, help="Markdown file that keeps the table")
     arguments = parser.parse_args()
     rows = crowd_rows(orca_peers.measure(arguments.peers))
     rows += leader_arena.measure() + end_to_end.measure() + isolation.measure()
     text = page(rows)
     print(text)
+    if missing := [f"{row['name']}: {row['note']}" for row in rows if "note" in row]:
+        sys.exit("\n".join(["Not measured, so no table was kept:", *missing]))
     if arguments.out:
         arguments.out.write_text(text)
 
@@ -35,7 +38,8 @@ def crowd_rows(measured: list[dict[str, object]]) -> list[dict[str, object]]:
             continue
         name = f"ORCA crowd of 1,000 against {peer['name']} {peer.get('version', '')}".strip()
         if "ratio" not in peer:
-            rows.append({"name": name, "note": str(peer.get("skipped", "not measured"))})
+            cause = peer.get("skipped") or own["skipped"]
+            rows.append({"name": name, "note": str(cause)})
             continue
         rows.append(
             {

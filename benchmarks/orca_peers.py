@@ -9,7 +9,7 @@ others within 10 m, time step 0.25 s. What is timed, after the same warm-up of 2
 - navground: the update of a world of ORCA agents.
 
 Every measurement runs in an interpreter of its own; the parts take turns, and the
-best of three rounds counts. ``python benchmarks/orca_peers.py [PEERS_PYTHON]`` prints
+best of three rounds counts. ``python -m benchmarks.orca_peers PEERS_PYTHON`` prints
 the rows; PEERS_PYTHON is an interpreter that has pyrvo and navground.
 """
 
@@ -22,6 +22,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+ROOT = Path(__file__).resolve().parents[1]
 AGENTS, CIRCLE, RADIUS = 1000, 100.0, 0.2  # [m]
 NEIGHBOURS, RANGE, HORIZON = 10, 10.0, 5.0  # [m], [s]
 SPEED, LIMIT, DT = 1.0, 1.5, 0.25  # [m/s], [m/s], [s]
@@ -145,9 +146,13 @@ def answer(part: str) -> dict[str, Any]:
 
 
 def ask(python: str, part: str) -> dict[str, Any]:
-    """Run one part in an interpreter of its own."""
-    command = [python, str(Path(__file__).resolve()), "--part", part]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    """Run one part in an interpreter of its own.
+
+    It runs as a module: the folder of a script comes first on the path, where a file of
+    ours may have the name of a package that a library imports.
+    """
+    command = [python, "-m", "benchmarks.orca_peers", "--part", part]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
     if done.returncode != 0 or not done.stdout:
         last = done.stderr.strip().splitlines()[-1:] or ["no output"]
         return {"skipped": f"{part} failed: {last[0]}"}
@@ -155,7 +160,7 @@ def ask(python: str, part: str) -> dict[str, Any]:
     return told
 
 
-def measure(peers_python: str | None = None) -> list[dict[str, Any]]:
+def measure(peers_python: str) -> list[dict[str, Any]]:
     """One row for each part: agent-steps per second, and the ratio of benchnav's to it.
 
     Rows have ``name``, ``version``, ``agent_steps_per_second``, ``ratio`` and ``wanted``
@@ -165,9 +170,7 @@ def measure(peers_python: str | None = None) -> list[dict[str, Any]]:
     rounds: dict[str, list[dict[str, Any]]] = {part: [] for part in PARTS}
     for _ in range(ROUNDS):
         for part, python in pythons.items():
-            if python is None:
-                rounds[part].append({"skipped": "no interpreter with the peers was given"})
-            elif not (rounds[part] and "skipped" in rounds[part][0]):
+            if not (rounds[part] and "skipped" in rounds[part][0]):
                 rounds[part].append(ask(python, part))
     best = {part: _best(told) for part, told in rounds.items()}
     ours = best["benchnav"].get("agent_steps_per_second")
@@ -191,5 +194,5 @@ if __name__ == "__main__":
     if sys.argv[1:2] == ["--part"]:
         print(json.dumps(answer(sys.argv[2])))
     else:
-        for row in measure(*sys.argv[1:2]):
+        for row in measure(sys.argv[1]):
             print(row)

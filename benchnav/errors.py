@@ -16,6 +16,7 @@ BenchnavError
 ├── TrainingError            learning went wrong: a number that is no longer finite
 ├── NavigatorError           a navigator raised, answered garbage, or broke its contract
 └── StoreError               what lies on disk
+    ├── NoRunError           there is no run where one was named (exit status 2)
     ├── RunConflictError     the folder holds another suite's run, or another process writes it
     └── CorruptPartError     a part is cut short, changed or missing
 
@@ -92,6 +93,10 @@ class NavigatorError(BenchnavError):
 
 class StoreError(BenchnavError):
     """Something on disk is not what it must be."""
+
+
+class NoRunError(StoreError):
+    """There is no run where one was named."""
 
 
 class RunConflictError(StoreError):

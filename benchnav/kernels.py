@@ -9,12 +9,10 @@ calls does, in another file; it would go on running the old code. So the cache l
 in a folder named after everything that kernels of a package are made of.
 """
 
-import getpass
 import hashlib
 import os
 import shutil
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from functools import lru_cache
@@ -25,18 +23,20 @@ import numba
 from numba import njit
 from numba.core import config
 
+from benchnav.user_folders import UserFolder, user_cache
+
 F = TypeVar("F", bound=Callable[..., Any])
 _HERE = Path(__file__).parent
 _CONSTANTS = ("arena", "episode")  # packages whose enumerations kernels freeze
 
 
 def kernel(function: F) -> F:
-    """Compile once per signature, cached on disk."""
+    """Compile once per signature, cached on disk where there is a folder for it."""
+    folder = cache_folder(function.__module__.partition(".")[0])
     settings = vars(config)
     theirs = settings["CACHE_DIR"]
-    if not theirs:
-        settings["CACHE_DIR"] = str(cache_folder(function.__module__.partition(".")[0]))
-    compiled: F = njit(function, cache=True, nogil=True, error_model="numpy")
+    settings["CACHE_DIR"] = str(folder or theirs)
+    compiled: F = njit(function, cache=folder is not None, nogil=True, error_model="numpy")
     settings["CACHE_DIR"] = theirs  # other packages keep their kernels where they did
     return compiled
 
@@ -52,8 +52,8 @@ def inlined(function: F) -> F:
 
 
 @lru_cache
-def cache_folder(package: str) -> Path:
-    """Where compiled kernels of a top-level package are kept: one folder per state of the code."""
+def kernels_name(package: str) -> str:
+    """Name the state of the code that a top-level package's kernels are compiled from."""
     digest = hashlib.blake2b(numba.__version__.encode(), digest_size=8)
     source = getattr(sys.modules.get(package), "__file__", None)
     roots = {_HERE, Path(source).parent if source else _HERE}
@@ -62,21 +62,35 @@ def cache_folder(package: str) -> Path:
             text = path.read_bytes()
             if b"@kernel" in text or b"@inlined" in text or path.parent.name in _CONSTANTS:
                 digest.update(text)
-    folder = _base() / f"kernels-{digest.hexdigest()}"
+    return f"kernels-{digest.hexdigest()}"
+
+
+@lru_cache
+def cache_folder(package: str) -> Path | None:
+    """Return where compiled kernels of a top-level package are kept; None where nowhere."""
+    base = cache_base().path
+    if base is None:
+        return None
+    folder = base / kernels_name(package)
     if not folder.exists():
-        _forget_old(folder.parent)
+        _forget_old(base)
     return folder
 
 
-def _base() -> Path:
-    """The user's cache; or a folder of the user's own among the temporary files."""
-    home = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    existing = next(path for path in (home, *home.parents) if path.exists())
-    if os.access(existing, os.W_OK):
-        return home / "benchnav"
-    base = Path(tempfile.gettempdir()) / f"benchnav-{getpass.getuser()}"
-    base.mkdir(mode=0o700, exist_ok=True)
-    return base
+def cache_base() -> UserFolder:
+    """Return the folder of all compiled kernels: ``$NUMBA_CACHE_DIR``, or the user's cache."""
+    named = str(vars(config)["CACHE_DIR"])
+    if not named:
+        return user_cache()
+    base = Path(named).absolute()
+    try:
+        base.mkdir(parents=True, exist_ok=True)
+        if os.access(base, os.R_OK | os.W_OK | os.X_OK):
+            return UserFolder(base)
+        cause = "Permission denied"
+    except OSError as error:
+        cause = str(error.strerror)
+    return UserFolder(user_cache().path, f"NUMBA_CACHE_DIR={named} cannot be used ({cause})")
 
 
 def _forget_old(base: Path) -> None:

@@ -3,10 +3,12 @@
 Names are read from installed distributions without importing anything. What ships
 with benchnav is registered through the same entry points as anybody's plugin. A
 script or notebook registers with a decorator, and ``module:attribute`` is accepted
-wherever a name is.
+wherever a name is. A kind may name its contract, by which plugins of the wrong type are
+found: it is a function of a higher layer, loaded by its name as plugins are.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
@@ -15,9 +17,11 @@ from typing import Any, TypeVar
 from benchnav.errors import (
     BrokenPluginError,
     PluginConflictError,
+    PluginError,
     UnknownPluginError,
     did_you_mean,
 )
+from benchnav.named_module import load_by_module
 
 T = TypeVar("T")
 
@@ -37,17 +41,25 @@ class Registry:
 
     group: str  # entry-point group, "benchnav.navigators"
     kind: str  # "navigator", for messages
+    contract: str = ""  # "module:function": (name, plugin) -> what it must be; "" if it is that
     _local: dict[str, tuple[Any, str]] = field(default_factory=dict)
     _found: dict[str, list[EntryPoint]] | None = None
 
     def register(self, name: str) -> Callable[[T], T]:
         """Decorator that registers in this process only.
 
-        Raises PluginConflictError where the name is taken by something else.
+        Raises PluginConflictError where the name is taken by something else, and PluginError
+        where the name or the plugin is one that a run would refuse.
         """
+        if not isinstance(name, str) or not name.strip() or ":" in name:
+            raise PluginError(
+                f"A {self.kind} must be registered under a name, which is text without ':':"
+                f" @benchnav.register_{self.kind}('my-name'). Got {name!r} instead."
+            )
 
         def decorate(thing: T) -> T:
-            value = f"{getattr(thing, '__module__', '?')}:{getattr(thing, '__qualname__', thing)}"
+            value = _value(thing)
+            self._require_contract(name, thing, value)
             taken = self._local.get(name)
             if taken is not None and taken[1] != value:
                 raise self._conflict(name, [taken[1], value])
@@ -62,9 +74,25 @@ class Registry:
         """Every name, sorted, without importing anything."""
         return sorted({*self._entries(), *self._local})
 
+    def __contains__(self, name: str) -> bool:
+        return name in self._local or name in self._entries()
+
     def is_local(self, name: str) -> bool:
         """True where ``name`` is known in this process alone."""
         return name in self._local
+
+    def registered(self, value: str) -> Any:
+        """Return what was registered in this process and is defined at ``value``; else None."""
+        return next((thing for thing, place in self._local.values() if place == value), None)
+
+    def registrations(self) -> "list[Registration]":
+        """Return all that was registered in this process."""
+        return [(self.group, name, value) for name, (_, value) in self._local.items()]
+
+    def adopt(self, name: str, value: str) -> None:
+        """Register what stands at ``value``, as another process did; nothing if it is not there."""
+        with suppress(BrokenPluginError):
+            self._local[name] = (self._load_by_module(value), value)
 
     def source(self, name: str) -> Source:
         """Where ``name`` comes from."""
@@ -80,7 +108,7 @@ class Registry:
         Raises:
             UnknownPluginError: no such name.
             PluginConflictError: two distributions claim it.
-            BrokenPluginError: it fails to import.
+            BrokenPluginError: it fails to import, or is of the wrong type.
         """
         if name in self._local:
             return self._local[name][0]
@@ -88,12 +116,14 @@ class Registry:
             return self._load_by_module(name)
         entry = self._entry(name)
         try:
-            return entry.load()
-        except Exception as error:
+            thing = entry.load()
+        except (Exception, SystemExit) as error:
             raise BrokenPluginError(
                 f"The {self.kind} {name!r} cannot be used: {type(error).__name__}: {error}"
                 f" (while importing {entry.value}, from {_source(entry).distribution})."
             ) from error
+        self._require_contract(name, thing, f"{entry.value}, from {_source(entry).distribution}")
+        return thing
 
     def broken(self) -> Iterator[tuple[str, str]]:
         """(name, cause) of every plugin that cannot be loaded. Imports everything."""
@@ -126,13 +156,23 @@ class Registry:
         return entries[name][0]
 
     def _load_by_module(self, name: str) -> Any:
-        module, _, attribute = name.partition(":")
         try:
-            return getattr(import_module(module), attribute)
-        except Exception as error:
+            thing = load_by_module(name)
+        except (Exception, SystemExit) as error:
+            told = str(error) if isinstance(error, PluginError) else _said(error)
+            raise BrokenPluginError(f"The {self.kind} {name!r} cannot be used: {told}") from error
+        self._require_contract(name, thing, _value(thing))
+        return thing
+
+    def _require_contract(self, name: str, thing: Any, origin: str) -> None:
+        if not self.contract:
+            return
+        module, _, function = self.contract.partition(":")
+        rule = getattr(import_module(module), function)(name, thing)
+        if rule:
             raise BrokenPluginError(
-                f"The {self.kind} {name!r} cannot be used: {type(error).__name__}: {error}."
-            ) from error
+                f"The {self.kind} {name!r} must {rule}. Got {_kind_of(thing)} ({origin})."
+            )
 
     def _conflict(self, name: str, claims: list[str]) -> PluginConflictError:
         return PluginConflictError(
@@ -141,18 +181,55 @@ class Registry:
         )
 
 
+def _value(thing: Any) -> str:
+    """Where a plugin was written; a metric was where its function was."""
+    named = thing if hasattr(thing, "__qualname__") else getattr(thing, "function", thing)
+    return f"{getattr(named, '__module__', '?')}:{getattr(named, '__qualname__', named)}"
+
+
+def _kind_of(thing: Any) -> str:
+    if isinstance(thing, type):
+        return f"the class {thing.__qualname__}"
+    called = getattr(thing, "__qualname__", "")
+    return f"the {type(thing).__name__} {called}" if called else f"a {type(thing).__name__}"
+
+
+def _said(error: BaseException) -> str:
+    return f"{type(error).__name__}: {error}."
+
+
 def _source(entry: EntryPoint) -> Source:
     dist = entry.dist
     owner = f"{dist.name} {dist.version}" if dist is not None else "an unknown distribution"
     return Source(entry.name, owner, entry.value)
 
 
-NAVIGATORS = Registry("benchnav.navigators", "navigator")
-PLANNERS = Registry("benchnav.planners", "planner")
-CONTROLLERS = Registry("benchnav.controllers", "controller")
-METRICS = Registry("benchnav.metrics", "metric")
+_CLASSES = "benchnav.navigation.contract"
+
+NAVIGATORS = Registry("benchnav.navigators", "navigator", f"{_CLASSES}:navigator_rule")
+PLANNERS = Registry("benchnav.planners", "planner", f"{_CLASSES}:planner_rule")
+CONTROLLERS = Registry("benchnav.controllers", "controller", f"{_CLASSES}:controller_rule")
+METRICS = Registry("benchnav.metrics", "metric", "benchnav.metrics.contract:metric_rule")
 SCENARIOS = Registry("benchnav.scenarios", "scenario")
-TRAINERS = Registry("benchnav.trainers", "trainer")
+TRAINERS = Registry("benchnav.trainers", "trainer", "benchnav.envs.trainer:trainer_rule")
+
+Registration = tuple[str, str, str]
+"""(group, name, module:attribute)"""
+
+
+def registrations() -> list[Registration]:
+    """Return what was registered in this process, of every kind that episodes are made with."""
+    return [one for registry in _FOR_WORKERS for one in registry.registrations()]
+
+
+def adopt(registrations: Iterable[Registration]) -> None:
+    """Register what another process did, as far as it can be imported here."""
+    by_group = {registry.group: registry for registry in _FOR_WORKERS}
+    for group, name, value in registrations:
+        by_group[group].adopt(name, value)
+
+
+_FOR_WORKERS = (NAVIGATORS, PLANNERS, CONTROLLERS)
 
 register_navigator = NAVIGATORS.register
 register_planner = PLANNERS.register

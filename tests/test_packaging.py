@@ -1,9 +1,15 @@
 """pyproject.toml says what the folders are, and layers import downwards only."""
 
 import ast
+import csv
+import subprocess
+import sys
+import sysconfig
 import tomllib
+import venv
 from importlib import import_module
 from pathlib import Path
+from zipfile import ZipFile
 
 import pytest
 
@@ -63,6 +69,44 @@ def test_entry_points_lead_somewhere(value):
         if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.Assign)
     }
     assert name in names or hasattr(import_module(module), name)
+
+
+@pytest.fixture(scope="module")
+def editable(tmp_path_factory):
+    """The Python of an environment that holds nothing but the editable install."""
+    folder = tmp_path_factory.mktemp("editable")
+    build = f"from setuptools.build_meta import build_editable; build_editable({str(folder)!r})"
+    subprocess.run([sys.executable, "-c", build], cwd=ROOT, check=True, capture_output=True)
+    venv.create(folder / "env", symlinks=True)
+    site = sysconfig.get_path("purelib", vars={"base": str(folder / "env")})
+    with ZipFile(next(folder.glob("*.whl"))) as wheel:
+        wheel.extractall(site)
+    return folder / "env" / "bin" / "python", Path(site)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(FOLDERS))
+def test_the_editable_install_wins_over_a_folder_of_its_name(editable, tmp_path, name):
+    python, _ = editable
+    (tmp_path / "benchnav").symlink_to(ROOT)
+    (tmp_path / "benchnav_baselines").mkdir()
+    code = f"import {name}; print({name}.__file__)"
+    for options in ((), ("-P",)):
+        done = subprocess.run(
+            [python, *options, "-c", code], cwd=tmp_path, check=True, capture_output=True, text=True
+        )
+        assert Path(done.stdout.strip()) == ROOT / FOLDERS[name] / "__init__.py"
+        assert done.stderr == ""
+
+
+@pytest.mark.slow
+def test_the_record_of_the_editable_install_is_right(editable):
+    _, site = editable
+    (record,) = site.glob("benchnav-*.dist-info/RECORD")
+    rows = list(csv.reader(record.read_text().splitlines()))
+    (size,) = (int(row[2]) for row in rows if row[0].endswith(".pth"))
+    (pth,) = site.glob("*.pth")
+    assert size == pth.stat().st_size
 
 
 def test_versions_agree():

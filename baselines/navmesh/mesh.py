@@ -145,13 +145,18 @@ def _places(corner: FloatArray, portal: IntArray, spacing: float) -> tuple[Float
     return tail[of] + share[:, None] * (head - tail)[of], of
 
 
-def _graph(place: FloatArray, of: IntArray, sides: list[list[int]]) -> Any:
-    """Places of different portals of one triangle are joined by what lies between them."""
+def load_networkx() -> Any:
+    """Return the module. Raise MissingExtraError where it is not installed."""
     try:
         import networkx
     except ImportError:
         raise MissingExtraError("The planner navmesh", "plan") from None
-    graph = networkx.Graph()
+    return networkx
+
+
+def _graph(place: FloatArray, of: IntArray, sides: list[list[int]]) -> Any:
+    """Places of different portals of one triangle are joined by what lies between them."""
+    graph = load_networkx().Graph()
     graph.add_nodes_from(range(len(place)))
     at, which = place.tolist(), of.tolist()
     for mine in sides:

@@ -13,7 +13,7 @@ from benchnav.navigation.planner import UNSOLVED
 from ..clearance_planner import ClearanceConfig
 from ..disc_planner import DiscPlanner, Frame, Query, frame_of
 from .free_polygon import free_polygons
-from .mesh import Mesh, mesh_of
+from .mesh import Mesh, load_networkx, mesh_of
 
 _AROUND = 1.0  # [m] of room around all that stands
 
@@ -39,7 +39,9 @@ class NavMesh(DiscPlanner):
         )  # fmt: skip
 
     def __init__(self, config: PluginConfig | None = None) -> None:
+        """Raise MissingExtraError where networkx is not installed."""
         super().__init__(config)
+        load_networkx()
         self._meshes: WeakKeyDictionary[Map, dict[tuple[float, Frame], Mesh]]
         self._meshes = WeakKeyDictionary()
 

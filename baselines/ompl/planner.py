@@ -7,10 +7,12 @@ from pydantic import Field
 
 from benchnav.arrays import FloatArray
 from benchnav.navigation.map import Map
+from benchnav.navigation.navigator import PluginConfig
 from benchnav.navigation.planner import UNSOLVED, Plan
 
 from ..checker import Checker, CheckerName, CountingChecker, checker_for
 from ..clearance_planner import ClearanceConfig, ClearancePlanner, free_goal, problem
+from .search import load
 from .shortcut import shortened
 
 MOST_SEED = 2**31 - 1
@@ -36,6 +38,11 @@ class OmplPlanner(ClearancePlanner):
 
     class Config(OmplConfig):
         """Parameters."""
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        """Raise MissingExtraError where OMPL is not installed."""
+        super().__init__(config)
+        load()
 
     @property
     def reproducible(self) -> bool:

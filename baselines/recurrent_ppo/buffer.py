@@ -7,32 +7,21 @@ import numpy as np
 import torch
 from sb3_contrib.common.recurrent.buffers import RecurrentRolloutBuffer
 from sb3_contrib.common.recurrent.type_aliases import RecurrentRolloutBufferSamples, RNNStates
-from stable_baselines3.common.buffers import RolloutBuffer
-from stable_baselines3.common.type_aliases import RolloutBufferSamples
 
-from benchnav.arrays import BoolArray, IntArray
+from benchnav.arrays import IntArray
+from benchnav.envs.live_buffer import LiveBuffer
 
 
-class SequenceBuffer(RecurrentRolloutBuffer):
+class SequenceBuffer(LiveBuffer, RecurrentRolloutBuffer):
     """Cuts what slots lived through into sequences of at most ``length`` decisions.
 
     A sequence ends with the episode or rollout, before idling, or at ``length``; it
     begins with the LSTM state stored there. Minibatches are random sets of sequences
-    with about as many decisions as asked for, so little is padding. ``env`` and
-    ``length`` are set by the learner.
+    with about as many decisions as asked for, so little is padding. ``length`` is set by
+    the learner.
     """
 
-    env: Any = None
     length: int = 64
-    rng: np.random.Generator
-
-    def reset(self) -> None:
-        super().reset()  # type: ignore[no-untyped-call]
-        self.live: BoolArray = np.zeros((self.buffer_size, self.n_envs), np.bool_)
-
-    def add(self, *args: Any, **kwargs: Any) -> None:
-        self.live[self.pos] = self.env.acted
-        super().add(*args, **kwargs)
 
     def sequences(self) -> tuple[IntArray, IntArray, IntArray]:
         """(slot, first step, decisions) of every sequence."""
@@ -98,34 +87,3 @@ class SequenceBuffer(RecurrentRolloutBuffer):
             episode_starts=self.to_torch(starts.reshape(-1).astype(np.float32)),
             mask=self.to_torch(mask.reshape(-1).astype(np.float32)),
         )
-
-
-class LiveBuffer(RolloutBuffer):
-    """Rollouts of a policy without memory, without idle transitions."""
-
-    env: Any = None
-    rng: np.random.Generator
-
-    def reset(self) -> None:
-        super().reset()
-        self.live: BoolArray = np.zeros((self.buffer_size, self.n_envs), np.bool_)
-
-    def add(self, *args: Any, **kwargs: Any) -> None:
-        self.live[self.pos] = self.env.acted
-        super().add(*args, **kwargs)
-
-    def get(self, batch_size: int | None = None) -> Generator[RolloutBufferSamples, None, None]:
-        step, slot = np.nonzero(self.live)
-        order = self.rng.permutation(len(step))
-        batches = max(1, round(len(step) / (batch_size or len(step))))
-        for at in np.array_split(order, batches):
-            s, n = step[at], slot[at]
-            yield RolloutBufferSamples(
-                *(
-                    self.to_torch(array[s, n])
-                    for array in (
-                        self.observations, self.actions, self.values, self.log_probs,
-                        self.advantages, self.returns,
-                    )
-                )
-            )  # fmt: skip

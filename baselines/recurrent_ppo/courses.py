@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +26,14 @@ class Pool:
     drivers: tuple[Spec, ...]
 
 
+class CourseEnv(AgentVecEnv):
+    """Idle stretches are done, too: a memory is emptied before the next attempt begins."""
+
+    def step_wait(self) -> Any:
+        observation, reward, done, infos = super().step_wait()
+        return observation, reward, done | self.woke, infos
+
+
 def training_pools(recipe: Recipe, stage: Stage) -> list[Pool]:
     """The worlds of a stage."""
     pools: dict[str, Pool] = {}
@@ -40,7 +49,7 @@ def training_pools(recipe: Recipe, stage: Stage) -> list[Pool]:
 def make_env(recipe: Recipe, pools: Sequence[Pool]) -> AgentVecEnv:
     """Rows are shared between the pools by their numbers of worlds, at least one each."""
     total = sum(len(pool.worlds) for pool in pools)
-    return AgentVecEnv(
+    return CourseEnv(
         [
             _batch(recipe, pool, max(1, round(recipe.rows * len(pool.worlds) / total)))
             for pool in pools

@@ -6,16 +6,14 @@ import numpy as np
 import torch
 from sb3_contrib import RecurrentPPO
 from sb3_contrib.common.recurrent.type_aliases import RNNStates
-from stable_baselines3 import PPO
 
 from benchnav.envs.agent_vec_env import AgentVecEnv
+from benchnav.envs.attempt_ppo import AttemptPPO
 
 from .actor import Float32Array
-from .buffer import LiveBuffer, SequenceBuffer
+from .buffer import SequenceBuffer
 from .policy import FusedPolicy
 from .recipe import Recipe, Stage
-
-Learner = RecurrentPPO | PPO
 
 
 class SequencePPO(RecurrentPPO):
@@ -31,11 +29,20 @@ class SequencePPO(RecurrentPPO):
             self.device, gamma=self.gamma, gae_lambda=self.gae_lambda, n_envs=self.n_envs,
         )  # fmt: skip
 
+    def collect_rollouts(
+        self, env: Any, callback: Any, rollout_buffer: Any, n_rollout_steps: int
+    ) -> bool:
+        rollout_buffer.env = env
+        return super().collect_rollouts(env, callback, rollout_buffer, n_rollout_steps)
+
     def forget(self) -> None:
         """Start with empty memories."""
         self._last_lstm_states = RNNStates(
             *(tuple(torch.zeros_like(t) for t in pair) for pair in self._last_lstm_states)
         )
+
+
+Learner = SequencePPO | AttemptPPO
 
 
 def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Learner:
@@ -51,12 +58,17 @@ def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Le
         learner: Learner = SequencePPO(FusedPolicy, env, policy_kwargs=policy, **shared)
         buffer_of(learner).length = recipe.sequence
     else:
-        learner = PPO(
-            "MlpPolicy", env, policy_kwargs=policy, rollout_buffer_class=LiveBuffer,
+        learner = AttemptPPO(
+            "MlpPolicy", env, policy_kwargs=policy,
             batch_size=recipe.rollout * env.num_envs, **shared,
         )  # fmt: skip
-    buffer_of(learner).env = env
     return learner
+
+
+def copy_weights(source: Learner, target: Learner) -> None:
+    """Make ``target`` go on with the policy and the optimiser of ``source``."""
+    target.policy.load_state_dict(source.policy.state_dict())
+    target.policy.optimizer.load_state_dict(source.policy.optimizer.state_dict())
 
 
 def buffer_of(learner: Learner) -> Any:

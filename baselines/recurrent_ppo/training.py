@@ -30,7 +30,7 @@ from .checkpoint import Progress
 from .courses import make_env, training_pools, validation_batches
 from .evaluate import evaluate
 from .foresight import foresee
-from .learner import actor_tensors, buffer_of, enter, make_learner, reseed
+from .learner import actor_tensors, copy_weights, enter, make_learner, reseed
 from .log import Curve
 from .recipe import Recipe, Stage
 from .weights import write_weights
@@ -99,15 +99,10 @@ class Training:
     def _enter(self, stage: Stage, seed: int) -> AgentVecEnv:
         """The worlds of a stage, about to start anew."""
         if self.recipe.courses_of(stage) != self._courses:
-            slots = self._env.num_envs
             self._lay_out(stage)
-            if self._env.num_envs != slots:
-                raise UsageError(
-                    f"The courses of every stage of {self.recipe.name!r} must have as many agents"
-                    f" side by side. Got {slots} and {self._env.num_envs}."
-                )
-            self.learner.set_env(self._env)
-            buffer_of(self.learner).env = self._env
+            before = self.learner
+            self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
+            copy_weights(before, self.learner)
         correct = foresee if stage.foresight else None
         self._env.enter(stage.reward, seed, correct)
         for batch in self._validation.values():
@@ -116,10 +111,10 @@ class Training:
 
     def _segment(self, progress: Progress, curve: Curve, report: Report) -> Progress:
         """Train until the next checkpoint; returns the progress that it holds."""
-        began, learner = perf_counter(), self.learner
-        stage = self.recipe.stages[progress.stage]
+        began, stage = perf_counter(), self.recipe.stages[progress.stage]
         rng = np.random.default_rng([self.seed, progress.segment])
         env = self._enter(stage, int(rng.integers(2**31)))
+        learner = self.learner
         reseed(learner, rng)
         learner._last_obs = None  # so that the worlds start anew
         _, callback = learner._setup_learn(sys.maxsize, CallbackList([]))

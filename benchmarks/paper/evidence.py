@@ -10,8 +10,7 @@ import numpy as np
 from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import UsageError
-from benchnav.leaderboard.compare import sign_flip
-from benchnav.leaderboard.difference import Pairs, difference
+from benchnav.leaderboard.difference import Moments, difference
 from benchnav.leaderboard.estimate import Estimate, Sample, columns_of, estimate
 from benchnav.leaderboard.interval import ALPHA, mid_p, resample
 from benchnav.metrics.measure import all_metrics
@@ -49,8 +48,8 @@ class Difference(Value):
 
     @property
     def sure(self) -> bool:
-        """True where the interval leaves out zero and a sign-flip test agrees."""
-        return self.p < ALPHA and not self.low <= 0.0 <= self.high
+        """Whether the interval excludes zero, which is where p is below 0.05."""
+        return self.p < ALPHA
 
     def text(self, scale: float = 1.0, digits: int = 1) -> str:
         """Signed: ``−3.1 [−4.0, −2.2]``."""
@@ -101,16 +100,10 @@ class Evidence:
         """
         mine, theirs = self._held(metric, cell, role), self._held(metric, other, role)
         seeds = sorted(mine.keys() & theirs.keys())
-        sides = [np.array([held[s] for s in seeds]).reshape(-1, 2) for held in (mine, theirs)]
-        pairs = Pairs(
-            sides[0][:, :1], sides[1][:, :1], sides[0][:, 1:], sides[1][:, 1:], _weights(len(seeds))
-        )
-        apart = pairs.differences.value
-        defined = int((~np.isnan(apart)).sum())
-        if not defined:
-            return Difference(math.nan, math.nan, math.nan, 0, 1.0)
-        found = _only(difference(pairs, columns_of([_metric(metric)])))
-        return Difference(*found, defined, float(sign_flip(apart)[0]))
+        apart = np.array([mine[seed][0] - theirs[seed][0] for seed in seeds]).reshape(-1, 1)
+        found = difference([Moments.of(apart)], columns_of([_metric(metric)]))
+        numbers = (float(x[0]) for x in (found.value, found.low, found.high))
+        return Difference(*numbers, int(found.worlds[0]), float(found.p[0]))
 
     def alike(self, metric: str, cells: Sequence[Cell]) -> bool:
         """True where all of these cells were run and have the same value in every world."""

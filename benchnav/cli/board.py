@@ -7,10 +7,10 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from benchnav.errors import StoreError, UsageError, did_you_mean
+from benchnav.leaderboard.columns import choose, choose_columns
 from benchnav.leaderboard.curve import HORIZON, Point, Setting, horizon_curves, parameter_curves
 from benchnav.leaderboard.duel import Duel, duel
 from benchnav.leaderboard.label import require_one_navigator_per_label
-from benchnav.leaderboard.layout import choose
 from benchnav.leaderboard.record import NotApplicable
 from benchnav.leaderboard.render import render
 from benchnav.leaderboard.table import leaderboard
@@ -32,11 +32,14 @@ def table(
     metric: Sequence[str] | None,
     recompute: bool,
     verified: Collection[str] = (),
+    columns: Sequence[str] | None = None,
 ) -> str:
     """The leaderboard; only what is shown is computed. ``verified`` are labels to be marked."""
     metrics = _metrics()
     results = _results(folders, metrics, recompute)
     held = _held(results, metrics)
+    if columns is not None:
+        metric = [name for name in choose_columns(held, columns) if name in held]
     shown = choose(held, ["all"] if metric is None and format in TIDY else metric)
     results = results.filter(pc.is_in(results["metric"], pa.array(shown)))
     missing = dict.fromkeys(gap for folder in folders for gap in _not_applicable(folder))
@@ -44,6 +47,8 @@ def table(
     mapless = {label for folder in folders for label in _mapless(folder)}
     modes = {label: mode for folder in folders for label, mode in _modes(folder)}
     made = leaderboard(results, metrics, list(missing), learned, verified, mapless, modes)
+    if columns is not None:
+        return render(made, format, columns=columns)
     return render(made, format, shown if metric or format in TIDY else None)
 
 

@@ -1,22 +1,14 @@
 """`benchnav compare`: what is different between two navigators, by how much, how sure."""
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from benchnav.cli.console import deliver, one_of, put, say
+from benchnav.cli.console import deliver, put, say
+from benchnav.cli.out_format import out_format
 from benchnav.cli.reading import reading
 from benchnav.errors import UsageError
-
-
-class Format(StrEnum):
-    """What the comparison is written in."""
-
-    MARKDOWN = "markdown"
-    CSV = "csv"
-    JSON = "json"
 
 
 def compare(
@@ -34,10 +26,15 @@ def compare(
     scenario: Annotated[
         list[str] | None, typer.Option(help="In this scenario. Repeatable. [default: all]")
     ] = None,
-    format: Annotated[str, typer.Option(help="markdown, csv or json.")] = Format.MARKDOWN.value,
+    format: Annotated[
+        str | None,
+        typer.Option(help="markdown, csv or json. [default: as --out ends, or markdown]"),
+    ] = None,
     out: Annotated[
         Path | None,
-        typer.Option(help="Write it to this file; to .png, .svg or .pdf as a figure."),
+        typer.Option(
+            help="Write it to this file, .md, .csv or .json; to .png, .svg or .pdf as a figure."
+        ),
     ] = None,
     recompute: Annotated[
         bool,
@@ -49,15 +46,15 @@ def compare(
     Paired worlds, 95 % intervals, all that is said as one family of tests.
     """
     from benchnav.cli import board
-    from benchnav.leaderboard.words import render_duel
-    from benchnav.viewer.picture import is_picture, save
+    from benchnav.leaderboard.words import FORMATS, render_duel
+    from benchnav.viewer.picture import SUFFIXES, is_picture, save
 
     if len(told) < 3:
         raise UsageError(
             f"compare must be told a run and two navigators: RUN… A B. Got {' '.join(told)!r}."
         )
     *runs, first, second = told
-    wanted = one_of(Format, "--format", format).value
+    wanted = out_format(FORMATS, format, out, SUFFIXES)
     pair = first, second
     with reading([Path(run) for run in runs]) as folders:
         found, metrics = board.comparison(folders, pair, metric or None, scenario or (), recompute)

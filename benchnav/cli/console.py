@@ -1,25 +1,38 @@
 """Where words go: results to stdout, talk to stderr."""
 
+import sys
 from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
 from typing import TypeVar
 
-import typer
-
 from benchnav.errors import StoreError, UsageError, did_you_mean
+from benchnav.streams import drop
 
 E = TypeVar("E", bound=StrEnum)
 
 
 def say(text: str) -> None:
     """Talk."""
-    typer.echo(text, err=True)
+    sys.stderr.write(text + "\n")
+    sys.stderr.flush()
 
 
 def put(text: str) -> None:
-    """A result."""
-    typer.echo(text)
+    """A result. Raises StoreError where it cannot be written.
+
+    A reader that leaves early has seen enough: the rest is dropped, and the work goes on.
+    """
+    try:
+        sys.stdout.write(text + "\n")
+        sys.stdout.flush()
+    except OSError as error:
+        drop(sys.stdout)
+        if not isinstance(error, BrokenPipeError):
+            raise StoreError(
+                "Standard output must be writable, or the result is lost."
+                f" The system says: {error.strerror}."
+            ) from error
 
 
 def columns(rows: Sequence[Sequence[str]]) -> str:

@@ -1,6 +1,5 @@
 """`benchnav doctor`: is this installation sound?"""
 
-import os
 import platform
 import sys
 from collections.abc import Iterator
@@ -11,25 +10,43 @@ from pathlib import Path
 import typer
 
 from benchnav.cli.console import columns, put
-from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS
+from benchnav.errors import BenchnavError, MissingExtraError
+from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS, Registry
+from benchnav.plural import counted
 from benchnav.threads import core_count
+from benchnav.user_folders import user_state
 
 _CORE = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pydantic", "pedpy")
 _EXTRAS = {
-    "plan": {"ompl": "ompl", "trimesh": "trimesh", "python-fcl": "fcl"},
-    "learn": {"torch": "torch", "stable-baselines3": "stable_baselines3", "gymnasium": "gymnasium"},
+    "plan": {
+        "ompl": "ompl",
+        "trimesh": "trimesh",
+        "python-fcl": "fcl",
+        "pycollada": "collada",
+        "networkx": "networkx",
+        "mapbox-earcut": "mapbox_earcut",
+    },
+    "learn": {
+        "torch": "torch",
+        "stable-baselines3": "stable_baselines3",
+        "sb3-contrib": "sb3_contrib",
+        "gymnasium": "gymnasium",
+        "pettingzoo": "pettingzoo",
+        "tensorboard": "tensorboard",
+    },
     "view": {"matplotlib": "matplotlib", "plotly": "plotly"},
     "ray": {"ray": "ray"},
-}
+}  # extra → package → module
+_MADE = (NAVIGATORS, PLANNERS, CONTROLLERS)  # that `benchnav run` makes from a Config
 Line = tuple[str, str, str]  # verdict, what, detail
 
 
 def doctor() -> None:
     """Check this installation.
 
-    Versions, cores, kernel cache, extras, plugins.
+    Versions, cores, the user's folders, extras, plugins.
     """
-    lines = [*_machine(), *_packages(), *_cache(), *_plugins()]
+    lines = [*_machine(), *_packages(), *_cache(), *_receipts(), *_plugins()]
     put(columns(lines))
     if any(verdict == "WRONG" for verdict, _, _ in lines):
         raise typer.Exit(1)
@@ -39,7 +56,7 @@ def _machine() -> Iterator[Line]:
     yield "ok", "python", f"{platform.python_version()} ({sys.executable})"
     yield "ok", "machine", platform.platform()
     cores = core_count()
-    yield "ok", "cores", f"{cores}, so `benchnav run` uses {cores} workers"
+    yield "ok", "cores", f"{cores}, so `benchnav run` uses {counted(cores, 'worker')}"
 
 
 def _packages() -> Iterator[Line]:
@@ -60,20 +77,56 @@ def _packages() -> Iterator[Line]:
 
 def _cache() -> Iterator[Line]:
     """Where compiled kernels are kept; a first run compiles them, later ones load them."""
-    from benchnav.kernels import cache_folder
+    from benchnav.kernels import cache_base, kernels_name
 
-    place = Path(os.environ.get("NUMBA_CACHE_DIR") or cache_folder("benchnav"))
-    home = next(folder for folder in (place, *place.parents) if folder.exists())
-    if os.access(home, os.W_OK):
-        yield "ok", "kernel cache", str(place)
+    base = cache_base()
+    if base.path is None:
+        cure = "set NUMBA_CACHE_DIR to a folder that you can write"
+        yield "WRONG", "kernel cache", f"none, so every command compiles: {base.reason}; {cure}"
     else:
-        yield "WRONG", "kernel cache", f"{place} must be writable; or set NUMBA_CACHE_DIR"
+        yield _folder("kernel cache", base.path / kernels_name("benchnav"), base.reason)
+
+
+def _receipts() -> Iterator[Line]:
+    """Where verifying leaves its receipts, which leaderboards look for."""
+    state = user_state()
+    if state.path is None:
+        cure = "set XDG_STATE_HOME to a folder that you can write"
+        yield "WRONG", "receipts", f"none can be kept: {state.reason}; {cure}"
+    else:
+        yield _folder("receipts", state.path / "verified", state.reason)
+
+
+def _folder(what: str, place: Path, reason: str) -> Line:
+    return ("-", what, f"{place}, because {reason}") if reason else ("ok", what, str(place))
 
 
 def _plugins() -> Iterator[Line]:
-    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS):
-        broken = list(registry.broken())
-        for _, cause in broken:
+    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, TRAINERS):
+        broken = dict(registry.broken())
+        whole = [name for name in registry.names() if name not in broken]
+        incomplete: dict[str, str] = {}
+        for name in whole if registry in _MADE else ():
+            try:
+                _make(registry, name)
+            except MissingExtraError as error:
+                incomplete[name] = str(error)
+            except BenchnavError as error:
+                broken[name] = str(error)
+        usable = len(registry.names()) - len(incomplete) - len(broken)
+        yield "ok", f"{registry.kind}s", f"{usable} can be used"
+        for cause in dict.fromkeys(incomplete.values()):
+            names = ", ".join(name for name, why in incomplete.items() if why == cause)
+            yield "-", f"{registry.kind}s", f"without {names}. {cause}"
+        for cause in broken.values():
             yield "WRONG", registry.kind, cause
-        whole = len(registry.names()) - len(broken)
-        yield "ok", f"{registry.kind}s", f"{whole} can be used"
+
+
+def _make(registry: Registry, name: str) -> None:
+    """Make the plugin as it stands, unless it has parameters that must be given."""
+    from benchnav.navigation.configure import make
+
+    declared = getattr(registry.load(name), "Config", None)
+    required = getattr(declared, "model_fields", {}).values()
+    if not any(field.is_required() for field in required):
+        make(registry, name)

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from benchnav.cli.console import put
+from benchnav.cli.console import put, say
 
 import_app = typer.Typer(help="Make a scenario of a published map.", no_args_is_help=True)
 
@@ -17,7 +17,13 @@ Agents = Annotated[
     int | None,
     typer.Option(metavar="N", help="How many agents. [default: 20, or as many as have room]"),
 ]
-Force = Annotated[bool, typer.Option("--force", help="Overwrite what is there.")]
+Name = Annotated[
+    str | None,
+    typer.Option(metavar="NAME", help="Of the scenario. [default: as FILE, the map or its folder]"),
+]
+Force = Annotated[
+    bool, typer.Option("--force", help="Overwrite the scenario file; a map is never overwritten.")
+]
 
 
 @import_app.command("movingai")
@@ -27,7 +33,8 @@ def movingai(
     scen: Annotated[
         Path | None,
         typer.Option(
-            metavar="FILE", help="Starts and goals from this .scen file. [default: drawn]"
+            metavar="FILE",
+            help="Starts and goals from this .scen file, spread over its buckets. [default: drawn]",
         ),
     ] = None,
     agents: Agents = None,
@@ -38,13 +45,23 @@ def movingai(
     radius: Annotated[
         float | None, typer.Option(metavar="M", help="Of an agent [m]. [default: 0.3 cells]")
     ] = None,
+    name: Name = None,
     force: Force = False,
 ) -> None:
     """A grid map of the MovingAI benchmarks."""
-    from benchnav.scenario.importers import import_movingai
+    from benchnav.scenario.importers import default_name, import_movingai
 
-    said = import_movingai(map, scen, agents=agents, bucket=bucket, cell=cell, radius=radius)
-    _write(said, out, force)
+    scenario = import_movingai(
+        map,
+        scen,
+        agents=agents,
+        bucket=bucket,
+        cell=cell,
+        radius=radius,
+        name=name or default_name("movingai", map, out),
+        remark=say,
+    )
+    _write(scenario, out, force)
 
 
 @import_app.command("ros-map")
@@ -59,17 +76,25 @@ def ros_map(
     unknown_is_free: Annotated[
         bool, typer.Option("--unknown-is-free", help="Agents may enter what the map does not know.")
     ] = False,
+    name: Name = None,
     force: Force = False,
 ) -> None:
     """An occupancy map of the ROS map_server."""
-    from benchnav.scenario.importers import import_ros_map
+    from benchnav.scenario.importers import default_name, import_ros_map
 
-    said = import_ros_map(map, agents=agents, radius=radius, unknown_is_free=unknown_is_free)
-    _write(said, out, force)
+    scenario = import_ros_map(
+        map,
+        agents=agents,
+        radius=radius,
+        unknown_is_free=unknown_is_free,
+        name=name or default_name("ros", map, out),
+        remark=say,
+    )
+    _write(scenario, out, force)
 
 
-def _write(said: dict[str, Any], out: Path, force: bool) -> None:
+def _write(scenario: dict[str, Any], out: Path, force: bool) -> None:
     from benchnav.scenario.importers import write_scenario
 
-    for path in write_scenario(said, out, force):
+    for path in write_scenario(scenario, out, force):
         put(str(path))

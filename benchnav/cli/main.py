@@ -1,6 +1,5 @@
 """The command `benchnav`: one verb a file, nothing heavy imported before a verb needs it."""
 
-import os
 import sys
 from collections.abc import Sequence
 from typing import Annotated, Any
@@ -27,16 +26,20 @@ from benchnav.errors import (
     BenchnavError,
     InputError,
     MissingExtraError,
+    NoRunError,
     PluginError,
     UnsolvableError,
     UsageError,
 )
 from benchnav.navigation.trace import notes, trace
+from benchnav.streams import drop, prepare_streams
 
 INTERRUPTED = 130
 DEBUG = "--debug"
 _Usage: type[Any] = typer.BadParameter.mro()[2]  # click's, which typers carry in changing places
-_ASKED_WRONGLY = (UsageError, InputError, PluginError, UnsolvableError, MissingExtraError)
+_ASKED_WRONGLY = (
+    UsageError, InputError, PluginError, UnsolvableError, MissingExtraError, NoRunError,
+)  # fmt: skip
 
 app = typer.Typer(
     name="benchnav",
@@ -85,7 +88,6 @@ def status(arguments: Sequence[str]) -> int:
     """Do what ``arguments`` ask; the exit status."""
     try:
         code = app(list(arguments), standalone_mode=False)
-        sys.stdout.flush()
     except BenchnavError as error:
         say(f"benchnav: {error}")
         if DEBUG in arguments:
@@ -93,8 +95,12 @@ def status(arguments: Sequence[str]) -> int:
         return 2 if isinstance(error, _ASKED_WRONGLY) else 1
     except (typer.Abort, KeyboardInterrupt):
         return INTERRUPTED
-    except BrokenPipeError:  # whoever read stdout has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except SystemExit as left:  # typer's, where the reader of a help leaves early
+        return 0 if isinstance(left.__context__, BrokenPipeError) else 1
+    except OSError as error:  # of the machine: a folder, a disk, the help on a full one
+        drop(sys.stdout)
+        place = f"{error.filename}: " if error.filename else ""
+        say(f"benchnav: {place}{error.strerror or error}")
         return 1
     except _Usage as error:
         error.show()
@@ -104,4 +110,5 @@ def status(arguments: Sequence[str]) -> int:
 
 def main() -> None:
     """Entry point of the command."""
+    prepare_streams()
     raise SystemExit(status(sys.argv[1:]))

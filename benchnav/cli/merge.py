@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from benchnav.cli.console import put, say
+from benchnav.plural import counted
 
 
 def merge(
@@ -21,7 +22,7 @@ def merge(
     from benchnav.store import merge as merging
 
     merged = merging.merge(runs, out)
-    again = f", {merged.twice} were there already and are the same" if merged.twice else ""
-    say(f"{merged.copied} episodes copied{again}")
+    again = f"; already there, and the same: {merged.twice}" if merged.twice else ""
+    say(f"{counted(merged.copied, 'episode')} copied{again}")
     warn_if_unfinished(merged.run)
     put(str(out))

@@ -7,8 +7,8 @@ from typing import Annotated
 import typer
 
 from benchnav.cli.console import put, say
+from benchnav.cli.free_name import class_name, free_name, module_name, name_taken
 from benchnav.errors import StoreError, UsageError
-from benchnav.plugins import NAVIGATORS
 
 new_app = typer.Typer(help="Write a plugin package to begin with.", no_args_is_help=True)
 
@@ -76,17 +76,15 @@ def navigator(
             "NAME must be small letters, digits and single hyphens, a letter first."
             f" Got {name!r} instead."
         )
-    if name in NAVIGATORS.names():
-        raise UsageError(
-            f"NAME must be free. {name!r} is a navigator of {NAVIGATORS.source(name).distribution}."
-        )
+    if taken := name_taken(name):
+        raise UsageError(f"NAME must be free. {taken}. {free_name(name)!r} would do.")
     target = folder if folder is not None else Path(name)
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
         raise UsageError(f"{target} must be missing or an empty folder. It holds something.")
     words = {
         "name": name,
-        "module": name.replace("-", "_"),
-        "cls": "".join(part.capitalize() for part in name.split("-")),
+        "module": module_name(name),
+        "cls": class_name(name),
     }
     contents = {"pyproject.toml": _PROJECT, f"{words['module']}.py": _MODULE, "README.md": _README}
     try:

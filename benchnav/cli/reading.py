@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from benchnav.cli.console import say, spans
+from benchnav.plural import counted
 
 if TYPE_CHECKING:
     from benchnav.store.run_folder import RunFolder
@@ -34,8 +35,9 @@ def warn_if_unfinished(folder: "RunFolder") -> None:
     total = sum(len(seeds) for _, seeds in folder.wanted())
     stored = total - sum(map(len, missing.values()))
     advice = f": run the same suite with --out {folder.path} to finish it."
-    say(f"{folder.shown} holds {stored} of {total} episodes{'.' if folder.packed else advice}")
+    end = "." if folder.packed else advice
+    say(f"{folder.shown} holds {stored} of {counted(total, 'episode')}{end}")
     for key, seeds in islice(missing.items(), _SHOWN):
         say(f"  missing: {spans(seeds)} of {key}")
     if len(missing) > _SHOWN:
-        say(f"  … and of {len(missing) - _SHOWN} more cells")
+        say(f"  … and of {counted(len(missing) - _SHOWN, 'more cell')}")

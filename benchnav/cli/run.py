@@ -11,6 +11,7 @@ import typer
 
 from benchnav.cli.console import one_of, put, say
 from benchnav.errors import UsageError
+from benchnav.plural import counted
 
 if TYPE_CHECKING:
     from benchnav.runner.run import Executor
@@ -27,13 +28,16 @@ class Where(StrEnum):
 
 def run(
     suite: Annotated[
-        str, typer.Argument(metavar="SUITE", help="Name of a suite that ships, or a file.")
+        str,
+        typer.Argument(
+            metavar="SUITE|SCENARIO", help="Name of a suite or scenario that ships, or a file."
+        ),
     ],
     out: Annotated[
         Path | None,
         typer.Option(
             metavar="DIR",
-            help="Run folder; the same suite goes on where it stopped. [default: new]",
+            help="Run folder; the same suite continues there, also with more seeds. [default: new]",
         ),
     ] = None,
     workers: Annotated[
@@ -99,6 +103,12 @@ def run(
             "--isolate", help="Every navigator in a process of its own that is sent messages."
         ),
     ] = False,
+    again: Annotated[
+        bool,
+        typer.Option(
+            "--again", help="Run again what older code made; it is kept until all is there."
+        ),
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
     debug: Annotated[
         bool, typer.Option("--debug", help="Print the tracebacks of what plugins raised.")
@@ -109,7 +119,7 @@ def run(
     Scenarios × tracks × navigators × seeds. Prints the run folder on stdout;
     `benchnav leaderboard` makes the table from it.
     """
-    from benchnav.cli.conclusion import conclusion, tracebacks
+    from benchnav.cli.conclusion import conclusion, kept_for_now, tracebacks
     from benchnav.runner.progress import progress
     from benchnav.runner.run import Summary, run_suite
     from benchnav.runner.suite import Selection, load_suite
@@ -130,13 +140,15 @@ def run(
     try:
         run_suite(
             asked, folder, workers=workers, timeout=timeout, memory=memory, executor=running,
-            shard=share, progress=progress(quiet), summary=summary,
+            shard=share, again=again, progress=progress(quiet), summary=summary,
         )  # fmt: skip
     except KeyboardInterrupt:
-        say(
-            f"Interrupted: {summary.stored} of {summary.total} episodes are stored."
-            f" The same command with --out {folder} goes on from there."
-        )
+        parts = [
+            f"Interrupted: {summary.stored} of {counted(summary.total, 'episode')} stored.",
+            f"The same command with --out {folder} continues there.",
+            kept_for_now(summary),
+        ]
+        say(" ".join(part for part in parts if part))
         raise
     if not quiet:
         say(conclusion(summary, perf_counter() - began))
@@ -171,9 +183,9 @@ def _shard(text: str | None) -> "Shard | None":
 
 def _announce(suite: "Suite", folder: Path) -> str:
     sizes = (
-        (len(suite.scenarios), "scenarios"), (len(suite.tracks), "tracks"),
-        (len(suite.entries), "navigators"), (len(suite.seeds), "seeds"),
+        (len(suite.scenarios), "scenario"), (len(suite.tracks), "track"),
+        (len(suite.entries), "navigator"), (len(suite.seeds), "seed"),
     )  # fmt: skip
-    product = " × ".join(f"{n} {what if n != 1 else what[:-1]}" for n, what in sizes)
+    product = " × ".join(counted(n, what) for n, what in sizes)
     some = f" (in {len(suite.blocks)} blocks of cells)" if suite.blocks else ""
     return f"{suite.name}@{suite.version}: {product}{some}, into {folder}"

@@ -4,6 +4,8 @@ from collections.abc import Iterator
 from textwrap import fill
 from typing import TYPE_CHECKING
 
+from benchnav.plural import counted
+
 if TYPE_CHECKING:
     from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
     from benchnav.scenario.region import Region
@@ -84,7 +86,8 @@ def _arena(scenario: "Scenario") -> Iterator[Fact]:
     if layout is not None:
         yield "walls", f"a {layout.type} layout of {layout.columns} × {layout.rows} cells"
     for i, wall in enumerate(scenario.walls[:6]):
-        yield "" if i or layout else "walls", f"one {_shape(wall.shape)}"
+        count = str(len(wall.places)) if len(wall.places) > 1 else "one"
+        yield "" if i or layout else "walls", f"{count} {_shape(wall.shape)}"
     if len(scenario.walls) > 6:
         yield "", f"and {len(scenario.walls) - 6} more"
     for i, group in enumerate(scenario.static):
@@ -114,7 +117,7 @@ def _dynamic(group: "DynamicGroup") -> str:
 
 def _count(group: "StaticGroup | DynamicGroup") -> str:
     if group.at is not None:
-        return str(len(group.at))
+        return str(len(group.points))
     return "1" if group.count is None else number(group.count)
 
 
@@ -124,7 +127,7 @@ def _where(group: "StaticGroup") -> str:
 
 def _region(region: "Region") -> str:
     if region.type == "points":
-        return f"from {len(region.points)} points"
+        return f"from {counted(len(region.points), 'point')}"
     return "anywhere" if region.type == "anywhere" else f"in a {region.type}"
 
 

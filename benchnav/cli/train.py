@@ -83,11 +83,13 @@ def _path(name: str) -> Path:
 
 
 def shipped_recipes() -> dict[str, Path]:
-    """Every recipe that a registered trainer ships, by name."""
+    """Every recipe that a registered trainer ships, by name; `doctor` names the broken ones."""
     from benchnav.plugins import TRAINERS
 
+    broken = {name for name, _ in TRAINERS.broken()}
     return {
         path.stem: path
         for name in TRAINERS.names()
+        if name not in broken
         for path in sorted(TRAINERS.load(name).recipes.glob("*.yaml"))
     }

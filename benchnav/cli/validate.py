@@ -7,6 +7,7 @@ import typer
 
 from benchnav.cli.console import put
 from benchnav.cli.scenario_page import said_of_worlds
+from benchnav.plural import counted
 
 
 def validate(
@@ -20,13 +21,13 @@ def validate(
 
     Every complaint says file:line: key.
     """
+    from benchnav.runner.suite_file import describes_scenario
     from benchnav.scenario.yaml_reader import read_yaml
 
-    data = read_yaml(file).data
-    if isinstance(data, dict) and "scenarios" in data:
-        _suite(file)
-    else:
+    if describes_scenario(read_yaml(file).data):
         _scenario(file, draw)
+    else:
+        _suite(file)
 
 
 def _suite(file: Path) -> None:
@@ -36,15 +37,17 @@ def _suite(file: Path) -> None:
     cells = list(suite.cells())
     missing = sum(bool(cell.reason) for cell in cells)
     put(
-        f"{file} is a suite, {suite.name}@{suite.version}: {len(cells)} cells, {missing} of them"
-        f" n/a, × {len(suite.seeds)} seeds"
+        f"{file} is a suite, {suite.name}@{suite.version}: {counted(len(cells), 'cell')},"
+        f" {missing} of them n/a, × {counted(len(suite.seeds), 'seed')}"
     )
 
 
 def _scenario(file: Path, draw: bool) -> None:
+    from benchnav.navigation.drivers import check_drivers
     from benchnav.scenario.load import load_scenario
 
     scenario = load_scenario(file)
+    check_drivers(scenario)
     put(f"{file} is a scenario, {scenario.identity}, hash {scenario.hash}")
     if not draw:
         return
@@ -52,8 +55,8 @@ def _scenario(file: Path, draw: bool) -> None:
 
     world = build(scenario, "test", 0)
     put(
-        f"its first test world has {len(world.agents)} agents, {len(world.solids)} walls and"
-        f" static obstacles and {len(world.bodies)} moving ones; {world.redraws} draws before it"
-        " were not solvable"
+        f"its first test world has {counted(len(world.agents), 'agent')}; walls and static"
+        f" obstacles: {len(world.solids)}, moving ones: {len(world.bodies)}; draws before it that"
+        f" were not solvable: {world.redraws}"
     )
     put(f"its worlds {said_of_worlds(scenario)}")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from benchnav.cli.console import columns, put, say
+from benchnav.plural import counted
 
 if TYPE_CHECKING:
     from benchnav.runner.verify.finding import Report
@@ -86,7 +87,7 @@ def as_json(run: Path, report: "Report", seconds: float) -> str:
         "run": str(run), "verified": report.clean, "seconds": round(seconds, 3),
         "findings": [asdict(finding) for finding in report.findings],
         "checked": dict(sorted(report.counts.items())), "not_checked": report.unchecked,
-        "versions": report.versions,
+        "versions": report.versions, "sources": report.sources,
     }  # fmt: skip
     return dumps(said, indent=1)
 
@@ -94,7 +95,7 @@ def as_json(run: Path, report: "Report", seconds: float) -> str:
 def as_text(run: Path, report: "Report", seconds: float) -> str:
     """For people: the verdict, findings, what was checked and what was not."""
     count = len(report.findings)
-    verdict = "verified" if report.clean else f"NOT verified: {count} finding{'s' * (count > 1)}"
+    verdict = "verified" if report.clean else f"NOT verified: {counted(count, 'finding')}"
     lines = [f"{run}: {verdict}, in {seconds:.1f} s"]
     if count:
         few = report.few(SHOWN)
@@ -104,5 +105,6 @@ def as_text(run: Path, report: "Report", seconds: float) -> str:
         lines.append("")
     lines += [f"  checked      {text}" for text in report.checked]
     lines += [f"  not checked  {text}" for text in report.unchecked]
+    lines += [f"  source       {text}" for text in report.sources]
     lines += [f"  note         {text}" for text in report.versions]
     return "\n".join(lines)

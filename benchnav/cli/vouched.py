@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 from benchnav.cli.console import say
 from benchnav.errors import StoreError
+from benchnav.plural import counted
 from benchnav.store.run_folder import RunFolder
 
 
@@ -24,9 +25,9 @@ def vouched(folders: Sequence[RunFolder], now: bool) -> set[str]:
 
 def _verified(folder: RunFolder, now: bool) -> bool:
     from benchnav.store.pack import content_digest
-    from benchnav.store.receipt import has_receipt, receipts_folder
+    from benchnav.store.receipt import any_receipts, has_receipt
 
-    if not now and not receipts_folder().is_dir():
+    if not now and not any_receipts():
         return False
     try:
         return has_receipt(content_digest(folder)) or (now and _verify(folder))
@@ -45,7 +46,7 @@ def _verify(folder: RunFolder) -> bool:
     keep(folder, report)
     if not report.clean:
         say(
-            f"{folder.shown} is NOT verified: {len(report.findings)} findings"
+            f"{folder.shown} is NOT verified: {counted(len(report.findings), 'finding')}"
             f" ('benchnav verify {folder.shown}' names them)"
         )
     return report.clean

@@ -19,6 +19,7 @@ from benchnav.envs.others import Instead, Others
 from benchnav.envs.relay import Relay
 from benchnav.envs.reward import RewardTerms, RewardWeights, reward_terms
 from benchnav.episode.episode import Status
+from benchnav.errors import UsageError
 from benchnav.navigation.configure import Spec
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.observation import Observation
@@ -73,7 +74,15 @@ class AgentBatch:
             correct: executes what it makes of the learners' commands; it sees what the
                 encoder needs, and neighbours.
             drivers: navigators of the teams that are not evaluated.
+
+        Raises UsageError where no world of the pool has an agent that learns.
         """
+        self.learnable = np.flatnonzero([world.agents.evaluated.any() for world in pool])
+        if not len(self.learnable):
+            raise UsageError(
+                f"At least one agent must learn. In all {len(pool)} worlds of the pool every"
+                " agent has a driver: leave out `driver` of the team that is to learn."
+            )
         self.encoder, self.weights, self.correct = encoder, weights, correct
         self.simulation = Relay([_strict(world) for world in pool], rows)
         self._rng = rng
@@ -180,9 +189,9 @@ class AgentBatch:
         return [driver.decide(acting) for driver in self._drivers]
 
     def _next(self, count: int) -> IntArray:
-        """The next worlds: every world once in random order, then again in another."""
+        """The next worlds: every one with learners once in random order, then again in another."""
         while len(self._queue) < count:
-            again = self._rng.permutation(len(self.simulation.pool))
+            again = self._rng.permutation(self.learnable)
             self._queue = np.concatenate([self._queue, again])
         taken, self._queue = self._queue[:count], self._queue[count:]
         return taken

@@ -1,7 +1,7 @@
-"""Stable-Baselines3's VecEnv: every agent of every world is one environment."""
+"""Stable-Baselines3's VecEnv: every learning agent of every world is one environment."""
 
 from collections.abc import Iterable, Sequence
-from dataclasses import fields
+from operator import index
 from typing import Any, cast
 
 import numpy as np
@@ -9,62 +9,86 @@ from stable_baselines3.common.vec_env import VecEnv
 
 from benchnav.arrays import BoolArray
 from benchnav.envs.agent_batch import AgentBatch, Correction, Transition
-from benchnav.envs.reward import RewardTerms, RewardWeights
-from benchnav.envs.spaces import action_space, observation_space
+from benchnav.envs.learner_slots import LearnerSlots
+from benchnav.envs.reward import RewardWeights
+from benchnav.envs.spaces import action_space, last_seen, observation_space, terms
 from benchnav.envs.tally import Tally
+from benchnav.errors import UsageError
 
 
 class AgentVecEnv(VecEnv):
-    """Slots of one or more batches, one after the other.
+    """The learning agents of one or more batches, one slot each, one batch after the other.
 
-    A slot that idles until its row starts again observes zeros, is paid nothing, and is
-    done with that idle stretch when the row starts again; `acted` says which transitions
-    of the last step were real, so that a learner can leave the others out.
+    A slot is done when its attempt ends, and at no other time. It is idle from then until its
+    row starts again: it observes zeros and is paid nothing. `acted` and ``infos[i]["idle"]``
+    tell whether the last transition of a slot was a decision, so that a learner can leave the
+    others out; `AttemptMonitor` and `AttemptPPO` do.
     """
 
     render_mode: str | None = None
 
     def __init__(self, batches: Sequence[AgentBatch]) -> None:
         self.batches = tuple(batches)
-        slots = sum(batch.rows * batch.width for batch in self.batches)
+        self._slots = tuple(LearnerSlots(batch) for batch in self.batches)
         self.tally = Tally()
-        self.acted: BoolArray = np.zeros(slots, np.bool_)
+        size = sum(slots.size for slots in self._slots)
+        self.acted: BoolArray = np.zeros(size, np.bool_)
+        self.woke: BoolArray = np.zeros(size, np.bool_)  # idle before the last step, not after
         self._action: Any = None
         space: Any = observation_space(self.batches[0].encoder)
-        super().__init__(slots, space, cast(Any, action_space()))
+        super().__init__(size, space, cast(Any, action_space()))
 
     def enter(self, weights: RewardWeights, seed: int, correct: Correction | None = None) -> None:
         """From the next reset on, pay by ``weights``, draw worlds in the order of ``seed``, and
         execute what ``correct`` makes of commands.
         """
         self.tally = Tally()
-        for k, batch in enumerate(self.batches):
+        for batch in self.batches:
             batch.weights, batch.correct = weights, correct
-            batch.reseed(np.random.default_rng([seed, k]))
+        self.seed(seed)
+
+    def seed(self, seed: int | None = None) -> Sequence[int | None]:
+        """Decide the order of worlds, and all else that is random, from the next reset on.
+
+        Returns the seeds of the slots, as Stable-Baselines3 counts them; None draws one. Worlds
+        are shared between slots, so the first seed stands for all. Raises UsageError below 0.
+        """
+        if seed is not None and index(seed) < 0:
+            raise UsageError(f"The seed must be 0 or more. Got {seed} instead.")
+        return super().seed(None if seed is None else index(seed))
 
     def reset(self) -> Any:
-        return np.concatenate([_flat(batch.reset()) for batch in self.batches])
+        seed = self._seeds[0]
+        if seed is not None:
+            for k, batch in enumerate(self.batches):
+                batch.reseed(np.random.default_rng([seed, k]))
+        self._reset_seeds()
+        self._reset_options()
+        observation = np.concatenate([_flat(slots.reset()) for slots in self._slots])
+        self.acted[:] = self.woke[:] = False
+        active = np.concatenate([slots.active.reshape(-1) for slots in self._slots])
+        self.reset_infos = [{"idle": not bool(here)} for here in active]
+        return observation
 
     def step_async(self, actions: Any) -> None:
         self._action = actions
 
     def step_wait(self) -> Any:
         steps, first = [], 0
-        for batch in self.batches:
-            slots = batch.rows * batch.width
-            part = self._action[first : first + slots]
-            steps.append(batch.step(part.reshape(batch.rows, batch.width, 2)))
-            first += slots
-        self.acted = np.concatenate([step.acted.reshape(-1) for step in steps])
+        for slots in self._slots:
+            steps.append(slots.step(self._action[first : first + slots.size]))
+            first += slots.size
         for step in steps:
             self.tally.add(step)
-        done = np.concatenate([(step.over | step.restarted).reshape(-1) for step in steps])
-        reward = np.concatenate([step.reward.reshape(-1) for step in steps]).astype(np.float32)
+        self.acted = _joined([step.acted for step in steps])
+        self.woke = _joined([step.restarted & ~step.acted for step in steps])
         observation = np.concatenate([_flat(step.observation) for step in steps])
-        infos: list[dict[str, Any]] = [{} for _ in range(self.num_envs)]
+        reward = _joined([step.reward for step in steps]).astype(np.float32)
+        done = _joined([step.over for step in steps])
+        infos: list[dict[str, Any]] = [{"idle": not bool(acted)} for acted in self.acted]
         first = 0
         for step in steps:
-            _tell(step, infos, first)
+            _describe_ends(step, infos[first : first + step.acted.size])
             first += step.acted.size
         return observation, reward, done, infos
 
@@ -72,18 +96,18 @@ class AgentVecEnv(VecEnv):
         pass
 
     def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
-        return [getattr(self, attr_name)] * len(self._slots(indices))
+        return [getattr(self, attr_name)] * len(self._chosen(indices))
 
     def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
         setattr(self, attr_name, value)
 
     def env_method(self, method_name: str, *args: Any, indices: Any = None, **kwargs: Any) -> Any:
-        return [getattr(self, method_name)(*args, **kwargs)] * len(self._slots(indices))
+        return [getattr(self, method_name)(*args, **kwargs)] * len(self._chosen(indices))
 
     def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
-        return [False] * len(self._slots(indices))
+        return [False] * len(self._chosen(indices))
 
-    def _slots(self, indices: int | Iterable[int] | None) -> list[int]:
+    def _chosen(self, indices: int | Iterable[int] | None) -> list[int]:
         return list(self._get_indices(indices))
 
 
@@ -91,17 +115,17 @@ def _flat(array: Any) -> Any:
     return array.reshape(-1, array.shape[-1])
 
 
-def _tell(step: Transition, infos: list[dict[str, Any]], first: int) -> None:
-    """What happened to the attempts that ended."""
-    width = step.acted.shape[1]
-    for b, a in np.argwhere(step.over | (step.restarted & ~step.acted)):
-        info = infos[first + b * width + a]
-        info["idle"] = not bool(step.acted[b, a])
-        if info["idle"]:
-            continue
-        info["is_success"] = bool(step.arrived[b, a])
-        info["TimeLimit.truncated"] = bool(step.timed_out[b, a])
-        info["terminal_observation"] = step.final[b, a]
-        info["terms"] = {
-            f.name: float(getattr(step.terms, f.name)[b, a]) for f in fields(RewardTerms)
+def _joined(arrays: Sequence[Any]) -> Any:
+    return np.concatenate([array.reshape(-1) for array in arrays])
+
+
+def _describe_ends(step: Transition, infos: list[dict[str, Any]]) -> None:
+    """Add to ``infos``, one for each slot, how the attempts that ended did end."""
+    last, named = last_seen(step), terms(step)
+    for b, a in np.argwhere(step.over):
+        infos[b * step.acted.shape[1] + a] |= {
+            "is_success": bool(step.arrived[b, a]),
+            "TimeLimit.truncated": bool(step.timed_out[b, a]),
+            "terminal_observation": last[b, a],
+            "terms": {name: float(term[b, a]) for name, term in named.items()},
         }

@@ -6,8 +6,9 @@ import gymnasium
 import numpy as np
 
 from benchnav.envs.encoders.encoder import Float32Array
-from benchnav.envs.making import Reward, make_batch, refuse_rendering
+from benchnav.envs.making import Reward, drawn_index, make_batch, refuse_rendering
 from benchnav.envs.others import Others
+from benchnav.envs.seeding import plain_seed
 from benchnav.envs.spaces import action_space, last_seen, observation_space, terms
 from benchnav.errors import UsageError
 from benchnav.navigation.configure import Spec
@@ -36,7 +37,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         """Draws the worlds.
 
         Args:
-            scenario: a name or a YAML file; all of its agents must be left to be driven.
+            scenario: a name or a YAML file; agents with a driver of its own do not learn.
             encoder: what the agent observes, one of `encoders.catalogue.ENCODERS`.
             split: train or validation.
             worlds: how many of the split.
@@ -60,23 +61,24 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         """Start an attempt.
 
         Args:
-            seed: from here on worlds and agents are drawn from it.
-            options: ``world``, one of the pool, and ``agent``, one of that world, instead
-                of what would be drawn.
+            seed: from here on worlds, agents, and what other navigators draw, follow from it.
+            options: ``world``, one of the pool, and ``agent``, one of the learning agents of
+                that world, instead of what would be drawn.
 
         Returns:
-            (D,) and an info that names the world and the agent.
+            (D,) and an info that names the world and the agent, as the options do.
         """
-        super().reset(seed=seed)
-        pool, given = self.batch.simulation.pool, options or {}
-        world = self._choice(given, "world", len(pool))
-        mine = np.flatnonzero(pool[world].agents.evaluated)
-        self.agent = int(mine[self._choice(given, "agent", len(mine))])
+        super().reset(seed=plain_seed(seed))
+        others, drivers = self.np_random.spawn(2)
+        self.batch.reseed(drivers)
+        world = drawn_index(self.np_random, "world", options, self.batch.learnable)
+        learners = np.flatnonzero(self.batch.simulation.pool[world].agents.evaluated)
+        chosen = drawn_index(self.np_random, "agent", options, np.arange(len(learners)))
+        self.agent = int(learners[chosen])
         seen = self.batch.reset(np.array([world]))
-        others = mine[mine != self.agent]
-        self._others.start(np.zeros(1, np.int64), [others], self.np_random.spawn(1))
+        self._others.start(np.zeros(1, np.int64), [learners[learners != self.agent]], [others])
         self._going = True
-        return seen[0, self.agent].copy(), {"world": world, "agent": self.agent}
+        return seen[0, self.agent].copy(), {"world": world, "agent": chosen}
 
     def step(self, action: Float32Array) -> tuple[Float32Array, float, bool, bool, dict[str, Any]]:
         """Decide. ``action`` (2,) in [-1, 1]: speed from 0 to the limit, turn rate.
@@ -97,12 +99,3 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
             "terms": {name: float(term[at]) for name, term in terms(step).items()},
         }
         return last_seen(step)[at], float(step.reward[at]), terminated, truncated, info
-
-    def _choice(self, given: dict[str, Any], what: str, count: int) -> int:
-        drawn = int(self.np_random.integers(count))
-        chosen = int(given.get(what, drawn))
-        if not 0 <= chosen < count:
-            raise UsageError(
-                f"The option {what!r} must be from 0 to {count - 1}. Got {chosen} instead."
-            )
-        return chosen

@@ -8,12 +8,18 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from benchnav.arena.world import World
+from benchnav.arrays import IntArray
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder as encoder_called
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import ConfigError, UsageError, did_you_mean
 from benchnav.scenario.catalogue import find
 from benchnav.world.build import build
+
+
+class NoRenderingError(UsageError, TypeError):
+    """A wish to render; SB3's `make_vec_env` tries rgb_array and goes on without on a TypeError."""
+
 
 Reward = RewardWeights | Mapping[str, Any] | None
 SPLITS = ("train", "validation")
@@ -53,32 +59,49 @@ def weights_of(reward: Reward) -> RewardWeights:
 def make_batch(
     scenario: str, encoder: str, split: str, worlds: int, reward: Reward, slots: int | None = None
 ) -> AgentBatch:
-    """As many rows as have ``slots`` agents, or one, over a pool of ``worlds`` worlds.
+    """As many rows as have ``slots`` learning agents, or one, over a pool of ``worlds`` worlds.
 
-    `AgentBatch.reseed` decides the order of worlds. Raises UsageError where ``slots`` is no
-    multiple of a world's agents, and what `make_worlds`, `weights_of` and the catalogue of
-    encoders raise.
+    The order of worlds is random until `AgentBatch.reseed` decides it. Raises UsageError where
+    ``slots`` is no multiple of a world's learning agents, and what `make_worlds`, `weights_of`
+    and the catalogue of encoders raise.
     """
     chosen, weights = encoder_called(encoder), weights_of(reward)
     pool, drivers = make_worlds(scenario, split, worlds), find(scenario).driver_specs
-    rows, A = 1, max(len(world.agents) for world in pool)
+    rows, L = 1, max(int(world.agents.evaluated.sum()) for world in pool)
     if slots is not None:
-        rows = max(slots // A, 1)
-        if slots != rows * A:
+        rows = max(slots // max(L, 1), 1)
+        if slots != rows * L:
+            least, most = f"at least {L}", f"a multiple of {L}"
+            nearest = f"; the nearest below is {rows * L}" if slots > L else ""
             raise UsageError(
-                f"num_envs must be a multiple of {A}, the agents of a world of {scenario}."
-                f" Got {slots} instead; the nearest below is {rows * A}."
-                if slots > A
-                else f"num_envs must be at least {A}, the agents of a world of {scenario}."
-                f" Got {slots} instead."
+                "num_envs counts the agents that learn: it must be"
+                f" {most if nearest else least}, the agents of a world of {scenario}."
+                f" Got {slots} instead{nearest}."
             )
-    return AgentBatch(pool, rows, chosen, weights, np.random.default_rng(0), drivers=drivers)
+    return AgentBatch(pool, rows, chosen, weights, np.random.default_rng(), drivers=drivers)
+
+
+def drawn_index(
+    rng: np.random.Generator, name: str, options: Mapping[str, Any] | None, allowed: IntArray
+) -> int:
+    """The option ``name``, or one of ``allowed`` (in rising order) if it is not given.
+
+    It is drawn in both cases, so that an option does not change what is drawn later. Raises
+    UsageError where the option is not allowed.
+    """
+    drawn = int(allowed[int(rng.integers(len(allowed)))])
+    chosen = int((options or {}).get(name, drawn))
+    if chosen not in allowed:
+        most = int(allowed[-1])
+        span = f"from 0 to {most}" if len(allowed) == most + 1 else f"one of {allowed.tolist()}"
+        raise UsageError(f"The option {name!r} must be {span}. Got {chosen} instead.")
+    return chosen
 
 
 def refuse_rendering(render_mode: str | None) -> None:
-    """Raise UsageError where somebody wants to watch."""
+    """Raise NoRenderingError for any mode but None."""
     if render_mode is not None:
-        raise UsageError(
+        raise NoRenderingError(
             f"The render_mode must be None: environments draw nothing. Got {render_mode!r} instead."
         )
 

@@ -1,4 +1,4 @@
-"""PettingZoo's ParallelEnv: all agents of one world learn; who is done leaves."""
+"""PettingZoo's ParallelEnv: the learning agents of one world, each of which leaves when done."""
 
 from typing import Any, ClassVar
 
@@ -7,7 +7,9 @@ from gymnasium.utils.seeding import np_random
 from pettingzoo import ParallelEnv  # type: ignore[import-untyped]
 
 from benchnav.envs.encoders.encoder import Float32Array
-from benchnav.envs.making import Reward, make_batch, refuse_rendering
+from benchnav.envs.learner_slots import LearnerSlots
+from benchnav.envs.making import Reward, drawn_index, make_batch, refuse_rendering
+from benchnav.envs.seeding import plain_seed
 from benchnav.envs.spaces import Space, action_space, last_seen, observation_space, terms
 from benchnav.errors import UsageError
 
@@ -20,8 +22,8 @@ Stepped = tuple[
 class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[misc]
     """Agents ``leader_0``, ``leader_1``, … of a world that is drawn anew in each episode.
 
-    An agent is terminated on arriving or touching anything and truncated by time; it has
-    no body any more then, and is not told of again.
+    These are the agents that learn; those that the scenario's own drivers move have no name. An
+    agent is terminated on arriving or touching anything and truncated by time. It leaves then.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "name": "benchnav_leaders_v0"}
@@ -43,7 +45,8 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         refuse_rendering(render_mode)
         self.render_mode = render_mode
         self.batch = make_batch(scenario, encoder, split, worlds, reward)
-        self.possible_agents = [f"leader_{a}" for a in range(self.batch.width)]
+        self._slots = LearnerSlots(self.batch)
+        self.possible_agents = [f"leader_{a}" for a in range(self._slots.size)]
         self.agents: list[str] = []
         self.observation_spaces = {
             agent: observation_space(self.batch.encoder) for agent in self.possible_agents
@@ -62,36 +65,35 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, Float32Array], Told]:
-        """Start a world: the one of the pool that ``options["world"]`` says, or any."""
+        """Start a world: the one of the pool that ``options["world"]`` gives, or any."""
         if seed is not None or self._rng is None:
-            self._rng, _ = np_random(seed)
-        pool = self.batch.simulation.pool
-        world = int((options or {}).get("world", self._rng.integers(len(pool))))
-        if not 0 <= world < len(pool):
-            raise UsageError(
-                f"The option 'world' must be from 0 to {len(pool) - 1}. Got {world} instead."
-            )
-        seen = self.batch.reset(np.array([world]))[0]
-        self.agents = self.possible_agents[: len(pool[world].agents)]
+            self._rng, _ = np_random(plain_seed(seed))
+        world = drawn_index(self._rng, "world", options, self.batch.learnable)
+        self.batch.reseed(self._rng.spawn(1)[0])
+        seen = self._slots.reset(np.array([world]))[0]
+        learners = int(self._slots.active[0].sum())
+        self.agents = self.possible_agents[:learners]
         return (
             {agent: seen[a].copy() for a, agent in enumerate(self.agents)},
             {agent: {"world": world} for agent in self.agents},
         )
 
     def step(self, actions: dict[str, Float32Array]) -> Stepped:
-        """Decide. ``actions``: (2,) in [-1, 1] of each of ``agents``.
+        """Decide. ``actions``: (2,) in [-1, 1] of each of ``agents``; nothing where none is left.
 
         Infos hold the reward's ``terms`` before scaling and ``is_success``: it arrived, and
         touched nothing before. Raises UsageError where an agent gets no action.
         """
-        lacking = [agent for agent in self.agents if agent not in actions]
-        if lacking:
-            raise UsageError(f"Every agent in `agents` must get an action. {lacking[0]} got none.")
+        if not self.agents:
+            return {}, {}, {}, {}, {}
+        missing = [agent for agent in self.agents if agent not in actions]
+        if missing:
+            raise UsageError(f"Every agent in `agents` must get an action. {missing[0]} got none.")
         slots = {agent: self.possible_agents.index(agent) for agent in self.agents}
-        action = np.zeros((1, self.batch.width, 2))
+        action = np.zeros((1, self._slots.size, 2))
         for agent, a in slots.items():
             action[0, a] = actions[agent]
-        step = self.batch.step(action)
+        step = self._slots.step(action)
         seen, named, ended = last_seen(step)[0], terms(step), step.arrived | step.touched
         stepped: Stepped = (
             {agent: seen[a].copy() for agent, a in slots.items()},

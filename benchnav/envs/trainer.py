@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from pydantic import BaseModel
 
@@ -47,3 +47,11 @@ class Trainer(ABC, Generic[R]):
             UsageError: the folder holds something else, or nothing to resume.
             TrainingError: learning went wrong.
         """
+
+
+def trainer_rule(name: str, plugin: Any) -> str:
+    """Return what the trainer ``name`` must be and is not; "" if there is nothing."""
+    if not (isinstance(plugin, type) and issubclass(plugin, Trainer)):
+        return f"be a class derived from {Trainer.__module__}.{Trainer.__qualname__}"
+    missing = [part for part in ("Recipe", "recipes") if not hasattr(plugin, part)]
+    return f"be a class that declares {' and '.join(missing)}" if missing else ""

@@ -28,8 +28,9 @@ class Identity:
     seed: int
     track: str  # known, stale, partial, unknown
     navigator: str  # the label in the suite
-    navigator_hash: str = ""  # of what the label stands for: configuration, source, version
+    navigator_hash: str = ""  # of what the label stands for: configuration, distributions, mode
     rehearsal: int = 0  # k: the k-th rehearsal before the episode of this seed; 0: that episode
+    source_hash: str = ""  # of the code and data files of the navigator; "" where not known
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,6 +15,7 @@ from functools import cache
 from pathlib import Path
 
 from benchnav.errors import UsageError
+from benchnav.user_folders import user_cache
 
 INHERITED = (
     "PATH", "HOME", "USER", "LANG", "LC_ALL", "LC_CTYPE", "LD_LIBRARY_PATH", "DYLD_LIBRARY_PATH",
@@ -41,6 +42,9 @@ _PR_SET_DUMPABLE = 4
 def environment(folder: Path) -> Mapping[str, str]:
     """The variables that a navigator's process is given; ``folder`` is its own."""
     kept = {name: os.environ[name] for name in INHERITED if name in os.environ}
+    cache = user_cache()
+    if cache.reason and cache.path is not None:  # among temporary files, whose folder is another
+        kept["XDG_CACHE_HOME"] = str(cache.path.parent)
     return {**kept, "TMPDIR": str(folder), "PYTHONSAFEPATH": "1"}
 
 

@@ -18,6 +18,7 @@ from benchnav.errors import BenchnavError, MissingExtraError
 from benchnav.isolation.frame import HEAD, decode, encode, head
 from benchnav.isolation.seen import maps_changed, observation_of
 from benchnav.isolation.told import briefings_of
+from benchnav.named_module import search_in
 from benchnav.navigation.answer import CallFailed, checked, remarks_of, said
 from benchnav.navigation.introduction import meet
 from benchnav.navigation.map import Map
@@ -60,6 +61,7 @@ class Host:
     def _hello(self, fields: dict[str, Any]) -> Answer:
         says = json.loads(fields["says"])
         sys.path += [entry for entry in says.get("path", ()) if entry not in sys.path]
+        search_in(says.get("folder", ""))
         spec = says.get("navigator") or {"type": self.name, **says["config"]}
         sensings = _SENSINGS.validate_python(says.get("sensings", []))
         self.maps = {}

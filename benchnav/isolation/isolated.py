@@ -11,9 +11,11 @@ from benchnav.errors import BrokenPluginError, NavigatorError, UsageError
 from benchnav.isolation import fence, pool
 from benchnav.isolation.process import Process
 from benchnav.isolation.remote import Remote, python_path, say_hello
+from benchnav.named_module import current_folder
 from benchnav.navigation.configure import Spec, split
 from benchnav.navigation.introduction import Introduction
 from benchnav.plugins import NAVIGATORS
+from benchnav.source.parts import names_known_here
 
 HOST = (sys.executable, "-P", "-m", "benchnav.isolation.host")
 
@@ -41,11 +43,12 @@ def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "
     Nothing of the navigator is imported in this one. Raises also BrokenPluginError where the
     process dies, and UsageError where no other process can host it.
     """
-    name, _ = split(NAVIGATORS, spec, where=where)
-    if NAVIGATORS.is_local(name):
+    name, parameters = split(NAVIGATORS, spec, where=where)
+    for local in names_known_here({"type": name, **parameters}):
         raise UsageError(
-            f"{where + ': ' if where else ''}An isolated navigator must be installed, or named as"
-            f" module:Class. Got {name!r} instead, which is registered in this process alone."
+            f"{where + ': ' if where else ''}An isolated navigator and its parts must be installed,"
+            f" or named as module:Class. Got {local!r} instead, which is registered in this"
+            " process alone."
         )
     fence.require_fence()
     process = Process(HOST)
@@ -60,4 +63,4 @@ def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "
 
 def _hello(spec: Spec) -> dict[str, Any]:
     told = spec if isinstance(spec, str) else dict(spec)
-    return {"navigator": told, "path": python_path()}
+    return {"navigator": told, "path": python_path(), "folder": str(current_folder())}

@@ -5,6 +5,7 @@ from itertools import groupby
 
 from benchnav.leaderboard.grid import Stratum
 from benchnav.leaderboard.record import NotApplicable
+from benchnav.plural import counted
 
 
 def absences(
@@ -67,6 +68,6 @@ def _failed(found: Sequence[Stratum]) -> Iterator[str]:
         for name, failures in zip(s.navigators, s.failed.sum(axis=0), strict=True):
             if failures:
                 yield (
-                    f"{s.scenario} ({s.track}): {name} failed in {failures} worlds, which count"
-                    " as the worst that can happen."
+                    f"{s.scenario} ({s.track}): {name} failed in {counted(failures, 'world')}:"
+                    " a failure counts as the worst that can happen."
                 )

@@ -3,13 +3,9 @@
 import math
 from dataclasses import dataclass
 
+from benchnav.leaderboard.digits import figure, figures, number, prefixed, signed
 from benchnav.leaderboard.record import PRICE, Record
-
-PREFIXES = {  # unit → what it is divided by, and then called
-    "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")),
-    "B": ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"), (1.0, "B")),
-}
-ROUNDING = 1e-12  # what is smaller is left over from arithmetic
+from benchnav.plural import counted
 
 
 @dataclass(frozen=True)
@@ -30,16 +26,24 @@ def cell(r: Record | None, *, interval: bool, decided: bool) -> Cell:
         return Cell("")
     if math.isnan(r.value):
         return Cell("–")
-    bounds = (r.low, r.high) if interval and not math.isnan(r.low) else ()
-    widest = max(map(abs, (r.value, *bounds)))
-    size, name = prefixed(r.unit, widest)
-    say = signed_number if r.track == PRICE else number
-    text, *ends = (say(x / size, widest / size) for x in (r.value, *bounds))
-    if ends:
-        text = f"{text} [{', '.join(ends)}]"
+    text, name = _figures(r, interval)
     unit = f" {name}" if name else ""
     count = f" ({r.defined})" if r.defined < r.episodes else ""
     return Cell(f"{text}{unit}{count}", decided and r.rank_low == 1)
+
+
+def _figures(r: Record, interval: bool) -> tuple[str, str]:
+    """The number, with its interval if wanted, and the unit that it is in."""
+    whole = None if r.unit else 1.0  # of a share
+    if math.isnan(r.low):
+        size, name = prefixed(r.unit, abs(r.value))
+        texts = [number(r.value / size, whole)]
+    else:
+        size, name = prefixed(r.unit, max(map(abs, (r.value, r.low, r.high))))
+        numbers = r.value / size, r.low / size, r.high / size
+        texts = list(figures(*numbers, whole)) if interval else [figure(*numbers, whole)]
+    value, *ends = map(signed, texts) if r.track == PRICE else texts
+    return (f"{value} [{', '.join(ends)}]" if ends else value), name
 
 
 def entrant(r: Record) -> Cell:
@@ -70,8 +74,8 @@ def rehearsal(r: Record) -> Cell:
     if math.isnan(r.rehearsal_seconds):
         return Cell("")
     size, unit = prefixed("s", r.rehearsal_seconds)
-    seconds = number(r.rehearsal_seconds / size, r.rehearsal_seconds / size)
-    return Cell(f"{r.rehearsal_decisions:.0f} decisions, {seconds} {unit}")
+    seconds = number(r.rehearsal_seconds / size)
+    return Cell(f"{counted(round(r.rehearsal_decisions), 'decision')}, {seconds} {unit}")
 
 
 def verified(r: Record) -> Cell:
@@ -82,27 +86,3 @@ def verified(r: Record) -> Cell:
 def heading(r: Record) -> Cell:
     """A metric and its direction."""
     return Cell(r.metric + {"higher": " ↑", "lower": " ↓", None: ""}[r.better])
-
-
-def prefixed(unit: str, scale: float) -> tuple[float, str]:
-    """What to divide by so that ``scale`` has digits before the point, and the unit then."""
-    steps = PREFIXES.get(unit, ((1.0, unit),))
-    if scale == 0.0:
-        return 1.0, unit
-    return next((step for step in steps if scale >= step[0]), steps[-1])
-
-
-def number(value: float, scale: float) -> str:
-    """About three figures, with as many decimals as ``scale`` takes."""
-    if max(abs(scale), abs(value)) < ROUNDING or value == 0.0:
-        return "0"
-    size = math.floor(math.log10(abs(scale)))
-    if size < -4 or size > 5:
-        return f"{value:.1e}"
-    return f"{value:.{max(0, 2 - max(size, 0)) if size >= -1 else 1 - size}f}"
-
-
-def signed_number(value: float, scale: float) -> str:
-    """The same of a difference: ``+1.25``, ``−0.5``, ``0``."""
-    text = number(value, scale)
-    return f"+{text}" if value > 0 and float(text) != 0.0 else text.replace("-", "−", 1)

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from benchnav.leaderboard.compare import holm
+from benchnav.leaderboard.difference import least_p
 from benchnav.leaderboard.interval import ALPHA
 from benchnav.metrics.metric import Metric
 
@@ -31,7 +32,7 @@ class Comparison:
     difference: float  # mean of first − second, in the metric's unit; NaN without such worlds
     low: float  # of its 95 % interval; NaN where the worlds give none
     high: float
-    p: float  # of no difference, by sign flips
+    p: float  # of no difference; below 0.05 exactly where the interval excludes 0
     split: str
     scenario_hash: str  # "" over all scenarios, as the next two are NaN
     horizon: float  # [s]
@@ -60,13 +61,13 @@ def as_family(found: Sequence[Comparison], metrics: Mapping[str, Metric]) -> tup
 
 
 def _verdict(c: Comparison, metric: Metric | None) -> Verdict:
-    """Too few worlds: whatever had come out in them, it could not have been significant."""
+    """Too few worlds: had each of them differed by the whole range, it would be a tie too."""
     if not c.worlds:
         return "no common world"
     if c.first_rehearsal != c.second_rehearsal:
         return "not as equals"
     if not c.adjusted < ALPHA:
-        return "too few worlds" if c.family * 2.0 ** (1 - c.worlds) >= ALPHA else "tie"
+        return "too few worlds" if c.family * least_p(c.worlds) >= ALPHA else "tie"
     if metric is None or metric.better is None or metric.conditional:
         return "higher" if c.difference > 0 else "lower"
     return "better" if (c.difference > 0) == (metric.better == "higher") else "worse"

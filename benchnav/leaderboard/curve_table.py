@@ -4,9 +4,10 @@ from collections.abc import Sequence
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import escape
-from benchnav.leaderboard.cell import number, prefixed
 from benchnav.leaderboard.curve import HORIZON, Point, panels
+from benchnav.leaderboard.digits import figures, number, prefixed
 from benchnav.leaderboard.tidy import as_csv, as_json
+from benchnav.plural import counted
 
 FORMATS = ("markdown", "csv", "json")
 COLUMNS = 10  # places on the axis in a table for people
@@ -38,7 +39,7 @@ def titled(points: Sequence[Point], role: bool = True) -> str:
     p = points[0]
     worlds = {q.worlds for q in points}
     parts = [p.scenario, f"track {p.track}", *([f"{p.role}s"] if role else [])]
-    parts += [f"{min(worlds)} worlds"] if len(worlds) == 1 else []
+    parts += [counted(min(worlds), "world")] if len(worlds) == 1 else []
     parts += [f"split {p.split}"] if p.split != "test" else []
     parts += [f"rehearsal: {p.rehearsal}"] if p.rehearsal else []
     return ", ".join(parts)
@@ -68,8 +69,11 @@ def _text(p: Point | None) -> str:
     if p is None or p.value != p.value:
         return "–"
     bounds = [] if p.axis == HORIZON or p.low != p.low else [p.low, p.high]
-    widest = max(map(abs, (p.value, *bounds)))
-    size, unit = prefixed(p.unit, widest)
-    value, *ends = (number(x / size, widest / size) for x in (p.value, *bounds))
-    interval = f" [{', '.join(ends)}]" if ends else ""
-    return f"{value}{interval}{f' {unit}' if unit else ''}"
+    size, unit = prefixed(p.unit, max(map(abs, (p.value, *bounds))))
+    whole = None if p.unit else 1.0
+    if bounds:
+        value, low, high = figures(p.value / size, p.low / size, p.high / size, whole)
+        value = f"{value} [{low}, {high}]"
+    else:
+        value = number(p.value / size, whole)
+    return f"{value}{f' {unit}' if unit else ''}"

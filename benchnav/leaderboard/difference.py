@@ -1,90 +1,186 @@
-"""Paired differences of means: value and 95 % interval of every column."""
+"""Paired differences of means over fixed scenarios: value, 95 % interval and p-value.
 
-from dataclasses import dataclass
+The interval and the p-value come from one Student statistic: 0 lies in the interval exactly
+where p ≥ 0.05. docs/statistics.md says why, and keeps its false alarms, coverage and power.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Self
 
 import numpy as np
+from scipy.special import stdtr
 
-from benchnav.arrays import BoolArray, FloatArray
-from benchnav.leaderboard.estimate import Column, Estimate, Sample, estimate
-from benchnav.leaderboard.interval import mean
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.leaderboard.estimate import Column
+from benchnav.leaderboard.interval import students
+
+EVENTS = 2.0  # events that the variance of a bounded metric counts and no world showed
+UNSEEN = 0.5  # of an event as large as the largest difference, which their size begins with
+ROUNDING = 1e-12  # of the largest difference: smaller deviations are rounding
 
 
 @dataclass(frozen=True, eq=False)
-class Pairs:
-    """What two sides did in the same n worlds, C columns."""
+class Moments:
+    """The differences of one scenario: C columns, worlds without a difference left out."""
 
-    first: FloatArray  # (n, C) values
-    second: FloatArray  # (n, C)
-    first_agents: FloatArray  # (n, C) over which a value was taken
-    second_agents: FloatArray  # (n, C)
-    weights: FloatArray  # (R, n) bootstrap
+    count: IntArray  # (C,) worlds
+    mean: FloatArray  # (C,) NaN without a world
+    squares: FloatArray  # (C,) sum of squared deviations from the mean
+    cubes: FloatArray  # (C,) sum of cubed deviations from the mean
+    sizes: FloatArray  # (C,) sum of absolute deviations from the mean
+    largest: FloatArray  # (C,) absolute difference
+
+    @classmethod
+    def of(cls, differences: FloatArray) -> Self:
+        """From (n, C) differences, NaN where a world has none."""
+        known = ~np.isnan(differences)
+        count = known.sum(axis=0)
+        value = np.where(known, differences, 0.0)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            mean = value.sum(axis=0) / count
+        apart = np.where(known, differences - mean, 0.0)
+        largest = np.abs(value).max(axis=0, initial=0.0)
+        apart[np.abs(apart) <= ROUNDING * largest] = 0.0
+        squares, cubes = (apart**2).sum(axis=0), (apart**3).sum(axis=0)
+        return cls(count, mean, squares, cubes, np.abs(apart).sum(axis=0), largest)
+
+
+@dataclass(frozen=True, eq=False)
+class Difference:
+    """(C,) each; NaN bounds where the worlds give no interval, and p = 1 there."""
+
+    worlds: IntArray
+    value: FloatArray
+    low: FloatArray
+    high: FloatArray
+    p: FloatArray  # two-sided, of no difference
+
+
+@dataclass(frozen=True, eq=False)
+class _Strata:
+    """The moments of S scenarios as arrays (S, C), and what each counts for."""
+
+    count: IntArray
+    mean: FloatArray  # 0 without a world
+    squares: FloatArray
+    cubes: FloatArray
+    sizes: FloatArray
+    largest: FloatArray
+    share: FloatArray  # (S, C) of a scenario in the mean: all that have a world count alike
+
+    @classmethod
+    def of(cls, parts: Sequence[Moments]) -> Self:
+        count, mean, squares, cubes, sizes, largest = (
+            np.array([getattr(part, field.name) for part in parts]) for field in fields(Moments)
+        )
+        held = count > 0
+        share = held / np.maximum(held.sum(axis=0), 1)
+        mean = np.where(held, mean, 0.0)
+        return cls(count, mean, squares, cubes, sizes, largest, share)
 
     @property
-    def differences(self) -> Sample:
-        """First less second, NaN where either has no value."""
-        value = self.first - self.second
-        return Sample(value, np.ones_like(value), self.weights)
+    def value(self) -> FloatArray:
+        """(C,) mean over scenarios of the means over worlds."""
+        total: FloatArray = (self.share * self.mean).sum(axis=0)
+        return np.where(self.count.any(axis=0), total, np.nan)
 
 
-def spread(column: Column) -> Column:
-    """What is known of differences of values that are as ``column`` says."""
-    width = column.most - column.least
-    return Column(column.rate, -width, width)
+def difference(parts: Sequence[Moments], column: Column) -> Difference:
+    """Mean over the scenarios ``parts`` of the mean differences of their worlds.
 
-
-def difference(pairs: Pairs, column: Column) -> Estimate:
-    """Mean of first − second over the worlds in which both have a value.
-
-    Rates: from both sides' own intervals and the correlation of their world rates.
-    Others: the bootstrap over worlds. ``column`` tells of the values, not their differences.
+    Scenarios are fixed and count alike: the variance is that of the worlds within them, so a
+    scenario in which the difference is another one adds none. ``column`` says what is known
+    of the values, not of their differences.
     """
-    sample, rate = pairs.differences, column.rate
-    value = mean(sample.value)
-    found = Estimate(value, np.full_like(value, np.nan), np.full_like(value, np.nan))
-    if rate.any():
-        found.put(rate, *_of_rates(pairs, column, rate))
-    if not rate.all():
-        rest = Sample(sample.value[:, ~rate], sample.agents[:, ~rate], sample.weights)
-        other = estimate(rest, part(spread(column), ~rate))
-        found.put(~rate, other.low, other.high)
-    return found
-
-
-def part(column: Column, which: BoolArray) -> Column:
-    """Some of the columns."""
-    return Column(column.rate[which], column.least[which], column.most[which])
-
-
-def _of_rates(pairs: Pairs, column: Column, which: BoolArray) -> tuple[FloatArray, FloatArray]:
-    """(C,), (C,) intervals of differences of correlated rates.
-
-    The square-and-add method of R. G. Newcombe, "Improved confidence intervals for the
-    difference between binomial proportions based on paired data", Statistics in Medicine
-    17 (1998), method 8, in the general form of G. Y. Zou, Psychological Methods 12 (2007),
-    with intervals at the effective size for his and the correlation over worlds for φ.
-    """
-    both = ~np.isnan(pairs.first + pairs.second)[:, which]
-    one, other = (np.where(both, v[:, which], np.nan) for v in (pairs.first, pairs.second))
-    limits = part(column, which)
-    a = estimate(Sample(one, pairs.first_agents[:, which], pairs.weights), limits)
-    b = estimate(Sample(other, pairs.second_agents[:, which], pairs.weights), limits)
-    r = correlation(one, other)
-    apart = a.value - b.value
-    low = apart - _joined(a.value - a.low, b.high - b.value, r)
-    high = apart + _joined(a.high - a.value, b.value - b.low, r)
-    return np.maximum(low, -1.0), np.minimum(high, 1.0)
-
-
-def _joined(one: FloatArray, other: FloatArray, r: FloatArray) -> FloatArray:
-    """(C,) how far a difference reaches of which the sides reach so far."""
-    reach: FloatArray = np.sqrt(np.maximum(one**2 - 2 * r * one * other + other**2, 0.0))
-    return reach
-
-
-def correlation(one: FloatArray, other: FloatArray) -> FloatArray:
-    """(C,) of the columns (n, C) over worlds; 0 where one does not vary."""
+    strata = _Strata.of(parts)
+    value, width = strata.value, column.most - column.least
+    variance, freedom = _variance(strata)
     with np.errstate(invalid="ignore", divide="ignore"):
-        x, y = (np.nan_to_num(side - mean(side), nan=0.0) for side in (one, other))
-        size = np.sqrt((x**2).sum(axis=0) * (y**2).sum(axis=0))
-        found: FloatArray = np.where(size > 0, (x * y).sum(axis=0) / size, 0.0)
-    return found
+        error = np.sqrt(variance + EVENTS * _event(strata, variance, width) ** 2)
+        skewness = _third(strata) / error**3
+        against = np.maximum(-np.sign(value) * skewness, 0.0)
+        p = 2.0 * stdtr(freedom, -_narrowed(np.abs(value) / error, against))
+        down, up = (
+            error * _widened(students(freedom), np.maximum(side * skewness, 0.0))
+            for side in (-1.0, 1.0)
+        )
+    unknown = ~(error > 0.0)
+    down[unknown] = up[unknown] = np.where(np.isfinite(width), 2.0 * width, np.nan)[unknown]
+    low, high = np.maximum(value - down, -width), np.minimum(value + up, width)
+    return Difference(strata.count.sum(axis=0), value, low, high, np.where(unknown, 1.0, p))
+
+
+def _narrowed(t: FloatArray, skewness: FloatArray) -> FloatArray:
+    """(C,) what a statistic t ≥ 0 is worth where the estimate is skewed against its sign.
+
+    If the long tail of the differences lies on the side of 0, large ones may not have been
+    seen. P. Hall, "On the removal of skewness by transformation", JRSS B 54 (1992): his cubic
+    without its constant, and only where it widens the interval (ours).
+    """
+    return t - skewness * t**2 / 3.0 + skewness**2 * t**3 / 27.0
+
+
+def _widened(worth: FloatArray, skewness: FloatArray) -> FloatArray:
+    """(C,) the t that `_narrowed` makes ``worth``."""
+    root: FloatArray = np.cbrt(1.0 - skewness * worth)
+    return 3.0 * worth / (1.0 + root + root**2)
+
+
+def _third(strata: _Strata) -> FloatArray:
+    """(C,) third cumulant of the mean over scenarios."""
+    weight = strata.share / np.maximum(strata.count, 1)
+    total: FloatArray = (weight**3 * strata.cubes).sum(axis=0)
+    return total
+
+
+def _variance(strata: _Strata) -> tuple[FloatArray, FloatArray]:
+    """(C,), (C,) variance of the mean over scenarios, and its degrees of freedom.
+
+    B. L. Welch, "The generalization of 'Student's' problem when several different population
+    variances are involved", Biometrika 34 (1947): the degrees of freedom of his section 6,
+    which few worlds bias less than those of Satterthwaite, and never more than there are.
+    The spread within a scenario of one world is unknown: its distance from the mean over
+    scenarios stands for it, as if such scenarios were a sample. NaN for one world in all.
+    """
+    n, scenarios = strata.count, (strata.count > 0).sum(axis=0)
+    single = n == 1
+    with np.errstate(invalid="ignore", divide="ignore"):
+        spread = np.where(n > 1, strata.squares / (n - 1), 0.0)
+        apart = (strata.mean - strata.value) ** 2 * scenarios / (scenarios - 1)
+        each = strata.share**2 * np.where(single, apart, spread / np.maximum(n, 1))
+        variance: FloatArray = each.sum(axis=0)
+        most = np.maximum(n - 1, single).sum(axis=0) - (single.sum(axis=0) == scenarios)
+        freedom = variance**2 / (each**2 / (np.where(single, 2, n) + 1)).sum(axis=0) - 2.0
+    freedom = np.where(variance > 0.0, np.clip(freedom, 1.0, np.maximum(most, 1.0)), most)
+    return np.where(most > 0, variance, np.nan), freedom
+
+
+def _event(strata: _Strata, variance: FloatArray, width: FloatArray) -> FloatArray:
+    """(C,) what one more event would add to the mean: an arrival or a collision, say.
+
+    Where few worlds differ, their variance is too small: events that did not happen to fall
+    into these worlds are missing. A. Agresti and Y. Min, "Simple improved confidence intervals
+    for comparing matched proportions", Statistics in Medicine 24 (2005), therefore count a
+    world more in each direction. Here the variance counts `EVENTS` more, of the size of the
+    deviations that were seen, because a world of many agents seldom differs by its whole
+    range ``width`` (ours); that size is taken where no world differs. A metric without a
+    range has no such events, unless it does not vary.
+    """
+    n = np.maximum(strata.count, 1)
+    weight = strata.share / n  # of a world
+    usual = (n * weight**2).sum(axis=0)
+    squares = (weight**2 * strata.squares * n / np.maximum(n - 1, 1)).sum(axis=0)
+    sizes = (weight * strata.sizes).sum(axis=0)
+    bounded: BoolArray = np.isfinite(width)
+    largest = strata.largest.max(axis=0)
+    whole = usual * np.where((largest == 0.0) & bounded, width, largest)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        seen = (squares + UNSEEN * whole**2) / (sizes + UNSEEN * whole)
+    found: FloatArray = np.where(whole == 0.0, 0.0, seen)
+    return np.where(bounded | (variance == 0.0), found, 0.0)
+
+
+def least_p(worlds: int) -> float:
+    """The p-value where all ``worlds`` of one scenario differ by the range of a bounded metric."""
+    return float(2.0 * stdtr(worlds - 1, -worlds / np.sqrt(EVENTS))) if worlds > 1 else 1.0

@@ -13,14 +13,12 @@ import numpy as np
 from benchnav.arrays import IntArray
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.absent import absences
-from benchnav.leaderboard.compare import flips_for, sign_flip
 from benchnav.leaderboard.comparison import Comparison, as_family
-from benchnav.leaderboard.difference import difference, spread
-from benchnav.leaderboard.estimate import columns_of, mean_over
+from benchnav.leaderboard.difference import Moments, difference
+from benchnav.leaderboard.estimate import columns_of
 from benchnav.leaderboard.grid import Stratum, strata
 from benchnav.leaderboard.paired import differences, side_by_side
 from benchnav.leaderboard.record import ALL, NotApplicable
-from benchnav.leaderboard.standing import weights_of
 from benchnav.metrics.metric import Metric
 
 if TYPE_CHECKING:
@@ -67,10 +65,9 @@ def duel(
             f" and {second!r} never were.{''.join(f' {note}' for note in notes)}"
         )
     wanted = [metrics[name] for name in names]
-    family = len(wanted) * 2 * len(met)  # or fewer
-    every = [c for s in met for c in _in_one(s, first, second, wanted, family)]
+    every = [c for s in met for c in _in_one(s, first, second, wanted)]
     for _, group in groupby(met, key=lambda s: (s.split, s.track, s.role)):
-        every += _over_all(list(group), first, second, wanted, family)
+        every += _over_all(list(group), first, second, wanted)
     order = {name: place for place, name in enumerate(names)}
     every.sort(key=lambda c: (order[c.metric], c.split, c.track, c.role))  # stable
     return Duel(first, second, as_family(every, metrics), tuple(notes))
@@ -100,34 +97,25 @@ def _sides(s: Stratum, first: str, second: str, count: int) -> tuple[IntArray, I
     return np.full(count, one, np.int64), np.full(count, other, np.int64)
 
 
-def _in_one(
-    s: Stratum, first: str, second: str, metrics: Sequence[Metric], family: int
-) -> list[Comparison]:
+def _in_one(s: Stratum, first: str, second: str, metrics: Sequence[Metric]) -> list[Comparison]:
     """In one scenario, by the metrics that were measured there."""
     held = [metric for metric in metrics if metric.name in s.metrics]
-    return differences(s, *_sides(s, first, second, len(held)), held, family)
+    return differences(s, *_sides(s, first, second, len(held)), held)
 
 
 def _over_all(
-    group: list[Stratum], first: str, second: str, metrics: Sequence[Metric], family: int
+    group: list[Stratum], first: str, second: str, metrics: Sequence[Metric]
 ) -> Iterator[Comparison]:
     """Over the scenarios of one split, track and role, if there are several."""
     if len(group) < 2:
         return
-    column = columns_of(metrics)
     sides = [side_by_side(s, *_sides(s, first, second, len(metrics)), metrics) for s in group]
-    parts = [difference(side, column) for side in sides]
-    mean = mean_over(parts, [side.differences for side in sides], spread(column))
-    apart = np.concatenate([side.differences.value for side in sides])
-    stratum = np.repeat(np.arange(len(group)), [len(s.seeds) for s in group])
-    known = ~np.isnan(apart)
-    weights = np.stack([weights_of(column, stratum) for column in known.T], axis=1)
-    p = sign_flip(apart * weights, flips_for(family))
+    found = difference([Moments.of(side) for side in sides], columns_of(metrics))
     s = group[0]
     granted = [int(s.granted[s.navigators.index(name)]) for name in (first, second)]
     for m, metric in enumerate(metrics):
         yield Comparison(
-            first, second, ALL, s.track, s.role, metric.name, int(known[:, m].sum()),
-            float(mean.value[m]), float(mean.low[m]), float(mean.high[m]), float(p[m]),
+            first, second, ALL, s.track, s.role, metric.name, int(found.worlds[m]),
+            float(found.value[m]), float(found.low[m]), float(found.high[m]), float(found.p[m]),
             s.split, "", math.nan, math.nan, granted[0], granted[1],
         )  # fmt: skip

@@ -4,14 +4,6 @@ import re
 import unicodedata
 from html import escape
 
-_LATEX = {
-    "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_",
-    "{": r"\{", "}": r"\}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}",
-    "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}", "[": "{[}", "]": "{]}",
-    '"': r"\textquotedbl{}", "–": "--", "↑": r"$\uparrow$", "↓": r"$\downarrow$",
-    "·": r"\textperiodcentered{}", "µ": r"\textmu{}",
-}  # fmt: skip
-
 
 def visible(text: str) -> str:
     """Line breaks become spaces, control and formatting characters a replacement mark."""
@@ -21,15 +13,11 @@ def visible(text: str) -> str:
 
 def markdown(text: str) -> str:
     """Text that a Markdown table cell shows as it is."""
-    safe = visible(text).replace("&", "&amp;").replace("<", "&lt;").replace("\\", "\\\\")
+    safe = visible(text).replace("&", "&amp;").replace("\\", "\\\\")
+    safe = re.sub(r"<(?![\d+−])", "&lt;", safe)  # before a number it begins no tag
     safe = re.sub(r"([|*`~!])", r"\\\1", safe)
     safe = re.sub(r"(?<![^\W_])_|_(?![^\W_])", r"\\_", safe)  # within a word it does nothing
     return re.sub(r"\](?=[(\[:])", r"\\]", safe)
-
-
-def latex(text: str) -> str:
-    """Text that LaTeX prints as it is."""
-    return "".join(_LATEX.get(c, c) for c in visible(text))
 
 
 def html(text: str) -> str:

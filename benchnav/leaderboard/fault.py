@@ -8,6 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.record import ALL, Record
+from benchnav.plural import counted
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -40,7 +41,5 @@ def with_fault(record: Record, found: Faults) -> Record:
     reasons = Counter(found[key].values())
     (why, _), *others = reasons.most_common()
     count = sum(reasons.values())
-    more = f" (and {len(others)} more reasons)" if others else ""
-    return replace(
-        record, fault=f"failed in {count} {'episode' if count == 1 else 'episodes'}: {why}{more}"
-    )
+    more = f" (and {counted(len(others), 'more reason')})" if others else ""
+    return replace(record, fault=f"failed in {counted(count, 'episode')}: {why}{more}")

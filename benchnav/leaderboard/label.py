@@ -1,4 +1,4 @@
-"""One label stands for one navigator: what was configured differently is never merged."""
+"""One label stands for one navigator: other configurations and other code are never merged."""
 
 from __future__ import annotations
 
@@ -10,33 +10,46 @@ from benchnav.errors import UsageError
 if TYPE_CHECKING:
     import pyarrow as pa
 
-COLUMN = "navigator_hash"
+_COLUMNS = {
+    "navigator_hash": "configuration (parameters, version, weights or mode)",
+    "source_hash": "source",
+}
+"""Columns that must hold one value for a label → what differs where they hold two."""
 
 
 def require_one_navigator_per_label(tables: Mapping[str, pa.Table]) -> None:
-    """Raise UsageError where rows with one label come from differently configured navigators.
+    """Raise UsageError where rows with one label come from two configurations or sources.
 
     ``tables`` maps names, such as run folders, to results (RESULTS). Rows that hold no
     hash, as those of older runs, agree with all.
     """
+    for column, what in _COLUMNS.items():
+        _require_one(tables, column, what)
+
+
+def _require_one(tables: Mapping[str, pa.Table], column: str, what: str) -> None:
     seen: dict[str, tuple[str, str]] = {}  # label -> hash, where it was met first
     for name, table in tables.items():
-        if COLUMN not in table.column_names:
+        if column not in table.column_names:
             continue
-        groups = table.select(["navigator", COLUMN]).group_by(["navigator", COLUMN]).aggregate([])
+        groups = table.select(["navigator", column]).group_by(["navigator", column]).aggregate([])
         for row in sorted(
-            groups.to_pylist(), key=lambda row: (row["navigator"], row[COLUMN] or "")
+            groups.to_pylist(), key=lambda row: (row["navigator"], row[column] or "")
         ):
-            label, found = row["navigator"], row[COLUMN]
+            label, found = row["navigator"], row[column]
             if not found:
                 continue
             known, where = seen.setdefault(label, (found, name))
             if known != found:
                 raise UsageError(
-                    f"The label {label!r} must stand for one navigator. It stands for two:"
-                    f" {known[:12]} in {where} and {found[:12]} in {name} are configured"
-                    " differently, run in another mode, or are different code. Tell them apart by"
-                    f" a label of its own for one of them ({{type: …, label: {label}-2}} in the"
-                    " suite), and run"
-                    " that one again."
+                    f"The label {label!r} must stand for one navigator. It stands for two: their"
+                    f" {what} differs ({known[:12]} in {where} and {found[:12]} in {name})."
+                    f" {_CURES[column]}, or give one of them a label of its own"
+                    f" ({{type: …, label: {label}-2}} in the suite) and run that one again."
                 )
+
+
+_CURES = {
+    "navigator_hash": "Leave one out",
+    "source_hash": "Run the older one again (benchnav run … --again)",
+}

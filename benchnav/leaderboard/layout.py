@@ -4,23 +4,15 @@ import math
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from benchnav.errors import UsageError, did_you_mean
-from benchnav.leaderboard.cell import (
-    Cell,
-    cell,
-    entrant,
-    heading,
-    rank,
-    rehearsal,
-    training,
-    verified,
-)
+from benchnav.leaderboard.cell import Cell, cell, entrant, heading
+from benchnav.leaderboard.columns import DESCRIPTIVE, MIDDLE_HALF, NAMES, choose
+from benchnav.leaderboard.merit import by_merit, leading
 from benchnav.leaderboard.price_table import LEGEND as PRICE_LEGEND
 from benchnav.leaderboard.price_table import price_sections
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Leaderboard, Record
 from benchnav.leaderboard.section import Section
+from benchnav.plural import counted
 
-DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
 NARROW = 4  # metrics up to which every cell shows its interval
 INTERVALS = 2  # metrics that show it in a wider table
 WIDE = 8  # metrics beyond which a table has a row for each of them
@@ -32,32 +24,23 @@ LEGEND = (
     " ↑ more is better, ↓ less.",
     "rank: 1 + entries significantly better – N − entries significantly worse, by the first metric"
     " that ranks; 1–3 is a tie.",
-    "Paired worlds, sign flips, Holm. Bold: nobody is significantly better."
-    " A failed episode counts as the worst: success 0, collided 1.",
+    "Significant: the paired 95 % interval over the worlds excludes 0, after Holm. Scenarios are"
+    " fixed: a rank holds for other seeds of these.",
+    "Bold: not significantly worse than any other entry; nothing is bold where all tie.",
+    "A failed episode counts as the worst: success 0, collided 1.",
 )
 
 
-def choose(held: Sequence[str], metrics: Sequence[str] | None) -> tuple[str, ...]:
-    """The metrics to show of those ``held``: the default few, ``["all"]``, or those named.
+def sections(
+    board: Leaderboard, metrics: Sequence[str] | None, columns: Sequence[str] | None = None
+) -> Iterator[Section]:
+    """Tables of a leaderboard, one per track, scenario and role, and what ignorance costs.
 
-    Raises UsageError for a metric that is not held.
+    ``columns`` are those of each table, in this order; without them, it has the rank, the
+    ``metrics``, and what else is known of its navigators.
     """
-    if metrics is None:
-        return tuple(name for name in DEFAULT if name in held) or tuple(held[:NARROW])
-    if list(metrics) == ["all"]:
-        return tuple(held)
-    for name in metrics:
-        if name not in held:
-            raise UsageError(
-                f"A metric to show must be one that the leaderboard holds. Got {name!r} instead."
-                f"{did_you_mean(name, held)} 'all' shows all."
-            )
-    return tuple(dict.fromkeys(metrics))
-
-
-def sections(board: Leaderboard, metrics: Sequence[str] | None) -> Iterator[Section]:
-    """Tables of a leaderboard, one per track, scenario and role, and what ignorance costs."""
-    shown = choose(board.metrics, metrics)
+    named = None if columns is None else [name for name in columns if name in board.metrics]
+    shown = choose(board.metrics, metrics if named is None else named)
     records = [r for r in board.records if r.track != PRICE]
     groups = {key: list(group) for key, group in groupby(records, key=_key)}
     for key, records in groups.items():
@@ -70,14 +53,31 @@ def sections(board: Leaderboard, metrics: Sequence[str] | None) -> Iterator[Sect
             for r in group
             if key[2] == ALL and (k[:3], k[6:]) == ((*key[:2], ALL_INTERQUARTILE), key[6:])
         ]
-        yield from _Table(records, middle, shown).sections(_title(records, variants))
-    yield from price_sections(board, shown[:PRICED] if metrics is None else shown)
+        table = _Table(records, middle, shown, columns)
+        yield from table.sections(_title(records, variants), _name(records[0], variants))
+    priced = shown[:PRICED] if metrics is None and columns is None else shown
+    yield from price_sections(board, priced)
 
 
 def legend(board: Leaderboard) -> tuple[str, ...]:
     """What is said below all tables."""
     priced = any(r.track == PRICE for r in board.records)
     return (*LEGEND, PRICE_LEGEND) if priced else LEGEND
+
+
+def failures_and_remarks(leaders: Sequence[Record]) -> list[str]:
+    """The notes on what went wrong in the episodes of navigators."""
+    failures = [f"{r.navigator} failed {_closed(r.failure)}" for r in leaders if r.failure]
+    remarks = [f"Remark of {r.navigator} {_closed(r.remark)}" for r in leaders if r.remark]
+    return failures + remarks
+
+
+def granted(rehearsals: int) -> str:
+    """The note of a table of entries that rehearsed."""
+    return (
+        f"Granted {counted(rehearsals, 'rehearsal')} of each world before it was scored; ranked"
+        " among entries with the same grant alone."
+    )
 
 
 def _key(r: Record) -> tuple[str, ...]:
@@ -90,7 +90,7 @@ def _title(records: list[Record], variants: bool) -> str:
     first = records[0]
     scenario = "all scenarios" if first.scenario == ALL else first.scenario
     counts = {r.episodes for r in records if r.episodes}
-    worlds = f", {counts.pop()} worlds" if len(counts) == 1 else ""
+    worlds = f", {counted(counts.pop(), 'world')}" if len(counts) == 1 else ""
     split = "" if first.split == "test" else f", split {first.split}"
     variant = (
         f", horizon {first.horizon:g} s, dt {first.dt:g} s, hash {first.scenario_hash[:8]}"
@@ -101,110 +101,117 @@ def _title(records: list[Record], variants: bool) -> str:
     return f"{scenario}, track {first.track}{split}, {first.role}s{worlds}{variant}{grant}"
 
 
+def _name(r: Record, variants: bool) -> tuple[str, ...]:
+    """What tells a table from the others of a leaderboard."""
+    variant = f"{r.scenario_hash[:8]}-{r.horizon:g}-{r.dt:g}" if variants else ""
+    grant = f"rehearsal-{r.rehearsal}" if r.rehearsal else ""
+    return r.scenario, r.track, r.role, "" if r.split == "test" else r.split, grant, variant
+
+
 class _Table:
     """The records of one scenario, track and role, the best navigator first."""
 
-    def __init__(self, records: list[Record], middle: list[Record], shown: Sequence[str]) -> None:
+    def __init__(
+        self,
+        records: list[Record],
+        middle: list[Record],
+        shown: Sequence[str],
+        columns: Sequence[str] | None,
+    ) -> None:
         self.at = {(r.navigator, r.metric): r for r in records}
         self.middle = {(r.navigator, r.metric): r for r in middle}
         known = {r.metric for r in records}
         self.metrics = [name for name in shown if name in known]
-        ranked = {r.metric for r in records if r.ranked}
-        self.leading = next((name for name in self.metrics if name in ranked), self.metrics[0])
-        self.navigators = sorted({r.navigator for r in records})
-        self.navigators.sort(key=lambda name: _merit(self.at[name, self.leading]))
+        self.leading = leading(records, self.metrics)
+        self.navigators = by_merit({r.navigator: r for r in records if r.metric == self.leading})
         # bold says something only where somebody is significantly worse
         self.decided = {r.metric for r in records if (r.rank_low or 0) > 1}
-        self.learned = any(not math.isnan(r.training_decisions) for r in records)
         self.rehearsed = records[0].rehearsal
         self.verified = any(r.verified for r in records)
         self.chapter = f"Track {records[0].track}"
-        self.moded = any(r.mode for r in records)
+        self.columns = [
+            name
+            for name in (self._usual(records) if columns is None else columns)
+            if name in self.metrics or name in NAMES
+        ]
 
-    def sections(self, title: str) -> Iterator[Section]:
-        """A row for each navigator, or for each metric where those are many."""
+    def _usual(self, records: list[Record]) -> Iterator[str]:
+        """The rank, the metrics, and beside the leading one what else is known."""
+        yield "rank"
+        if any(r.mode for r in records):
+            yield "mode"  # in the runner's process, or in one of its own
+        for metric in self.metrics:
+            yield metric
+            if metric != self.leading:
+                continue
+            if self.middle:
+                yield MIDDLE_HALF
+            if any(not math.isnan(r.training_decisions) for r in records):
+                yield "training"
+            if self.rehearsed:
+                yield "rehearsal"
+            if self.verified:
+                yield "verified"
+
+    def sections(self, title: str, name: tuple[str, ...]) -> Iterator[Section]:
+        """A row for each navigator, or for each column where those are many."""
         if len(self.metrics) <= WIDE:
-            wide = tuple(self._navigator(name) for name in self.navigators)
-            yield Section(
-                self.chapter, title, tuple(self._headings()), wide, self._notes(self.navigators)
-            )
+            rows = [self._row(navigator) for navigator in self.navigators]
+            heads = (Cell("navigator"), *map(self._heading, self.columns))
+            notes = self._notes(self.navigators)
+            yield Section(self.chapter, title, name, heads, tuple(rows), notes)
             return
+        columns = [c for c in self.columns if c != MIDDLE_HALF]
+        columns.sort(key=lambda column: column in self.metrics)  # stable
         for start in range(0, len(self.navigators), ABREAST):
             block = self.navigators[start : start + ABREAST]
-            names = tuple(entrant(self.at[name, self.leading]) for name in block)
-            ranks = tuple(rank(self.at[name, self.leading]) for name in block)
-            rows = [tuple(self._metric(metric, block)) for metric in self.metrics]
-            if self.learned:
-                costs = (training(self.at[name, self.leading]) for name in block)
-                rows.insert(0, (Cell("training"), *costs))
-            if self.verified:
-                marks = (verified(self.at[name, self.leading]) for name in block)
-                rows.insert(0, (Cell("verified"), *marks))
-            if self.rehearsed:
-                spent = (rehearsal(self.at[name, self.leading]) for name in block)
-                rows.insert(0, (Cell("rehearsal"), *spent))
-            if self.moded:
-                modes = (Cell(self.at[name, self.leading].mode) for name in block)
-                rows.insert(0, (Cell("mode"), *modes))
-            rows.insert(0, (Cell(f"rank ({self.leading})"), *ranks))
-            yield Section(
-                self.chapter, title, (Cell("metric"), *names), tuple(rows), self._notes(block)
-            )
+            names = (entrant(self.at[name, self.leading]) for name in block)
+            rows = [
+                (self._heading(column, alone=True), *(self._cell(n, column, True) for n in block))
+                for column in columns
+            ]
+            heads = (Cell("metric"), *names)
+            yield Section(self.chapter, title, name, heads, tuple(rows), self._notes(block))
 
-    def _headings(self) -> Iterator[Cell]:
-        yield from (Cell("navigator"), Cell("rank"))
-        if self.moded:
-            yield Cell("mode")  # in the runner's process, or in one of its own
-        for metric in self.metrics:
-            yield heading(self._any(metric))
-            if self.middle and metric == self.leading:
-                yield Cell("middle half")  # interquartile mean over scenarios
-            if self.learned and metric == self.leading:
-                yield Cell("training")  # decisions and time
-            if self.rehearsed and metric == self.leading:
-                yield Cell("rehearsal")  # decisions and time in one world
-            if self.verified and metric == self.leading:
-                yield Cell("verified")  # re-simulated here
+    def _heading(self, column: str, alone: bool = False) -> Cell:
+        if column in self.metrics:
+            return heading(next(r for (_, metric), r in self.at.items() if metric == column))
+        if column == "rank" and alone:
+            return Cell(f"rank ({self.leading})")
+        return Cell(column.replace("_", " "))
 
-    def _navigator(self, name: str) -> tuple[Cell, ...]:
+    def _row(self, name: str) -> tuple[Cell, ...]:
         leader = self.at[name, self.leading]
-        row = [entrant(leader), rank(leader), *([Cell(leader.mode)] if self.moded else [])]
-        if not leader.episodes:
-            extra = bool(self.middle) + self.learned + bool(self.rehearsed) + self.verified
-            blank = [Cell("")] * (len(self.metrics) - 1 + extra)
-            return (*row, Cell(leader.note), *blank)
-        wide = len(self.metrics) > NARROW
-        limit = INTERVALS - bool(self.middle) if wide else len(self.metrics)
-        for place, metric in enumerate(self.metrics):
-            row.append(self._cell(name, metric, place < limit))
-            if self.middle and metric == self.leading:
-                inner = self.middle.get((name, metric))
-                row.append(cell(inner, interval=False, decided=False))
-            if self.learned and metric == self.leading:
-                row.append(training(leader))
-            if self.rehearsed and metric == self.leading:
-                row.append(rehearsal(leader))
-            if self.verified and metric == self.leading:
-                row.append(verified(leader))
-        return tuple(row)
+        limit = len(self.metrics)
+        if limit > NARROW:
+            limit = INTERVALS - (MIDDLE_HALF in self.columns)
+        if leader.episodes:
+            cells = (self._cell(name, c, c in self.metrics[:limit]) for c in self.columns)
+        else:
+            cells = (self._absence(leader, c) for c in self.columns)
+        return entrant(leader), *cells
 
-    def _metric(self, metric: str, block: list[str]) -> tuple[Cell, ...]:
-        return heading(self._any(metric)), *(self._cell(name, metric, True) for name in block)
+    def _absence(self, leader: Record, column: str) -> Cell:
+        """Of a navigator that was not run: the reason, once."""
+        if column in ("rank", "mode"):
+            return self._cell(leader.navigator, column, False)
+        return Cell(leader.note if column == self.leading else "")
 
-    def _cell(self, name: str, metric: str, interval: bool) -> Cell:
-        r = self.at.get((name, metric))
-        return cell(r, interval=interval, decided=metric in self.decided)
-
-    def _any(self, metric: str) -> Record:
-        return next(r for (_, name), r in self.at.items() if name == metric)
+    def _cell(self, name: str, column: str, interval: bool) -> Cell:
+        leader = self.at[name, self.leading]
+        if column == MIDDLE_HALF:
+            return cell(self.middle.get((name, self.leading)), interval=False, decided=False)
+        if column in DESCRIPTIVE:
+            return DESCRIPTIVE[column](leader)
+        r = self.at.get((name, column))
+        return cell(r, interval=interval, decided=column in self.decided)
 
     def _notes(self, names: list[str]) -> tuple[str, ...]:
         leaders = [self.at[name, self.leading] for name in names]
         notes = [
             f"{r.navigator} is not ranked: {r.note}." for r in leaders if r.note and r.episodes
         ]
-        notes += [f"{r.navigator} failed {_closed(r.failure)}" for r in leaders if r.failure]
-        notes += [f"Remark of {r.navigator} {_closed(r.remark)}" for r in leaders if r.remark]
+        notes += failures_and_remarks(leaders)
         notes += [
             f"{metric} of {name} {self.at[name, metric].fault}."
             for name in names
@@ -214,22 +221,9 @@ class _Table:
         if self.verified:
             notes.append("verified: its runs were re-simulated here; timings cannot be verified.")
         if self.rehearsed:
-            notes.append(
-                f"Granted {self.rehearsed} rehearsals of each world before it was scored; ranked"
-                " among entries with the same grant alone."
-            )
+            notes.append(granted(self.rehearsed))
         return tuple(notes)
 
 
 def _closed(text: str) -> str:
     return text if text.endswith((".", "!", "?")) else f"{text}."
-
-
-def _merit(r: Record) -> tuple[float, float, float]:
-    """Ranked before unranked before absent; then by value."""
-    if r.rank_low is None or r.rank_high is None:
-        ranks = (math.inf, math.inf if math.isnan(r.value) else 0.0)
-    else:
-        ranks = (float(r.rank_low), float(r.rank_high))
-    value = 0.0 if math.isnan(r.value) else r.value
-    return (*ranks, value if r.better == "lower" else -value)

@@ -7,14 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchnav.arrays import IntArray
+from benchnav.arrays import FloatArray, IntArray
 from benchnav.errors import UsageError, did_you_mean
-from benchnav.leaderboard.compare import flips_for, pairs, sign_flip
+from benchnav.leaderboard.compare import pairs
 from benchnav.leaderboard.comparison import Comparison, as_family
-from benchnav.leaderboard.difference import Pairs, difference
+from benchnav.leaderboard.difference import Moments, difference
 from benchnav.leaderboard.estimate import columns_of
 from benchnav.leaderboard.grid import Stratum, strata
-from benchnav.leaderboard.interval import resample
 from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.metrics.metric import Metric
 
@@ -42,39 +41,35 @@ def comparisons(
     for s in strata(results, metrics, mixed=True):
         if metric in s.metrics:
             first, second = pairs(len(s.navigators))
-            every = differences(s, first, second, [metrics[metric]] * len(first), len(first))
+            every = differences(s, first, second, [metrics[metric]] * len(first))
             found += as_family(every, metrics)
     return tuple(found)
 
 
 def differences(
-    s: Stratum, first: IntArray, second: IntArray, metrics: Sequence[Metric], family: int
+    s: Stratum, first: IntArray, second: IntArray, metrics: Sequence[Metric]
 ) -> list[Comparison]:
     """Column c compares navigators ``first[c]`` and ``second[c]`` of ``s`` by ``metrics[c]``.
 
-    Not judged yet; ``family`` says with how many others they will be.
+    Not judged yet.
     """
-    sides = side_by_side(s, first, second, metrics)
-    mean = difference(sides, columns_of(metrics))
-    apart = sides.differences.value
-    p = sign_flip(apart, flips_for(family))
-    worlds = (~np.isnan(apart)).sum(axis=0)
+    apart = side_by_side(s, first, second, metrics)
+    found = difference([Moments.of(apart)], columns_of(metrics))
     return [
         Comparison(
             s.navigators[i], s.navigators[j], s.scenario, s.track, s.role, metrics[c].name,
-            int(worlds[c]), float(mean.value[c]), float(mean.low[c]), float(mean.high[c]),
-            float(p[c]), s.split, s.scenario_hash, s.horizon, s.dt,
+            int(found.worlds[c]), float(found.value[c]), float(found.low[c]),
+            float(found.high[c]), float(found.p[c]), s.split, s.scenario_hash, s.horizon, s.dt,
             int(s.granted[i]), int(s.granted[j]),
         )
         for c, (i, j) in enumerate(zip(first, second, strict=True))
     ]  # fmt: skip
 
 
-def side_by_side(s: Stratum, first: IntArray, second: IntArray, metrics: Sequence[Metric]) -> Pairs:
-    """The columns (n, C) that `differences` compares; NaN where ``s`` lacks a metric."""
+def side_by_side(
+    s: Stratum, first: IntArray, second: IntArray, metrics: Sequence[Metric]
+) -> FloatArray:
+    """The differences (n, C) of `differences`; NaN where ``s`` has no such metric or value."""
     place = np.array([s.metrics.index(m.name) if m.name in s.metrics else -1 for m in metrics])
-    held = place >= 0
-    one, other = (np.where(held, s.value[:, side, place], np.nan) for side in (first, second))
-    weights = resample(len(s.seeds), s.rng("difference"))
-    agents = s.agents[:, first, place], s.agents[:, second, place]
-    return Pairs(one, other, *agents, weights)
+    apart = s.value[:, first, place] - s.value[:, second, place]
+    return np.where(place >= 0, apart, np.nan)

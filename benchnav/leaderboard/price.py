@@ -7,11 +7,10 @@ from itertools import groupby
 
 import numpy as np
 
-from benchnav.arrays import IntArray
-from benchnav.leaderboard.difference import Pairs, difference, spread
-from benchnav.leaderboard.estimate import Estimate, columns_of, mean_over
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.leaderboard.difference import Difference, Moments, difference
+from benchnav.leaderboard.estimate import columns_of
 from benchnav.leaderboard.grid import Stratum, align
-from benchnav.leaderboard.interval import resample
 from benchnav.leaderboard.record import ALL, NO_MAP, PRICE, NotApplicable, Record
 from benchnav.metrics.metric import Metric
 
@@ -37,12 +36,12 @@ def prices(
             continue
         s = priced[0].known
         column = columns_of([metrics.get(name) for name in s.metrics] * len(s.navigators))
-        parts = [difference(each.pairs, column) for each in priced]
+        parts = [Moments.of(each.differences) for each in priced]
         for each, part in zip(priced, parts, strict=True):
-            yield from _records(each.known, [each], part, metrics, _notes([each], mapless, why))
+            own = difference([part], column)
+            yield from _records(each.known, [each], own, metrics, _notes([each], mapless, why))
         if len(priced) > 1:
-            samples = [each.pairs.differences for each in priced]
-            whole = mean_over(parts, samples, spread(column))
+            whole = difference(parts, column)
             yield from _records(None, priced, whole, metrics, _notes(priced, mapless, why))
 
 
@@ -60,15 +59,11 @@ class _Priced:
         return one, other
 
     @cached_property
-    def pairs(self) -> Pairs:
-        """N × M columns, navigator by navigator."""
+    def differences(self) -> FloatArray:
+        """(n, N·M) known − unknown, navigator by navigator."""
         one, other = self.places
-        n = len(one)
-        return Pairs(
-            self.known.value[one].reshape(n, -1), self.unknown.value[other].reshape(n, -1),
-            self.known.agents[one].reshape(n, -1), self.unknown.agents[other].reshape(n, -1),
-            resample(n, self.known.rng("price")),
-        )  # fmt: skip
+        apart: FloatArray = self.known.value[one] - self.unknown.value[other]
+        return apart.reshape(len(one), -1)
 
     @property
     def episodes(self) -> IntArray:
@@ -115,7 +110,7 @@ def _notes(
 def _records(
     of: Stratum | None,
     priced: list[_Priced],
-    found: Estimate,
+    found: Difference,
     metrics: Mapping[str, Metric],
     notes: list[str],
 ) -> Iterator[Record]:
@@ -123,8 +118,6 @@ def _records(
     s = priced[0].known
     episodes = np.sum([each.episodes for each in priced], axis=0)
     failures = np.sum([each.failures for each in priced], axis=0)
-    known = [~np.isnan(each.pairs.differences.value) for each in priced]
-    defined = np.concatenate(known).sum(axis=0)
     nan = float("nan")
     for n, navigator in enumerate(s.navigators):
         none = notes[n] == NO_MAP
@@ -135,7 +128,7 @@ def _records(
                 navigator, of.scenario if of else ALL, PRICE, s.role, name,
                 0.0 if none else float(found.value[at]), low, high,
                 metric.unit if metric else "", metric.better if metric else None,
-                int(episodes[n]), int(defined[at]), int(failures[n]), None, None, 0, notes[n],
+                int(episodes[n]), int(found.worlds[at]), int(failures[n]), None, None, 0, notes[n],
                 s.split, of.scenario_hash if of else "", of.horizon if of else nan,
                 of.dt if of else nan, rehearsal=s.rehearsal,
             )  # fmt: skip

@@ -6,6 +6,7 @@ from itertools import groupby
 from benchnav.leaderboard.cell import Cell, cell
 from benchnav.leaderboard.record import ALL, NO_MAP, PRICE, Leaderboard, Record
 from benchnav.leaderboard.section import Section
+from benchnav.plural import counted
 
 CHAPTER = "Price of ignorance"
 ABREAST = 5  # columns of numbers side by side
@@ -37,14 +38,15 @@ def _tables(records: list[Record]) -> Iterator[Section]:
     names = sorted({r.navigator for r in records}, key=lambda name: _bare(at, name, places))
     counts = {r.episodes for r in records if r.episodes and r.scenario != ALL}
     title = f"{first.metric}, known − unknown, {first.role}s"
-    title += f", {counts.pop()} worlds" if len(counts) == 1 else ""
+    title += f", {counted(counts.pop(), 'world')}" if len(counts) == 1 else ""
     title += "" if first.split == "test" else f", split {first.split}"
     title += f", rehearsal: {first.rehearsal}" if first.rehearsal else ""
+    name = "price", first.metric, first.role, "" if first.split == "test" else first.split
     for start in range(0, len(places), ABREAST):
         block = places[start : start + ABREAST]
         heads = [Cell("all scenarios" if p[1] == ALL else p[1]) for p in block]
         rows = [(Cell(name), *_row([at.get((name, p)) for p in block])) for name in names]
-        yield Section(CHAPTER, title, (Cell("navigator"), *heads), tuple(rows), ())
+        yield Section(CHAPTER, title, name, (Cell("navigator"), *heads), tuple(rows), ())
 
 
 def _place(r: Record) -> Place:

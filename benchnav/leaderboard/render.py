@@ -7,53 +7,71 @@ from typing import Literal
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard import escape
 from benchnav.leaderboard.cell import Cell
-from benchnav.leaderboard.layout import choose, legend, sections
+from benchnav.leaderboard.columns import choose, choose_columns
+from benchnav.leaderboard.latex import latex_document
+from benchnav.leaderboard.layout import legend, sections
+from benchnav.leaderboard.matrix import matrix_sections
 from benchnav.leaderboard.record import Leaderboard, Record
 from benchnav.leaderboard.section import Section
 from benchnav.leaderboard.tidy import as_csv, as_json
 
 Format = Literal["markdown", "csv", "latex", "html", "json"]
+Metrics = Sequence[str] | None
 
 
-def render(board: Leaderboard, format: str, metrics: Sequence[str] | None = None) -> str:
+def render(
+    board: Leaderboard,
+    format: str,
+    metrics: Sequence[str] | None = None,
+    columns: Sequence[str] | None = None,
+) -> str:
     """The leaderboard as text that ends with a line break.
 
     Markdown, LaTeX and HTML show a few ``metrics`` unless told otherwise (``["all"]``:
-    all); CSV and JSON are tidy, one record each, and hold all unless told otherwise.
-    Raises UsageError for an unknown format or metric.
+    all); LaTeX shows each as a matrix of navigators and scenarios. ``columns`` are instead those
+    of every table, in this order: metrics and the names of
+    `benchnav.leaderboard.columns.NAMES`. CSV and JSON are tidy, one record each with every field,
+    and hold all metrics unless some are named in either way.
+    Raises UsageError for an unknown format, metric or column, and for metrics beside columns.
     """
     if format not in _RENDERERS:
         raise UsageError(
             f"The format must be one of {', '.join(_RENDERERS)}. Got {format!r} instead."
             f"{did_you_mean(format, _RENDERERS)}"
         )
-    return _RENDERERS[format](board, metrics)
+    if columns is not None:
+        if metrics is not None:
+            raise UsageError("Columns name their metrics. Got metrics, too: name them as columns.")
+        columns = choose_columns(board.metrics, columns)
+    return _RENDERERS[format](board, metrics, columns)
 
 
-def _chosen(board: Leaderboard, metrics: Sequence[str] | None) -> list[Record]:
+def _chosen(board: Leaderboard, metrics: Metrics, columns: Metrics) -> list[Record]:
+    if columns is not None:
+        metrics = [name for name in columns if name in board.metrics]
     shown = set(choose(board.metrics, ["all"] if metrics is None else metrics))
     return [record for record in board.records if record.metric in shown]
 
 
-def _json(board: Leaderboard, metrics: Sequence[str] | None) -> str:
-    return as_json(_chosen(board, metrics))
+def _json(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+    return as_json(_chosen(board, metrics, columns))
 
 
-def _csv(board: Leaderboard, metrics: Sequence[str] | None) -> str:
-    return as_csv(Record, _chosen(board, metrics))
+def _csv(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+    return as_csv(Record, _chosen(board, metrics, columns))
 
 
 def _chapters(
-    board: Leaderboard, metrics: Sequence[str] | None
+    board: Leaderboard, metrics: Metrics, columns: Metrics
 ) -> Iterator[tuple[str, list[Section]]]:
     """The tables of each track, then those of the price of ignorance."""
-    for chapter, tables in groupby(sections(board, metrics), key=lambda s: s.chapter):
+    for chapter, tables in groupby(sections(board, metrics, columns), key=lambda s: s.chapter):
         yield chapter, list(tables)
 
 
-def _markdown(board: Leaderboard, metrics: Sequence[str] | None) -> str:
+def _markdown(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
     blocks = []
-    for chapter, tables in _chapters(board, metrics):
+    for chapter, tables in _chapters(board, metrics, columns):
         blocks += [f"## {escape.markdown(chapter)}\n", *map(_markdown_table, tables)]
     return "\n".join([*blocks, *(f"{line}  " for line in legend(board)), ""])
 
@@ -73,36 +91,12 @@ def _markdown_table(section: Section) -> str:
     return "\n".join([*lines, ""] if section.notes else lines)
 
 
-def _latex(board: Leaderboard, metrics: Sequence[str] | None) -> str:
-    lines = ["% needs \\usepackage[T1]{fontenc} and \\usepackage{booktabs}"]
-    for chapter, tables in _chapters(board, metrics):
-        lines.append(f"\\section*{{{escape.latex(chapter)}}}")
-        lines += [line for section in tables for line in _latex_table(section)]
-    said = " ".join(escape.latex(line) for line in legend(board))
-    return "\n".join([*lines, f"\\noindent {{\\footnotesize {said}}}", ""])
-
-
-def _latex_table(section: Section) -> list[str]:
-    def text(cell: Cell) -> str:
-        return f"\\textbf{{{escape.latex(cell.text)}}}" if cell.bold else escape.latex(cell.text)
-
-    def line(parts: Sequence[str]) -> str:
-        return f"    {' & '.join(parts)} \\\\"
-
-    caption = " ".join(escape.latex(part) for part in (f"{section.title}.", *section.notes))
-    return [
-        "\\begin{table}",
-        "  \\centering",
-        f"  \\caption{{{caption}}}",
-        f"  \\begin{{tabular}}{{l{'r' * (len(section.headings) - 1)}}}",
-        "    \\toprule",
-        line([text(heading) for heading in section.headings]),
-        "    \\midrule",
-        *(line([text(cell) for cell in row]) for row in section.rows),
-        "    \\bottomrule",
-        "  \\end{tabular}",
-        "\\end{table}",
-    ]
+def _latex(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+    """Matrices of the leading metric, or of those named; tables where columns are named."""
+    if columns is not None:
+        return latex_document(list(sections(board, None, columns)), legend(board))
+    shown = choose(board.metrics, metrics)[: 1 if metrics is None else None]
+    return latex_document(list(matrix_sections(board, shown)), legend(board))
 
 
 _STYLE = (
@@ -114,9 +108,9 @@ _STYLE = (
 )
 
 
-def _html(board: Leaderboard, metrics: Sequence[str] | None) -> str:
+def _html(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
     body = []
-    for chapter, tables in _chapters(board, metrics):
+    for chapter, tables in _chapters(board, metrics, columns):
         body.append(f"<h2>{escape.html(chapter)}</h2>")
         body += [part for section in tables for part in _html_table(section)]
     said = [f"<p>{escape.html(line)}</p>" for line in legend(board)]
@@ -143,7 +137,7 @@ def _html_table(section: Section) -> list[str]:
     ]
 
 
-_RENDERERS: dict[str, Callable[[Leaderboard, Sequence[str] | None], str]] = {
+_RENDERERS: dict[str, Callable[[Leaderboard, Metrics, Metrics], str]] = {
     "markdown": _markdown,
     "csv": _csv,
     "latex": _latex,

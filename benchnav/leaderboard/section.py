@@ -11,6 +11,7 @@ class Section:
 
     chapter: str  # what tables that stand together share: a track, or the price of ignorance
     title: str
+    name: tuple[str, ...]  # what tells the table from the others; parts may be empty
     headings: tuple[Cell, ...]
     rows: tuple[tuple[Cell, ...], ...]
     notes: tuple[str, ...]

@@ -1,20 +1,16 @@
 """Who ranks where on each metric, and why somebody does not rank."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.leaderboard.compare import (
-    comparable,
-    flips_for,
-    holm,
-    pairs,
-    ranks,
-    sign_flip,
-)
+from benchnav.leaderboard.compare import comparable, holm, pairs, ranks
+from benchnav.leaderboard.difference import Moments, difference
+from benchnav.leaderboard.estimate import columns_of
 from benchnav.metrics.metric import Metric
+from benchnav.plural import counted
 
 
 @dataclass(frozen=True)
@@ -25,16 +21,6 @@ class Standing:
     high: int | None
     ranked: int
     note: str
-
-
-@dataclass
-class _Contest:
-    """One metric: its entrants (N',) and the paired differences (n, C) among them."""
-
-    metric: int
-    entrants: IntArray
-    differences: FloatArray
-    notes: dict[int, str] = field(default_factory=dict)
 
 
 def standings(
@@ -49,19 +35,15 @@ def standings(
     ``stratum`` (n,) numbers the scenario of each world: scenarios count alike.
     """
     covered = comparable(attempted)
-    contests = []
+    table = []
     for m, name in enumerate(names):
         metric = metrics.get(name)
         never = _never(metric)
         if metric is None or never:
-            contests.append(_Contest(m, _NOBODY, _NO_DIFFERENCES, _everybody(attempted, never)))
+            table.append([Standing(None, None, 0, never)] * attempted.shape[1])
         else:
-            contests.append(_contest(m, value[:, :, m], attempted, covered, stratum, metric))
-    return _judge(contests, attempted.shape[1])
-
-
-_NOBODY = np.zeros(0, dtype=np.int64)
-_NO_DIFFERENCES = np.zeros((0, 0))
+            table.append(_ranked(value[:, :, m], attempted, covered, stratum, metric))
+    return table
 
 
 def _never(metric: Metric | None) -> str:
@@ -73,67 +55,43 @@ def _never(metric: Metric | None) -> str:
     return "conditional on arriving" if metric.conditional else ""
 
 
-def _everybody(attempted: BoolArray, note: str) -> dict[int, str]:
-    return dict.fromkeys(range(attempted.shape[1]), note)
-
-
-def _contest(
-    index: int,
+def _ranked(
     value: FloatArray,
     attempted: BoolArray,
     covered: BoolArray,
     stratum: IntArray,
     metric: Metric,
-) -> _Contest:
-    """Enter those that attempted the same worlds and have a value wherever any of them has."""
+) -> list[Standing]:
+    """Rank those that attempted the same worlds and have a value wherever any of them has."""
     known: BoolArray = ~np.isnan(value)
     owed: BoolArray = np.any(known[:, covered], axis=1)
     gaps = (owed[:, None] & ~known).sum(axis=0)
     entrants = np.flatnonzero(covered & (gaps == 0) & owed.any())
     worlds = int(attempted[:, covered].any(axis=1).sum())
-    notes = {}
+    row = []
     for n in range(value.shape[1]):
         if not covered[n]:
             own = int(attempted[:, n].sum())
-            notes[n] = f"attempted {own} worlds and not the same {worlds} as those that are"
+            note = f"attempted {counted(own, 'world')} and not the same {worlds} as those that are"
         elif not known[:, n].any():
-            notes[n] = "undefined in every episode"
+            note = "undefined in every episode"
         elif gaps[n]:
-            notes[n] = f"undefined in {gaps[n]} episodes in which others have a value"
-        elif len(entrants) < 2:
-            notes[n] = "nobody to rank with"
-    if len(entrants) < 2:
-        return _Contest(index, _NOBODY, _NO_DIFFERENCES, notes)
-    first, second = pairs(len(entrants))
-    sign = 1.0 if metric.better == "higher" else -1.0
-    entered = sign * value[:, entrants] * weights_of(owed, stratum)[:, None]
-    entered[~owed] = 0.0
-    return _Contest(index, entrants, entered[:, first] - entered[:, second], notes)
+            note = f"undefined in {counted(gaps[n], 'episode')} in which others have a value"
+        else:
+            note = "nobody to rank with" if len(entrants) < 2 else ""
+        row.append(Standing(None, None, 0, note))
+    if len(entrants) > 1:
+        low, high = _places(value[:, entrants], stratum, metric)
+        for place, n in enumerate(entrants.tolist()):
+            row[n] = Standing(int(low[place]), int(high[place]), len(entrants), "")
+    return row
 
 
-def weights_of(owed: BoolArray, stratum: IntArray) -> FloatArray:
-    """(n,) what each world counts for in the mean over strata of means over worlds."""
-    size = np.bincount(stratum[owed], minlength=int(stratum.max()) + 1)
-    return 1.0 / (np.maximum(size, 1)[stratum] * np.count_nonzero(size))
-
-
-def _judge(contests: list[_Contest], navigators: int) -> list[list[Standing]]:
-    """All metrics in one pass of sign flips; Holm within each metric."""
-    held = [contest for contest in contests if len(contest.entrants)]
-    p = np.zeros(0)
-    if held:
-        most = max(contest.differences.shape[1] for contest in held)
-        p = sign_flip(np.hstack([c.differences for c in held]), flips_for(most))
-    table, at = [], 0
-    for contest in contests:
-        count = len(contest.entrants)
-        row = [Standing(None, None, 0, contest.notes.get(n, "")) for n in range(navigators)]
-        if count:
-            size = contest.differences.shape[1]
-            lead = contest.differences.sum(axis=0)
-            low, high = ranks(lead, holm(p[at : at + size]), count)
-            at += size
-            for place, n in enumerate(contest.entrants):
-                row[n] = Standing(int(low[place]), int(high[place]), count, "")
-        table.append(row)
-    return table
+def _places(value: FloatArray, stratum: IntArray, metric: Metric) -> tuple[IntArray, IntArray]:
+    """(E,), (E,) rank intervals of E entrants, from the differences of their values (n, E)."""
+    first, second = pairs(value.shape[1])
+    apart = value[:, first] - value[:, second]
+    parts = [Moments.of(apart[stratum == s]) for s in np.unique(stratum)]
+    found = difference(parts, columns_of([metric] * len(first)))
+    lead = found.value if metric.better == "higher" else -found.value
+    return ranks(lead, holm(found.p), value.shape[1])

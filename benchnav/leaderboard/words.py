@@ -6,12 +6,14 @@ from collections.abc import Mapping, Sequence
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import escape
-from benchnav.leaderboard.cell import number, prefixed
 from benchnav.leaderboard.comparison import Comparison
+from benchnav.leaderboard.digits import figures, number, prefixed
+from benchnav.leaderboard.digits import signed as with_sign
 from benchnav.leaderboard.duel import Duel
 from benchnav.leaderboard.record import ALL
 from benchnav.leaderboard.tidy import as_csv, as_json
 from benchnav.metrics.metric import Metric
+from benchnav.plural import counted
 
 FORMATS = ("markdown", "csv", "json")
 SMALLEST = 1e-4  # p below which only that is said
@@ -68,7 +70,7 @@ def place(c: Comparison, *, role: bool, split: bool) -> str:
     parts = [scenario, f"track {c.track}"]
     parts += [f"{c.role}s"] if role else []
     parts += [f"split {c.split}"] if split else []
-    return f"{', '.join(parts)} ({c.worlds} world{'' if c.worlds == 1 else 's'})"
+    return f"{', '.join(parts)} ({counted(c.worlds, 'world')})"
 
 
 def sentence(c: Comparison, metric: Metric) -> str:
@@ -100,7 +102,7 @@ def _said(c: Comparison, metric: Metric) -> str:
 
 def signed(c: Comparison, metric: Metric) -> str:
     """``A − B = +0.5 points [−2.1, +3.0]``."""
-    value, ends, unit = _figures(metric, c.difference, [c.low, c.high], plus="+")
+    value, ends, unit = _figures(metric, c.difference, [c.low, c.high], plus=True)
     return f"{c.first} − {c.second} = {value}{unit}{ends}"
 
 
@@ -110,21 +112,19 @@ def scaled(metric: Metric, widest: float) -> tuple[float, str]:
 
 
 def _figures(
-    metric: Metric, value: float, bounds: Sequence[float], plus: str = ""
+    metric: Metric, value: float, bounds: Sequence[float], plus: bool = False
 ) -> tuple[str, str, str]:
     """Value, interval and unit, the last two with a space before."""
     known = [x for x in bounds if not math.isnan(x)]
-    widest = max(map(abs, (value, *known)))
-    size, unit = scaled(metric, widest)
-
-    def text(x: float) -> str:
-        said = f"{x / size:.1f}" if metric.rate else number(x / size, widest / size)
-        if float(said) == 0.0:
-            return said.removeprefix("-")
-        return f"{plus}{said}" if x > 0 else said.replace("-", "−", 1)
-
-    interval = f" [{', '.join(map(text, known))}]" if known else ""
-    return text(value), interval, f" {unit}" if unit else ""
+    size, unit = scaled(metric, max(map(abs, (value, *known))))
+    whole = 100.0 if metric.rate else None  # points
+    texts: tuple[str, ...]
+    if known:
+        texts = figures(value / size, known[0] / size, known[1] / size, whole)
+    else:
+        texts = (number(value / size, whole),)
+    first, *ends = (with_sign(text) if plus else with_sign(text).replace("+", "") for text in texts)
+    return first, f" [{', '.join(ends)}]" if ends else "", f" {unit}" if unit else ""
 
 
 def _chance(c: Comparison) -> str:
@@ -135,7 +135,7 @@ def _chance(c: Comparison) -> str:
     if p >= 0.95:
         return "which is what chance does"
     if p >= 0.1:
-        return f"by chance {round(10 * p)} times in 10"
+        return f"by chance {counted(round(10 * p), 'time')} in 10"
     times = math.floor(1 / p)
     return f"by chance once in {times if times < 100 else round(times, -1):,} times"
 
@@ -143,9 +143,10 @@ def _chance(c: Comparison) -> str:
 def _explained(duel: Duel) -> str:
     family = max(c.family for c in duel.comparisons)
     return (
-        f"[low, high]: 95 % interval of the mean difference over the worlds of both."
-        f" By chance: how often so much would be seen if neither were better (sign flips of"
-        f" paired worlds), after Holm over the {family}"
-        f" comparison{'' if family == 1 else 's'} above as one family. Rarer than once in 20 it is"
-        " called a difference; an interval stands for itself alone, so a tie may leave out 0."
+        "[low, high]: 95 % interval of the mean difference over the worlds of both. By chance: how"
+        " often a difference as large would be seen if the true one were 0, by the t-test of the"
+        " same interval, adjusted by Holm's procedure for the"
+        f" {counted(family, 'comparison')} above as one family. Rarer than once in"
+        " 20 it is called a difference. An interval is not adjusted, so a tie may exclude 0."
+        " Scenarios are fixed: other seeds may differ, not other scenarios."
     )

@@ -15,22 +15,8 @@ from benchnav.plugins import METRICS
 
 
 def load_metric(name: str) -> Metric:
-    """The registered metric of this name.
-
-    Raises PluginError where the name stands for something else, and what the registry
-    raises where there is no such name or it cannot be imported.
-    """
-    metric = METRICS.load(name)
-    if not isinstance(metric, Metric):
-        raise PluginError(
-            f"The metric {name!r} must be a benchnav.metrics.metric.Metric."
-            f" Got {type(metric).__name__} from {METRICS.source(name).value}."
-        )
-    if ":" not in name and metric.name != name:
-        raise PluginError(
-            f"The metric registered as {name!r} must carry that name. Got {metric.name!r}"
-            f" from {METRICS.source(name).value}."
-        )
+    """The registered metric of this name. Raises what the registry raises."""
+    metric: Metric = METRICS.load(name)
     return metric
 
 
@@ -65,6 +51,7 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
             "seed": who.seed, "role": role.name.lower(), "agents": int(members.sum()),
             "failure": episode.failure, "horizon": clock.horizon, "dt": clock.dt,
             "navigator_hash": who.navigator_hash, "rehearsal": episode.rehearsals,
+            "source_hash": who.source_hash,
             "rehearsal_decisions": episode.rehearsal_decisions,
             "rehearsal_seconds": episode.timings.rehearsal, "remarks": list(episode.remarks),
         }  # fmt: skip

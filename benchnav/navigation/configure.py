@@ -1,6 +1,6 @@
 """From a name or ``{type: name, …params}``, as a file or a caller wrote it, to a plugin."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import groupby
 from types import UnionType
 from typing import Any, Union, get_origin
@@ -21,16 +21,19 @@ from benchnav.navigation.pair import HIERARCHICAL, hint, is_pair, parameters_of
 from benchnav.plugins import NAVIGATORS, Registry
 
 Spec = str | Mapping[str, Any]
+Where = str | Callable[[str], str]
+"""What a spec stands at, for messages: a text, or parameter → text, "" being the spec itself."""
 
 
-def make(registry: Registry, spec: Spec, *, where: str = "") -> Any:
+def make(registry: Registry, spec: Spec, *, where: Where = "") -> Any:
     """The plugin that ``spec`` names, made from the Config that it describes.
 
     Args:
         registry: the kind of plugin, e.g. ``benchnav.plugins.NAVIGATORS``.
         spec: a name, or a mapping with ``type`` and that plugin's parameters; a navigator's
             name may be made of those of its parts (`benchnav.navigation.pair`).
-        where: what the spec stands at (``"suite.yaml:12: navigators[0]"``), for messages.
+        where: what the spec stands at (``"suite.yaml:12: navigators[0]"``), for messages;
+            or a function that gives it for each parameter.
 
     Raises:
         ConfigError: the spec is neither form, or the Config refuses a parameter.
@@ -49,7 +52,7 @@ def make(registry: Registry, spec: Spec, *, where: str = "") -> Any:
         ) from error
 
 
-def configure(registry: Registry, spec: Spec, *, where: str = "") -> tuple[Any, BaseModel]:
+def configure(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[Any, BaseModel]:
     """The class that ``spec`` names and its validated Config; nothing is constructed.
 
     Raises what `make` raises.
@@ -71,7 +74,9 @@ def configure(registry: Registry, spec: Spec, *, where: str = "") -> tuple[Any, 
     except ValidationError as error:
         written, _ = _written(registry, spec, where)
         lines = _explanations(f"{registry.kind} {written!r}", declared, error.errors())
-        raise ConfigError(_at(where) + "\n".join(lines)) from None
+        if isinstance(where, str):
+            raise ConfigError(_at(where) + "\n".join(text for _, text in lines)) from None
+        raise ConfigError("\n".join(_at(where, key) + text for key, text in lines)) from None
     except PluginError as error:  # of a part that the Config names
         raise type(error)(_at(where) + str(error)) from error.__cause__
     except BenchnavError:
@@ -84,7 +89,7 @@ def configure(registry: Registry, spec: Spec, *, where: str = "") -> tuple[Any, 
         ) from error
 
 
-def split(registry: Registry, spec: Spec, *, where: str = "") -> tuple[str, dict[str, Any]]:
+def split(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[str, dict[str, Any]]:
     """(registered name, parameters) of either form of a spec; a pair is a `hierarchical` one.
 
     Raises ConfigError where it is neither, UnknownPluginError where a pair's part is unknown.
@@ -98,7 +103,7 @@ def split(registry: Registry, spec: Spec, *, where: str = "") -> tuple[str, dict
         raise type(error)(_at(where) + str(error)) from None
 
 
-def _written(registry: Registry, spec: Spec, where: str) -> tuple[str, dict[str, Any]]:
+def _written(registry: Registry, spec: Spec, where: Where) -> tuple[str, dict[str, Any]]:
     """(name, parameters) as they were written."""
     if isinstance(spec, str):
         return spec, {}
@@ -119,8 +124,8 @@ def _written(registry: Registry, spec: Spec, where: str) -> tuple[str, dict[str,
 
 def _explanations(
     subject: str, declared: type[BaseModel], details: list[ErrorDetails]
-) -> list[str]:
-    """One line for each mistake; the branches of a union that all fail are one mistake."""
+) -> list[tuple[str, str]]:
+    """(parameter, line) of each mistake; the branches of a union that all fail are one mistake."""
     lines = []
     for key, group in groupby(details, key=lambda detail: detail["loc"][:1]):
         branches = list(group)
@@ -130,9 +135,11 @@ def _explanations(
             rule = ", or ".join(dict.fromkeys(_rule(branch) for branch in branches))
             whole = next((b["input"] for b in branches if len(b["loc"]) == 2), None)
             got = "" if whole is None else f" Got {_short(whole)} instead."
-            lines.append(f"The parameter {key[0]!r} of the {subject} must be {rule}.{got}")
+            text = f"The parameter {key[0]!r} of the {subject} must be {rule}.{got}"
+            lines.append((str(key[0]), text))
         else:
-            lines += [_explain(subject, declared, branch) for branch in branches]
+            name = str(key[0]) if key else ""
+            lines += [(name, _explain(subject, declared, branch)) for branch in branches]
     return lines
 
 
@@ -171,8 +178,9 @@ def _known(declared: type[BaseModel], place: tuple[int | str, ...]) -> list[str]
     return list(declared.model_fields)
 
 
-def _at(where: str) -> str:
-    return f"{where}: " if where else ""
+def _at(where: Where, parameter: str = "") -> str:
+    text = where if isinstance(where, str) else where(parameter)
+    return f"{text}: " if text else ""
 
 
 def _listed(names: Iterable[object]) -> str:

@@ -28,6 +28,7 @@ class Introduction(BaseModel):
     fingerprint: str = Field("", description="Of the files that it reads.")
     spec: dict[str, Any] = Field({}, description="{type: name, …every parameter}.")
     made_of: tuple[str, ...] = Field((), description="Distributions, with their versions.")
+    parts: tuple[str, ...] = Field((), description="module:attribute of each part's class.")
     unfit: tuple[str, ...] = Field((), description="Why it cannot, for each sensing asked.")
     lacks: str = Field("", description="What is not installed that it needs to be made.")
 
@@ -73,6 +74,7 @@ def meet(
         fingerprint=navigator.fingerprint,
         spec=full,
         made_of=tuple(dict.fromkeys((source, *(part.distribution for part in navigator.parts)))),
+        parts=tuple(dict.fromkeys(part.value for part in navigator.parts)),
         unfit=tuple(unfit(navigator, sensing) for sensing in sensings),
     )
 

@@ -31,7 +31,7 @@ class Cell:
         return Assignment(
             scenario.identity, scenario.hash, self.split, self.track, entry.label, entry.spec,
             scenario.driver_specs,
-            navigator_hash=entry.hash, rehearsals=entry.rehearsal,
+            navigator_hash=entry.hash, source_hash=entry.source_hash, rehearsals=entry.rehearsal,
             leader=entry.leader.spec if entry.leader else None,
             isolated=entry.mode == ISOLATED,
         )  # fmt: skip

@@ -2,8 +2,8 @@
 
 import hashlib
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from benchnav.arena.sensing import Sensing
@@ -14,6 +14,8 @@ from benchnav.navigation.configure import Spec, split
 from benchnav.navigation.introduction import Introduction, introduction
 from benchnav.navigation.navigator import Need, Training
 from benchnav.plugins import NAVIGATORS
+from benchnav.source.digest import FoundSource, find_source
+from benchnav.source.parts import places_of
 from benchnav.store.manifest import IN_PROCESS, ISOLATED, Mode
 
 
@@ -33,10 +35,16 @@ class Entry:
     uses_map: bool = True
     unfit: Mapping[Sensing, str] = field(default_factory=dict)  # why it cannot sense so; "" if so
     mode: Mode = IN_PROCESS
+    places: tuple[str, ...] = ()  # module:attribute of its class and its parts', leader included
+    source_hash: str = ""  # of what stands there; "" where not known
+    edited: tuple[str, ...] = ()  # modules of it that this process imported before an edit
 
     @property
     def hash(self) -> str:
-        """Of all that the label stands for: type, every parameter, source, version, files."""
+        """Of type, every parameter, distributions with versions, files that it read, and mode.
+
+        Code counts in `source_hash`, which changes without a new version.
+        """
         files = [self.fingerprint] if self.fingerprint else []
         led = [self.leader.hash] if self.leader else []
         mode = [] if self.mode == IN_PROCESS else [self.mode]
@@ -70,14 +78,19 @@ class Meeting:
                 f"{where}: The navigator {label!r} cannot be used: {error}."
             ) from None
         led = self._leader(said, where)
+        places = tuple(sorted({*places_of(said.spec, said.parts), *(led.places if led else ())}))
         alone = self.isolate or (name == PROCESS and (led is None or led.mode == ISOLATED))
-        return Entry(
+        entry = Entry(
             label, said.spec, ", ".join(said.made_of), said.needs, said.lacks,
             training=said.training or (led.training if led else None),
             fingerprint=said.fingerprint, rehearsal=said.rehearsal, leader=led,
             unfit=dict(zip(self.sensings, said.unfit, strict=False)),
-            uses_map=said.uses_map, mode=ISOLATED if alone else IN_PROCESS,
+            uses_map=said.uses_map, mode=ISOLATED if alone else IN_PROCESS, places=places,
         )  # fmt: skip
+        if entry.lacks:
+            return entry
+        source = source_of(entry)
+        return replace(entry, source_hash=source.hash, edited=source.edited)
 
     def _leader(self, said: Introduction, where: str) -> Entry | None:
         """Who leads in the rehearsals that a navigator asks for; None where it asks for none."""
@@ -93,11 +106,26 @@ class Meeting:
         return led
 
 
+def source_of(entry: Entry) -> FoundSource:
+    """Return the source that ``entry`` is made of here, now."""
+    specs = [entry.spec, *([entry.leader.spec] if entry.leader else [])]
+    return find_source(entry.places, specs)
+
+
 def label_of(spec: Spec) -> str:
     """What tables call the navigator of ``spec``."""
     if isinstance(spec, str):
         return spec
     return str(spec.get("label", spec.get("type", "")))
+
+
+def sources_of(entries: Iterable[Entry]) -> dict[str, dict[str, Any]]:
+    """Return the source of each navigator that can be made here, by label, for the manifest."""
+    return {
+        entry.label: {"hash": entry.source_hash, "places": list(entry.places)}
+        for entry in entries
+        if entry.source_hash
+    }
 
 
 def resolved(entry: Entry) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from time import monotonic
 from typing import Any
 
 from benchnav.errors import BenchnavError, named
+from benchnav.plugins import registrations
 from benchnav.runner.limits import Limits
 from benchnav.runner.process_tree import kill, resident
 from benchnav.runner.progress import Progress
@@ -120,7 +121,7 @@ class Crew:
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
         notes = context.RawArray("d", SIZE)
-        process = context.Process(target=serve, args=(theirs, notes), daemon=True)
+        process = context.Process(target=serve, args=(theirs, notes, registrations()), daemon=True)
         with _environment(ONE_THREAD):
             process.start()
         theirs.close()

@@ -8,6 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory, mkdtemp
 
 from benchnav.errors import BenchnavError
+from benchnav.plugins import Registration, adopt
 from benchnav.runner.executor import Crew
 from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
@@ -41,8 +42,11 @@ class Foreman:
     If it dies itself, its machine did, and nobody is to blame.
     """
 
-    def __init__(self, limits: Limits, path: Sequence[str]) -> None:
+    def __init__(
+        self, limits: Limits, path: Sequence[str], registrations: Sequence[Registration] = ()
+    ) -> None:
         sys.path += [folder for folder in path if folder not in sys.path]
+        adopt(registrations)
         main = sys.modules["__main__"]  # of who started this process: no worker is to run it
         main.__spec__, main.__file__ = None, None
         self._home = TemporaryDirectory(prefix="benchnav-")

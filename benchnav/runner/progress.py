@@ -5,6 +5,7 @@ from collections.abc import Callable, Hashable, Iterable
 from time import monotonic
 from typing import Any
 
+from benchnav.plural import counted
 from benchnav.runner.estimate import Estimate, Load
 
 UNKNOWN = "estimating the time left"
@@ -129,7 +130,7 @@ class Lines(_Shown):
         if tenth == self._tenth or (now - self._said < 2.0 and self._done < self._total):
             return
         self._tenth, self._said = tenth, now
-        text = f"{self._done} of {self._total} episodes"
+        text = f"{self._done} of {counted(self._total, 'episode')}"
         if self._done < self._total:
             text += f", {self.left()}"
         sys.stderr.write(text + "\n")

@@ -15,6 +15,8 @@ from time import monotonic
 from typing import Any
 
 from benchnav.errors import BenchnavError, MissingExtraError, named
+from benchnav.named_module import current_folder
+from benchnav.plugins import registrations
 from benchnav.runner.executor import Finished
 from benchnav.runner.foreman import Delivery, Foreman, Refusal
 from benchnav.runner.limits import Limits
@@ -98,7 +100,8 @@ class _Site:
             self.ray.kill(foreman)
 
     def _hire(self) -> None:
-        foreman = self.ray.remote(num_cpus=1)(Foreman).remote(self.limits, sys.path)
+        path = [*sys.path, str(current_folder())]  # a navigator may lie there: module:Class
+        foreman = self.ray.remote(num_cpus=1)(Foreman).remote(self.limits, path, registrations())
         self.waiting[foreman.introduce.remote()] = foreman, None
 
     def _heed(self, promise: Any) -> Iterator[Finished]:

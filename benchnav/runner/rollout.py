@@ -43,7 +43,8 @@ class Assignment:
     navigator: Spec
     background: tuple[Spec, ...] = ()  # navigators of the scenario's other teams
     salt: str = ""  # of the run; no navigator is handed it
-    navigator_hash: str = ""  # of its configuration, source and version
+    navigator_hash: str = ""  # of its configuration, distributions and mode
+    source_hash: str = ""  # of its code and data files
     rehearsals: int = 0  # that the navigator asks for
     leader: Spec | None = None  # who drives the leaders in them
     rehearsal: int = 0  # k: this is the k-th of them
@@ -59,7 +60,7 @@ class Assignment:
         """Of the episode with this seed."""
         return Identity(
             self.scenario, self.scenario_hash, self.split, seed, self.track, self.label,
-            self.navigator_hash, self.rehearsal,
+            self.navigator_hash, self.rehearsal, self.source_hash,
         )  # fmt: skip
 
 

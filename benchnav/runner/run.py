@@ -10,8 +10,10 @@ from benchnav.isolation import pool
 from benchnav.plugins import METRICS
 from benchnav.runner.cell import Cell
 from benchnav.runner.executor import Finished, execute
+from benchnav.runner.in_process import bound_here, refuse_edited, refuse_limits_here
 from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
+from benchnav.runner.renewal import Renewal
 from benchnav.runner.shard import Shard
 from benchnav.runner.start import planned, refuse_limits, start
 from benchnav.runner.suite import Suite
@@ -40,6 +42,9 @@ class Summary:
     """Worlds by (navigator, scenario, what it tells of them)."""
     missing: Counter[tuple[str, str]] = field(default_factory=Counter)
     """Values by (metric, why it failed)."""
+    older: int = 0  # stored episodes that older code made, and that are to be replaced
+    replaced: Counter[str] = field(default_factory=Counter)  # of these, those that were, by label
+    in_process: tuple[str, ...] = ()  # labels that ran in this process, which alone knows them
     tracebacks: dict[tuple[str, str], str] = field(default_factory=dict)
     """One for each (navigator, kind of reason) of what was raised."""
 
@@ -73,28 +78,33 @@ def run_suite(
     timeout: float | None = None,
     memory: float | None = None,
     shard: Shard | None = None,
+    again: bool = False,
     executor: Executor | None = None,
     progress: Progress | None = None,
     summary: Summary | None = None,
 ) -> Summary:
     """Run what is not stored yet; afterwards ``out`` holds the whole suite.
 
+    Seeds that a run in ``out`` does not have are added to it.
+
     Args:
         suite: what to run.
-        out: the run folder; missing, empty, or one of the same suite (resumed).
+        out: the run folder; missing, empty, or one of the same suite, resumed or extended.
         workers: processes; None: as many as there are cores; 0: in this process, where nothing
-            is limited.
+            is limited. What is registered in this process alone runs in it in any case.
         timeout: [s] that a call of a navigator may last; None: as in ``out``, or as in `Limits`.
         memory: [GB] that a worker may hold; None: likewise.
         shard: run this share alone; None: everything.
+        again: run episodes again that were made by older code. They are replaced once all of a
+            navigator's are there; a run that is stopped before keeps the old ones, and goes on.
         executor: who runs the tasks; None: worker processes of this machine.
         progress: who is told; None: nobody.
         summary: filled while the run goes on; None: a new one.
 
     Raises:
         UsageError: no metric is registered, a limit cannot be kept, or ``out`` is no path.
-        RunConflictError: ``out`` holds another suite, salt, limit or thing, or another process
-            writes it.
+        RunConflictError: ``out`` holds another suite, salt, limit or thing, episodes of older
+            code (without ``again``), or another process writes it.
         StoreError: the disk refuses, or a stored part is damaged.
         UnsolvableError: a scenario cannot be drawn.
     """
@@ -105,25 +115,52 @@ def run_suite(
     cells = list(suite.cells())
     if executor is None:
         refuse_limits(workers, timeout, memory)
+    here = cells if workers == 0 else bound_here(cells, elsewhere=executor is not None)
+    refuse_edited(here)
+    if workers != 0:
+        refuse_limits_here(here, (timeout, memory) != (None, None))
+        summary.in_process = tuple(dict.fromkeys(cell.entry.label for cell in here))
     wanted = _wanted(suite, cells, shard)
     manifest = planned(suite, cells, wanted, shard)
     folder, limits = start(suite, out, manifest, timeout, memory)
     with folder.writing():
+        renewal = Renewal.of(folder, manifest)
+        if not again:
+            renewal.refuse(folder)
+        summary.older = renewal.episodes
         reasons = {cell.key: cell.reason for cell in cells}
-        folder = folder.amend(reasons)  # what was not installed then may be now
-        tasks = _tasks(suite, folder, cells, wanted, summary)
+        if shard is None:
+            folder = folder.extend(suite.seeds)
+        folder = renewal.begin(folder.amend(reasons))  # what was not installed then may be now
+        target = renewal.target(folder)
+        folder.drop_others(target)
+        tasks = _tasks(suite, target, cells, wanted, summary)
         told.begin(summary.total, summary.stored)
         told.expect(task.load for task in tasks)
         try:
-            run_tasks = executor or _locally
-            with closing(run_tasks(tasks, workers, told, limits)) as finished:
+            with closing(_finished(tasks, here, workers, told, limits, executor)) as finished:
                 for task, outcome in finished:
                     summary.count(task, outcome)
         finally:
             told.end()
             pool.dismiss()
-            folder.amend(reasons | {cell.key: why for cell, why in summary.not_applicable})
+            not_run = {cell.key: why for cell, why in summary.not_applicable}
+            summary.replaced.update(renewal.finish(folder.amend(reasons | not_run)))
     return summary
+
+
+def _finished(
+    tasks: Sequence[Task], here: Sequence[Cell], workers: int | None, progress: Progress,
+    limits: Limits, executor: Executor | None,
+) -> Generator[Finished, None, None]:  # fmt: skip
+    """Run every task; those of the cells ``here`` last, in this process."""
+    keys = {cell.key for cell in here}
+    mine = [task for task in tasks if task.cell.key in keys]
+    away = [task for task in tasks if task.cell.key not in keys]
+    for chosen, run_tasks, count in ((away, executor or _locally, workers), (mine, _locally, 0)):
+        if chosen:
+            with closing(run_tasks(chosen, count, progress, limits)) as finished:
+                yield from finished
 
 
 def _locally(

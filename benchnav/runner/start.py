@@ -7,6 +7,7 @@ from typing import Any
 
 from benchnav.errors import RunConflictError, UsageError
 from benchnav.runner.cell import Cell
+from benchnav.runner.entry import sources_of
 from benchnav.runner.generators import draw_salt
 from benchnav.runner.limits import Limits
 from benchnav.runner.process_tree import tells_memory
@@ -40,8 +41,9 @@ def planned(
         for cell in said:
             cell["seeds"] = spans(wanted.get(cell["key"], ()))
     return Manifest(
-        suite.resolved(), tuple(said), suite.salt or draw_salt(), shard=str(shard or "")
-    )
+        suite.resolved(), tuple(said), suite.salt or draw_salt(), shard=str(shard or ""),
+        sources=sources_of(suite.entries),
+    )  # fmt: skip
 
 
 def start(

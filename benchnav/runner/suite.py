@@ -1,5 +1,6 @@
 """A suite, resolved: a lazy product of scenarios, tracks and navigators over seeds."""
 
+import re
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -11,16 +12,20 @@ from benchnav.errors import (
     did_you_mean,
 )
 from benchnav.navigation.configure import Spec
+from benchnav.navigation.drivers import check_drivers
 from benchnav.navigation.tracks import TRACKS
 from benchnav.runner.cell import Cell
 from benchnav.runner.entry import Entry, Meeting, label_of, resolved
 from benchnav.runner.generators import check_salt
-from benchnav.runner.suite_file import SuiteFile, parse_seeds, suite_path
+from benchnav.runner.suite_file import SuiteFile, is_scenario, parse_seeds, suite_path
 from benchnav.scenario.catalogue import find
+from benchnav.scenario.document import Document
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text, validate
 from benchnav.store.scenario_files import sha256_of
 from benchnav.world.build import sensing_of
+
+FIRST_LOOK = "quick"  # the suite that lends its navigators, tracks and seeds to a scenario alone
 
 
 @dataclass(frozen=True)
@@ -112,13 +117,18 @@ class Suite:
 
 
 def load_suite(name: str, selection: Selection = Selection()) -> Suite:
-    """The suite that ships as ``name`` or stands in that file, with what was selected.
+    """Return the suite called ``name`` or in that file, with the selection applied.
+
+    The name or file of a scenario gives a suite of that scenario: its navigators, tracks and
+    seeds are those of the suite `FIRST_LOOK` where nothing is selected.
 
     Raises:
         UsageError: no such suite, track, seeds or salt; a label or scenario twice.
         ScenarioError: the suite file or a scenario is wrong.
         PluginError: a navigator cannot be used.
     """
+    if is_scenario(name):
+        return _suite_of_one(name, selection)
     path = suite_path(name)
     document = read_yaml(path)
     said = validate(SuiteFile, document)
@@ -127,6 +137,8 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
         scenarios = tuple(find(name) for name in selection.scenarios)
     else:
         scenarios = tuple(find(name, path.parent) for name in said.scenarios)
+    for scenario in scenarios:
+        check_drivers(scenario)
     meeting = Meeting(tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate)
     entries = tuple(
         meeting.entry(spec, "--navigator" if i is None else document.where(("navigators", i)))
@@ -134,13 +146,25 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     )
     tracks = tuple(selection.tracks or said.tracks)
     _refuse_unknown_tracks(tracks)
-    _refuse_twice("scenario", [s.identity for s in scenarios], path)
-    _refuse_twice("track", tracks, path)
-    _refuse_twice("navigator label", [e.label for e in entries], path)
+    for key, names, selected in (
+        ("scenarios", [s.identity for s in scenarios], selection.scenarios),
+        ("tracks", tracks, selection.tracks),
+        ("navigators", [e.label for e in entries], selection.navigators),
+    ):
+        _refuse_twice(key, names, selected, document)
     seeds = _seeds(selection.seeds or str(said.seeds))
     salt = _salt(selection.salt)
     suite = Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries, salt)
     return replace(suite, blocks=_blocks(said, suite, path)) if said.blocks else suite
+
+
+def _suite_of_one(name: str, selection: Selection) -> Suite:
+    """Return a suite of the scenario called ``name``, and of those that are selected with it."""
+    chosen = replace(selection, scenarios=(name, *selection.scenarios))
+    suite = load_suite(FIRST_LOOK, chosen)
+    scenario = suite.scenarios[0]
+    called = re.sub(r"[^a-z0-9]+", "-", scenario.name.lower()).strip("-")[:60]
+    return replace(suite, name=called or "scenario", version=scenario.version, blocks=())
 
 
 def _blocks(said: SuiteFile, suite: Suite, path: Path) -> tuple[Block, ...]:
@@ -220,9 +244,22 @@ def _refuse_unknown_tracks(tracks: Sequence[str]) -> None:
             )
 
 
-def _refuse_twice(what: str, names: Sequence[str], path: Path) -> None:
-    for name in names:
-        if names.count(name) > 1:
+def _refuse_twice(
+    key: str, names: Sequence[str], selected: Sequence[str], document: Document
+) -> None:
+    """Raise UsageError for a name that stands twice in the file, or among options if selected."""
+    for k, name in enumerate(names):
+        first = names.index(name)
+        if first == k:
+            continue
+        if selected:
+            same = selected[first] == selected[k]
+            written = "" if same else f", as {selected[first]!r} and as {selected[k]!r}"
             raise UsageError(
-                f"Every {what} of a suite must be there once. {path} has {name!r} more than once."
+                f"--{key[:-1]} must name each of the {key} once. It names {name!r} more than"
+                f" once{written}. Leave one of them out."
             )
+        raise UsageError(
+            f"{document.where((key, k))} must not repeat another of the {key}. It names {name!r}"
+            f" more than once; the first is {key}[{first}]."
+        )

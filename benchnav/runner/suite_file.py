@@ -10,6 +10,11 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.navigation.tracks import Track
+from benchnav.scenario.catalogue import is_named
+from benchnav.scenario.catalogue import names as scenario_names
+from benchnav.scenario.parameters import split_parameters
+from benchnav.scenario.scenario import Scenario
+from benchnav.scenario.yaml_reader import read_yaml
 
 MAX_SEEDS = 1_000_000
 _RANGE = re.compile(r"(?:([0-9]{1,15}):)?([0-9]{1,15})")
@@ -88,19 +93,41 @@ def suite_names() -> list[str]:
 
 
 def suite_path(name: str) -> Path:
-    """The file of a suite that ships, or the path itself where ``name`` is one.
+    """Return the file of a suite that ships, or the path itself where ``name`` is one.
 
     Raises UsageError where it is neither.
     """
-    if name.endswith(_SUFFIXES) or Path(name).is_file():
+    if _is_file_name(name):
         return Path(name)
     for entry in _shipped():
         if entry.name == f"{name}.yaml":
             return Path(str(entry))
     raise UsageError(
-        f"SUITE must be a file (*.yaml) or one of {', '.join(suite_names())}."
-        f" Got {name!r} instead.{did_you_mean(name, suite_names())}"
+        f"SUITE must be one of the suites {', '.join(suite_names())}, the name of a scenario, or"
+        f" a file (*.yaml). Got {name!r} instead."
+        f"{did_you_mean(name, [*suite_names(), *scenario_names()])}"
     )
+
+
+def is_scenario(name: str) -> bool:
+    """Whether ``name`` stands for one scenario, by name or file, and not for a suite.
+
+    Raises ScenarioError where a file cannot be read.
+    """
+    base, _ = split_parameters(name)
+    if _is_file_name(base):
+        return describes_scenario(read_yaml(base).data)
+    return base not in suite_names() and is_named(name)
+
+
+def describes_scenario(data: Any) -> bool:
+    """Whether the content of a YAML file has more keys of a scenario than of a suite."""
+    keys = set(data) if isinstance(data, dict) else set()
+    return len(keys & set(Scenario.model_fields)) > len(keys & set(SuiteFile.model_fields))
+
+
+def _is_file_name(name: str) -> bool:
+    return name.endswith(_SUFFIXES) or Path(name).is_file()
 
 
 def _shipped() -> list[Traversable]:

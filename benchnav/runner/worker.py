@@ -9,6 +9,7 @@ import os
 import signal
 import sys
 import traceback
+from collections.abc import Sequence
 from contextlib import suppress
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
@@ -16,7 +17,9 @@ from threading import Thread
 from typing import Any
 
 from benchnav.errors import BenchnavError
+from benchnav.plugins import Registration, adopt
 from benchnav.runner.watch import Notes, write_to
+from benchnav.streams import prepare_streams, talk
 
 ONE_THREAD = {  # a worker is one core: more threads would only fight those of other workers
     "BENCHNAV_THREADS": "1",
@@ -27,21 +30,30 @@ ONE_THREAD = {  # a worker is one core: more threads would only fight those of o
 }
 
 
-def serve(pipe: "Connection[Any, Any]", notes: Notes) -> None:
+def serve(
+    pipe: "Connection[Any, Any]", notes: Notes, registrations: Sequence[Registration] = ()
+) -> None:
     """Work until the pipe says None or closes. Runs in a process of its own.
 
-    ``notes`` are shared with the parent, who reads from them which call lasts.
+    ``notes`` are shared with the parent, who reads from them which call lasts;
+    ``registrations`` are what it knows by name and is not installed.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
+    prepare_streams()
     os.dup2(2, 1)  # what a navigator prints is talk, and results are the parent's
+    sys.stdout = talk(sys.stdout)
     _end_with_parent()
     _go_first()
     write_to(notes)
+    from benchnav.runner.source_check import SourceCheck
     from benchnav.runner.task import work
 
+    adopt(registrations)
+    check = SourceCheck()
     pipe.send(("ready", None))
     while (task := _next(pipe)) is not None:
         try:
+            check.require_same(task.cell.entry)
             outcome = work(task, lambda n: pipe.send(("episodes", n)))
         except BenchnavError as error:
             pipe.send(("refused", (type(error).__name__, str(error))))

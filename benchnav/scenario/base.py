@@ -1,8 +1,8 @@
 """What every part of a scenario's description shares: strictness, numbers with bounds."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field
+from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
 
 
 class Spec(BaseModel):
@@ -30,7 +30,32 @@ Distance = Annotated[float, Field(ge=0, le=FAR)]
 Bounds = Annotated[
     tuple[Coordinate, Coordinate, Coordinate, Coordinate], AfterValidator(_ordered)
 ]  # xmin, ymin, xmax, ymax [m]
+NAME_PATTERN = r"^[a-z0-9]+([_-][a-z0-9]+)*(/[a-z0-9]+([_-][a-z0-9]+)*)*$"  # family/name
+MAX_NAME = 100  # characters of a scenario's name
 Name = Annotated[str, Field(pattern=r"^[a-z0-9]+([_-][a-z0-9]+)*$", max_length=60)]
+
+
+def _how_many(value: Any) -> str:
+    """The tag of a place, which is no key: a list whose first entry is a list holds points."""
+    several = isinstance(value, list | tuple) and (not value or isinstance(value[0], list | tuple))
+    return "several points" if several else "a point"
+
+
+ONE_OR_MORE = Discriminator(_how_many)
+"""Of a union of a point and a list of points, tagged ``a point`` and ``several points``."""
+Places = Annotated[
+    Annotated[Point, Tag("a point")]
+    | Annotated[tuple[Point, ...], Field(min_length=1, max_length=1000), Tag("several points")],
+    ONE_OR_MORE,
+]
+"""[x, y], or a list of such points [m]."""
+
+
+def listed(places: Places | None) -> tuple[Point, ...]:
+    """The points of one place or several; none of None."""
+    if places is None:
+        return ()
+    return places if isinstance(places[0], tuple) else (places,)
 
 
 def inside(bounds: tuple[float, float, float, float], x: float, y: float) -> bool:

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from benchnav.errors import ScenarioError
-from benchnav.scenario.document import Document
+from benchnav.scenario.document import Document, PathKey
 from benchnav.scenario.parameters import Given, Reference, resolve
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.validation import validate
@@ -33,8 +33,7 @@ def scenario_from_text(text: str, name: str, folder: Path | str = ".") -> Scenar
 def _checked(document: Document, folder: Path, given: Given) -> Scenario:
     document, chosen = resolve(document, given)
     scenario = validate(Scenario, document)
-    starts = [document.where(("teams", i, "start")) for i in range(len(scenario.teams))]
-    scenario = scenario.placed_in(folder, chosen, tuple(starts))
+    scenario = scenario.placed_in(folder, chosen, _places_of_teams(document))
     for key, path in scenario.files():
         if not _is_file(path):
             raise ScenarioError(
@@ -42,6 +41,16 @@ def _checked(document: Document, folder: Path, given: Given) -> Scenario:
                 f" {path} is not one."
             )
     return scenario
+
+
+def _places_of_teams(document: Document) -> dict[tuple[PathKey, ...], str]:
+    """Where teams, their parts, and the parts of these stand in the file."""
+    paths: list[tuple[PathKey, ...]] = []
+    for i, team in document.place.children["teams"].children.items():
+        for key, part in team.children.items():
+            paths += [("teams", i, key), *(("teams", i, key, inner) for inner in part.children)]
+        paths.append(("teams", i))
+    return {path: document.where(path) for path in paths}
 
 
 def _is_file(path: Path) -> bool:

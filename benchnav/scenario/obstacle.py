@@ -2,7 +2,7 @@
 
 from pydantic import Field, model_validator
 
-from benchnav.scenario.base import Distance, Point, Spec
+from benchnav.scenario.base import Distance, Places, Point, Spec, listed
 from benchnav.scenario.law import Law, RecordedTrack
 from benchnav.scenario.region import Region
 from benchnav.scenario.sampler import Count, NonNegativeScalar, Scalar, fixed
@@ -15,8 +15,8 @@ class StaticGroup(Spec):
 
     shape: Shape
     count: Count | None = Field(None, description="1 if not given; not with `at`")
-    at: tuple[Point, ...] | None = Field(
-        None, min_length=1, max_length=1000, description="one obstacle at each point [m]"
+    at: Places | None = Field(
+        None, description="[x, y], or a list of such points with one obstacle at each [m]"
     )
     region: Region | None = Field(None, description="where the obstacles' origins are drawn")
     heading: Scalar = Field(0.0, description="[rad] counter-clockwise")
@@ -48,6 +48,11 @@ class StaticGroup(Spec):
         return self
 
     @property
+    def points(self) -> tuple[Point, ...]:
+        """Where the obstacles stand; none where places are drawn."""
+        return listed(self.at)
+
+    @property
     def was_moved(self) -> bool:
         """True where the stale map may show another place, also where that is 0 m away."""
         return self.moved is not False
@@ -64,8 +69,8 @@ class DynamicGroup(Spec):
     shape: Movable
     law: Law
     count: Count | None = Field(None, description="1 if not given; not with `at`")
-    at: tuple[Point, ...] | None = Field(
-        None, min_length=1, max_length=1000, description="one obstacle at each point [m]"
+    at: Places | None = Field(
+        None, description="[x, y], or a list of such points with one obstacle at each [m]"
     )
     region: Region | None = Field(None, description="where the laws' origins are drawn")
     heading: Scalar = Field(0.0, description="of the shape [rad]; it does not turn")
@@ -87,3 +92,8 @@ class DynamicGroup(Spec):
         if self.at is not None and self.count is not None:
             raise FieldError(("count",), "must not be given with `at`: it has one per point")
         return self
+
+    @property
+    def points(self) -> tuple[Point, ...]:
+        """Where the laws' origins lie; none where they are drawn or recorded."""
+        return listed(self.at)

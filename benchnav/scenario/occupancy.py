@@ -7,11 +7,11 @@ from typing import Literal
 import numpy as np
 
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import FloatArray
 from benchnav.errors import MapError
 from benchnav.geometry.contour import outlines
 from benchnav.scenario.importers import movingai, ros_map
-from benchnav.scenario.importers.grid import MAX_CELLS, Occupancy
+from benchnav.scenario.importers.grid import MAX_CELLS, Occupancy, demand_free
 
 Format = Literal["movingai", "ros"]
 Bounds = tuple[float, float, float, float]
@@ -47,7 +47,7 @@ def trace(occupancy: Occupancy, unknown_is_free: bool = False) -> tuple[Solid, .
     blocked cells that touch at a corner. Unknown cells are blocked unless
     ``unknown_is_free``.
     """
-    blocked = _blocked(occupancy, unknown_is_free)
+    blocked = ~occupancy.free(unknown_is_free)
     return tuple(
         Solid(Kind.WALL, tuple(occupancy.points(loop) for loop in outline.loops))
         for outline in outlines(blocked)
@@ -75,9 +75,8 @@ def occupancy_solids(
         MapError: the file is not what it must be, or no cell is free.
     """
     occupancy = read_occupancy(path, format, cell)
+    demand_free(f"{path}:1", occupancy, unknown_is_free, "`unknown_is_free: true`")
     solids = trace(occupancy, unknown_is_free)
-    if not solids:
-        raise MapError(f"{path}:1: the map must have a free cell; all are blocked.")
     shift = np.asarray(offset, np.float64)
     xmin, ymin, xmax, ymax = occupancy.bounds
     x, y = float(shift[0]), float(shift[1])
@@ -97,12 +96,12 @@ def occupancy_loops(
         MapError: the file is not what it must be, or no cell is blocked.
     """
     occupancy = read_occupancy(path, format, cell)
-    blocked = _blocked(occupancy, unknown_is_free)
+    blocked = ~occupancy.free(unknown_is_free)
     if not blocked.any():
-        raise MapError(f"{path}:1: an obstacle's map must have a blocked cell; all are free.")
+        free, _, unknown = occupancy.counts
+        raise MapError(
+            f"{path}:1: an obstacle's map must have a blocked cell; {free} are free"
+            f" and {unknown} are unknown."
+        )
     _, *regions = outlines(np.pad(blocked, 1))  # first the outside, around the free rim
     return tuple(occupancy.points(loop - 1.0) for region in regions for loop in region.loops)
-
-
-def _blocked(occupancy: Occupancy, unknown_is_free: bool) -> BoolArray:
-    return occupancy.blocked if unknown_is_free else occupancy.blocked | occupancy.unknown

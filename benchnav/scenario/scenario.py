@@ -10,8 +10,8 @@ from typing import Annotated, Any
 from pydantic import Field, PrivateAttr, model_validator
 
 from benchnav.errors import did_you_mean
-from benchnav.scenario.base import Bounds, Spec, inside
-from benchnav.scenario.document import PathKey
+from benchnav.scenario.base import MAX_NAME, NAME_PATTERN, Bounds, Spec, inside
+from benchnav.scenario.document import PathKey, dotted
 from benchnav.scenario.law import RecordedTrack
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
 from benchnav.scenario.packing import lattice, most_that_fit
@@ -41,8 +41,8 @@ class Scenario(Spec):
     """What a scenario file says. Metres, seconds, radians; x right, y up."""
 
     name: str = Field(
-        pattern=r"^[a-z0-9]+([_-][a-z0-9]+)*(/[a-z0-9]+([_-][a-z0-9]+)*)*$",
-        max_length=100,
+        pattern=NAME_PATTERN,
+        max_length=MAX_NAME,
         description="family/name",
     )
     version: int = Field(1, ge=1, le=10**6, description="rises when results stop being comparable")
@@ -66,7 +66,7 @@ class Scenario(Spec):
 
     _folder: Path = PrivateAttr(default_factory=Path)
     _chosen: dict[str, float] = PrivateAttr(default_factory=dict)
-    _starts: tuple[str, ...] = PrivateAttr(())
+    _where: dict[tuple[PathKey, ...], str] = PrivateAttr(default_factory=dict)
 
     @property
     def folder(self) -> Path:
@@ -74,25 +74,34 @@ class Scenario(Spec):
         return self._folder
 
     def placed_in(
-        self, folder: Path, chosen: dict[str, float] | None = None, starts: tuple[str, ...] = ()
+        self,
+        folder: Path,
+        chosen: dict[str, float] | None = None,
+        where: dict[tuple[PathKey, ...], str] | None = None,
     ) -> "Scenario":
         """The same scenario, its file names relative to ``folder``.
 
-        ``chosen`` are its parameters that are not the default; ``starts`` says of each of
-        its teams in which file and line its start stands.
+        ``chosen`` are its parameters that are not the default; ``where`` gives the
+        ``file:line: key`` of parts that messages name.
         """
         copy = self.model_copy()
         copy.__dict__.pop("hash", None)
-        copy._folder, copy._chosen, copy._starts = folder, dict(chosen or {}), starts
+        copy._folder, copy._chosen, copy._where = folder, dict(chosen or {}), dict(where or {})
         return copy
 
     def moved_to(self, folder: Path) -> "Scenario":
         """The same scenario where copies of its files lie in another folder."""
-        return self.placed_in(folder, self._chosen, self._starts)
+        return self.placed_in(folder, self._chosen, self._where)
 
-    def where_start(self, team: int) -> str:
-        """``file:line: teams[0].start``; without a file where it came from none."""
-        return self._starts[team] if self._starts else f"teams[{team}].start"
+    def where(self, path: Sequence[PathKey]) -> str:
+        """``file:line: teams[0].start`` of a part of a team; without a file if it came from none.
+
+        A part that has no place of its own, as a default, stands where what holds it stands.
+        """
+        for stop in range(len(path), 1, -1):
+            if tuple(path[:stop]) in self._where:
+                return self._where[tuple(path[:stop])]
+        return dotted(path)
 
     @property
     def identity(self) -> str:
@@ -144,7 +153,8 @@ class Scenario(Spec):
                 key = (*place, "shape", "file")
                 path = self._folder / shape.file
                 yield key, path
-                image = _image_of(path) if shape.type == "occupancy" else None
+                is_ros = isinstance(shape, Occupancy) and shape.format == "ros"
+                image = _image_of(path) if is_ros else None
                 if image is not None:
                     yield key, image
         for i, group in enumerate(self.dynamic):
@@ -175,8 +185,6 @@ def _image_of(path: Path) -> Path | None:
     from benchnav.errors import ScenarioError
     from benchnav.scenario.yaml_reader import read_yaml
 
-    if path.suffix not in {".yaml", ".yml"}:
-        return None
     try:
         data: Any = read_yaml(path).data
     except ScenarioError:
@@ -195,9 +203,12 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     if most > MAX_AGENTS:
         yield ("teams",), f"must have at most {MAX_AGENTS} agents in all; got up to {most:g}"
     for key, groups in (("static", scenario.static), ("dynamic", scenario.dynamic)):
-        total = sum(len(g.at) if g.at else support(g.count or 1.0)[1] for g in groups)
+        total = sum(len(g.points) or support(g.count or 1.0)[1] for g in groups)
         if total > MAX_OBSTACLES:
             yield (key,), f"must have at most {MAX_OBSTACLES} obstacles; got up to {total:g}"
+    pieces = sum(len(wall.places) for wall in scenario.walls)
+    if pieces > MAX_OBSTACLES:
+        yield ("walls",), f"must have at most {MAX_OBSTACLES} pieces; got {pieces}"
     area = scenario.measurement_area
     if area is not None:
         low, high = area[:2], area[2:]
@@ -279,6 +290,7 @@ def _place_problems(scenario: Scenario) -> Iterator[Problem]:
     for key, i, group in groups:
         if group.region is not None and (text := region_problem(group.region, bounds)):
             yield (key, i, "region"), text
-        for j, point in enumerate(group.at or ()):
+        single = group.at == next(iter(group.points), None)
+        for j, point in enumerate(group.points):
             if not inside(bounds, *point):
-                yield (key, i, "at", j), "must lie within the bounds"
+                yield (key, i, "at") if single else (key, i, "at", j), "must lie within the bounds"

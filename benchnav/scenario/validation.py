@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, TypeVar
 
@@ -35,6 +36,11 @@ _BOUND = {
     "string_pattern_mismatch": "must match {pattern}",
     "union_tag_invalid": "must have one of the types {expected_tags}",
 }  # fmt: skip
+_OF_TYPE = {  # the value is of another kind than belongs there
+    "float_type", "int_type", "bool_type", "string_type", "dict_type", "model_type", "list_type",
+    "tuple_type", "path_type", "model_attributes_type", "literal_error", "enum", "sampler",
+}  # fmt: skip
+_LOOK_AHEAD = 4  # times as many complaints as are shown are looked at, to merge them
 
 
 class FieldError(ValueError):
@@ -58,15 +64,72 @@ def validate(model: type[M], document: Document) -> M:
     try:
         return model.model_validate_json(json.dumps(document.data), strict=True)
     except ValidationError as error:
-        count = error.error_count()
-        found = error.errors(include_url=False, include_input=False)[:MAX_ERRORS]
-        lines = [_complaint(model, document, detail) for detail in found]
-        if count > MAX_ERRORS:
-            lines.append(f"… and {count - MAX_ERRORS} more.")
-        raise ScenarioError("\n".join(lines)) from None
+        raise ScenarioError(_explained(model, document, error)) from None
 
 
-def _complaint(model: type[BaseModel], document: Document, detail: ErrorDetails) -> str:
+def _explained(model: type[BaseModel], document: Document, error: ValidationError) -> str:
+    """A line for each mistake, up to `MAX_ERRORS` of them, and how many more there are."""
+    details = [
+        detail
+        for detail in error.errors(include_url=False, include_input=False)
+        if not _is_long_enough(document.data, detail)
+    ]
+    found = [_complaint(model, document, detail) for detail in details[: _LOOK_AHEAD * MAX_ERRORS]]
+    merged = _merged(found)
+    shown = merged[:MAX_ERRORS]
+    lines = [complaint.text for complaint in shown]
+    more = len(merged) - len(shown) + len(details) - len(found)
+    return "\n".join([*lines, f"… and {more} more."] if more else lines)
+
+
+def _is_long_enough(data: Any, detail: ErrorDetails) -> bool:
+    """Whether a list is called too short because an entry of it is wrong, which is told anyway."""
+    if detail["type"] != "too_short":
+        return False
+    got = _value(data, _real(data, detail["loc"], "too_short"))
+    return isinstance(got, list) and len(got) >= detail["ctx"]["min_length"]
+
+
+@dataclass(frozen=True)
+class _Complaint:
+    """What is wrong at a path; where ``must`` is not empty, the text is made of it."""
+
+    at: str
+    path: tuple[PathKey, ...]
+    said: str = ""
+    must: str = ""
+    got: str = ""
+    hint: str = ""
+    of_type: bool = False  # says that another type of value belongs there
+
+    @property
+    def text(self) -> str:
+        """One line."""
+        said = f"{self.must}; got {self.got}.{self.hint}" if self.must else self.said
+        return f"{self.at} {said}"
+
+
+def _merged(found: Sequence[_Complaint]) -> list[_Complaint]:
+    """The same, with one complaint for all the alternatives of a union that one value missed.
+
+    Where a deeper complaint shows that an alternative took the value, the others say nothing.
+    """
+    deeper = {c.path[:k] for c in found for k in range(len(c.path))}
+    merged: dict[object, _Complaint] = {}
+    for k, c in enumerate(found):
+        if c.of_type and c.path in deeper:
+            continue
+        key: object = (c.path, True) if c.of_type else k
+        before = merged.get(key)
+        if before is None:
+            merged[key] = c
+        else:
+            must = f"{before.must}, or {c.must.removeprefix('must be ')}"
+            merged[key] = replace(before, must=must, hint=before.hint or c.hint)
+    return list(merged.values())
+
+
+def _complaint(model: type[BaseModel], document: Document, detail: ErrorDetails) -> _Complaint:
     context = detail.get("ctx", {})
     own = context.get("error")
     loc: tuple[PathKey, ...] = detail["loc"]
@@ -78,19 +141,19 @@ def _complaint(model: type[BaseModel], document: Document, detail: ErrorDetails)
     kind = detail["type"]
     if kind == "extra_forbidden":
         known = _keys(model, document.data, path[:-1])
-        return f"{at} is not a known key.{_hint(str(path[-1]), known)}"
+        return _Complaint(at, path, f"is not a known key.{_hint(str(path[-1]), known)}")
     if kind == "missing":
-        return f"{at} must be given."
+        return _Complaint(at, path, "must be given.")
     if own is not None:
-        return f"{at} {own}{'' if str(own).endswith(('.', '?')) else '.'}"
+        return _Complaint(at, path, f"{own}{'' if str(own).endswith(('.', '?')) else '.'}")
     must = _must_be(kind, context, detail["msg"])
-    hint = ""
+    hint, of_type = "", kind in _OF_TYPE
     if kind in {"literal_error", "union_tag_invalid", "enum"} and got is not _ABSENT:
         expected = str(context.get("expected", context.get("expected_tags", "")))
-        tag = got.get("type") if isinstance(got, dict) else got
+        tag = got.get("type") if isinstance(got, dict) and kind == "union_tag_invalid" else got
         hint = did_you_mean(str(tag)[:100], [e for e in expected.split("'") if e.strip(", or")])
         got = tag
-    return f"{at} {must}; got {_seen(got)}.{hint}"
+    return _Complaint(at, path, must=must, got=_seen(got), hint=hint, of_type=of_type)
 
 
 def _must_be(kind: str, context: dict[str, Any], message: str) -> str:

@@ -2,27 +2,37 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Field, Tag, model_validator
 
-from benchnav.scenario.base import Length, Spec
+from benchnav.scenario.base import ONE_OR_MORE, Length, Spec
 from benchnav.scenario.sampler import Scalar, fixed
 from benchnav.scenario.shape import Mesh, Occupancy, Shape, shape_is_fixed
 from benchnav.scenario.validation import FieldError
 
+Place = tuple[Scalar, Scalar]  # [m]
 Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class Wall(Spec):
-    """One piece of fixed structure."""
+    """A piece of fixed structure, or the same piece in several places."""
 
     shape: Shape
-    at: tuple[Scalar, Scalar] = Field((0.0, 0.0), description="where the shape's origin lies [m]")
+    at: Annotated[
+        Annotated[Place, Tag("a point")]
+        | Annotated[tuple[Place, ...], Field(min_length=1, max_length=1000), Tag("several points")],
+        ONE_OR_MORE,
+    ] = Field(
+        (0.0, 0.0),
+        description="where the shape's origin lies: [x, y], or a list of such points with one"
+        " wall at each [m]",
+    )
     heading: Scalar = Field(0.0, description="[rad] counter-clockwise; occupancy maps take none")
 
     @model_validator(mode="after")
     def _check(self) -> "Wall":
         if isinstance(self.shape, Mesh | Occupancy):
-            for key, number in (("at", self.at[0]), ("at", self.at[1]), ("heading", self.heading)):
+            numbers = [("at", number) for place in self.places for number in place]
+            for key, number in (*numbers, ("heading", self.heading)):
                 if not isinstance(number, float):
                     kind = self.shape.type
                     raise FieldError((key,), f"must be plain numbers for a shape of type {kind}")
@@ -33,7 +43,14 @@ class Wall(Spec):
     @property
     def fixed(self) -> bool:
         """True where every draw is the same."""
-        return shape_is_fixed(self.shape) and all(map(fixed, (*self.at, self.heading)))
+        numbers = (number for place in self.places for number in place)
+        return shape_is_fixed(self.shape) and all(map(fixed, (*numbers, self.heading)))
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """Where the shape stands, once or several times."""
+        first = self.at[0]
+        return self.at if isinstance(first, tuple) else (self.at,)  # type: ignore[return-value]
 
 
 class Maze(Spec):

@@ -61,6 +61,7 @@ EPISODES = pa.schema(
         ("rehearsal_seconds", pa.float64()),
         ("remarks", pa.list_(pa.string())),
         ("twist", pa.large_list(pa.bool_())),  # of every agent; null: not known
+        ("source_hash", pa.string()),  # of the navigator's code and data; null: not known
         ("traceback", pa.string()),  # of the failure; null where nothing was raised
     ]
 )
@@ -74,9 +75,10 @@ LATER = (
     "rehearsal_seconds",
     "remarks",
     "twist",
+    "source_hash",
     "traceback",
 )  # columns that older parts lack; null there
-DICTIONARY = [*_IDENTITY, "navigator_hash", "failure"]  # columns whose values repeat
+DICTIONARY = [*_IDENTITY, "navigator_hash", "source_hash", "failure"]  # columns whose values repeat
 
 
 def to_table(episodes: Sequence[Episode]) -> pa.Table:
@@ -85,6 +87,7 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
         name: [getattr(e.identity, name) for e in episodes]
         for name in (*_IDENTITY, "seed", "navigator_hash", "rehearsal")
     }
+    columns["source_hash"] = [e.identity.source_hash or None for e in episodes]
     for name in ("failure", "reproducible", "digest", "rehearsals", "rehearsal_decisions"):
         columns[name] = [getattr(e, name) for e in episodes]
     columns["steps"] = [len(e.requested) for e in episodes]
@@ -150,6 +153,7 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
     )  # fmt: skip
     identity = {name: scalar(name) for name in (*_IDENTITY, "seed")}
     identity["navigator_hash"] = scalar("navigator_hash") or ""
+    identity["source_hash"] = scalar("source_hash") or ""
     identity["rehearsal"] = scalar("rehearsal") or 0
     return Episode(
         identity=Identity(**identity),

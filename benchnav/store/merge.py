@@ -73,6 +73,19 @@ def _refuse_different(one: RunFolder, other: RunFolder) -> None:
                 f"Runs that are merged must share their {name.replace('_', ' ')}."
                 f" {one.path} has {_short(here)}, {other.path} has {_short(there)}."
             )
+    _refuse_other_source(one, other)
+
+
+def _refuse_other_source(one: RunFolder, other: RunFolder) -> None:
+    """Raise RunConflictError where two runs were made with different code of a navigator."""
+    for label in one.manifest.sources.keys() & other.manifest.sources.keys():
+        here, there = one.manifest.source_of(label), other.manifest.source_of(label)
+        if here != there:
+            raise RunConflictError(
+                f"Runs that are merged must share the source of {label!r}. {one.path} has {here},"
+                f" {other.path} has {there}. Run one of them again with the code of the other"
+                " (benchnav run … --again)."
+            )
 
 
 def _short(said: object) -> str:
@@ -87,7 +100,8 @@ def _joined(manifests: Sequence[Manifest]) -> Manifest:
     for cell in manifests[0].cells:
         said: Mapping[str, Any] = {k: v for k, v in cell.items() if k != "seeds"}
         cells.append({**said, "reason": ""} if cell["key"] in could else said)
-    return replace(manifests[0], cells=tuple(cells), shard="")
+    sources = {label: source for m in manifests for label, source in m.sources.items()}
+    return replace(manifests[0], cells=tuple(cells), shard="", sources=sources)
 
 
 def _copy_files(run: Path, out: Path) -> None:

@@ -6,20 +6,33 @@ state of the code.
 """
 
 import json
-import os
 from collections.abc import Iterable
 from datetime import UTC, datetime
 from pathlib import Path
 
-from benchnav.kernels import cache_folder
+from benchnav.kernels import kernels_name
 from benchnav.plugins import METRICS
 from benchnav.store.manifest import versions
+from benchnav.user_folders import user_state
 
 
 def receipts_folder() -> Path:
-    """Where they are kept: ``$XDG_STATE_HOME/benchnav/verified``."""
-    home = os.environ.get("XDG_STATE_HOME") or Path.home() / ".local" / "state"
-    return Path(home) / "benchnav" / "verified"
+    """Return where they are kept: ``$XDG_STATE_HOME/benchnav/verified``.
+
+    Raises OSError where this user has no folder for it.
+    """
+    state = user_state()
+    if state.path is None:
+        raise PermissionError(state.reason)
+    return state.path / "verified"
+
+
+def any_receipts() -> bool:
+    """Whether runs were verified on this machine at all."""
+    try:
+        return receipts_folder().is_dir()
+    except OSError:
+        return False
 
 
 def keep_receipt(digest: str, unknown: Iterable[str]) -> None:
@@ -53,4 +66,4 @@ def has_receipt(digest: str) -> bool:
 
 def _code() -> str:
     """Of the version, and of the kernels that re-simulate."""
-    return f"{versions().get('benchnav')} {cache_folder('benchnav').name}"
+    return f"{versions().get('benchnav')} {kernels_name('benchnav')}"

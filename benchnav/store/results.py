@@ -25,11 +25,12 @@ RESULTS = pa.schema(
         ("failure", pa.string()),  # why the navigator failed in this episode; "" if it did not
         ("horizon", pa.float64()),  # [s]
         ("dt", pa.float64()),  # [s]
-        ("navigator_hash", pa.string()),  # of configuration, source, version; "" in older parts
+        ("navigator_hash", pa.string()),  # of configuration, distributions, mode; "" in older
         ("rehearsal", pa.int64()),  # rehearsals granted; 0 in older parts, as the next two
         ("rehearsal_decisions", pa.int64()),  # of agents, in the rehearsals of this world
         ("rehearsal_seconds", pa.float64()),  # of the navigator that led
         ("missing", pa.string()),  # how the metric failed; "" where it did not, and in older parts
+        ("source_hash", pa.string()),  # of the navigator's code and data; "" where not known
         ("traceback", pa.string()),  # of that; null where nothing was raised, and in older parts
         ("remarks", pa.list_(pa.string())),  # of the navigator on this episode; null likewise
     ]
@@ -42,6 +43,7 @@ LATER = {
     "rehearsal_decisions": 0,
     "rehearsal_seconds": 0.0,
     "missing": "",
+    "source_hash": "",
     "traceback": None,
     "remarks": None,
 }

@@ -1,9 +1,13 @@
 """The folder that executing a suite leaves: append-only, resumable, one writer at a time."""
 
+import json
 import os
+import re
+import shutil
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from benchnav.errors import RunConflictError, StoreError
@@ -13,10 +17,13 @@ from benchnav.store.part import FILES, Part, parts_of
 from benchnav.store.part_writer import TEMPORARY
 from benchnav.store.run_path import RunPath, run_path
 
+_SHORT = 10  # digits of a source hash in the name of a folder
+_SUFFIX = re.compile(rf"\.[0-9a-f]{{{_SHORT}}}$")
+
 
 @dataclass(frozen=True)
 class RunFolder:
-    """A run on disk: ``manifest.json`` and ``parts/<cell>/<seeds>.*``."""
+    """A run on disk: ``manifest.json`` and ``parts/<cell>.<source>/<seeds>.*``."""
 
     path: Path
     manifest: Manifest
@@ -37,7 +44,9 @@ class RunFolder:
 
     @classmethod
     def start(cls, path: RunPath, manifest: Manifest) -> "RunFolder":
-        """A new run in an empty or missing folder, or the same suite's run, resumed.
+        """Return a new run in an empty or missing folder, or the same suite's run, resumed.
+
+        The run that is found may have other seeds: `extend` adds those that are asked for.
 
         Raises:
             RunConflictError: the folder holds another suite's run, or something else.
@@ -46,11 +55,12 @@ class RunFolder:
         path = run_path(path)
         if (path / MANIFEST).exists():
             held = load_manifest(path)
-            if held.suite_hash != manifest.suite_hash:
+            differing = _differing(held, manifest)
+            if differing not in ([], ["seeds"]) or (differing and (held.shard or manifest.shard)):
                 raise RunConflictError(
                     f"{path} must be empty or hold a run of {manifest.name}."
                     f" It holds a run of {held.name}, begun {held.created}."
-                    f"{_difference(held, manifest)} Give another --out."
+                    f" They differ in {', '.join(differing)}. Give another --out."
                 )
             return cls(path, held)
         if path.exists() and (not path.is_dir() or not _is_free(path)):
@@ -61,6 +71,27 @@ class RunFolder:
         _write(path / MANIFEST, manifest.dump())
         return cls(path, manifest)
 
+    def extend(self, seeds: range) -> "RunFolder":
+        """Add ``seeds`` to those of the run; only the process that holds the folder may call it.
+
+        Raises:
+            RunConflictError: a gap would lie between them and the seeds of the run.
+            StoreError: the disk refuses.
+        """
+        manifest = load_manifest(self.path)  # as it is now that no other process writes it
+        first, stop = manifest.suite["seeds"]
+        if seeds.start > stop or seeds.stop < first:
+            raise RunConflictError(
+                f"The seeds {seeds.start}:{seeds.stop} must touch those of the run in {self.path},"
+                f" {first}:{stop}. Ask for --seeds {min(first, seeds.start)}:"
+                f"{max(stop, seeds.stop)}, or give another --out."
+            )
+        both = [min(first, seeds.start), max(stop, seeds.stop)]
+        if both != [first, stop]:
+            manifest = replace(manifest, suite={**manifest.suite, "seeds": both})
+            _write(self.path / MANIFEST, manifest.dump())
+        return RunFolder(self.path, manifest)
+
     def amend(self, reasons: Mapping[str, str]) -> "RunFolder":
         """Say anew which cells are n/a: why, by key; a writer may, while it holds the folder.
 
@@ -69,13 +100,38 @@ class RunFolder:
         cells = tuple({**c, "reason": reasons.get(c["key"], "")} for c in self.manifest.cells)
         if cells == self.manifest.cells:
             return self
-        amended = replace(self.manifest, cells=cells)
-        _write(self.path / MANIFEST, amended.dump())
-        return RunFolder(self.path, amended)
+        return RunFolder(self.path, replace(self.manifest, cells=cells)).kept()
+
+    def kept(self) -> "RunFolder":
+        """Write the manifest. Raises StoreError where the disk refuses."""
+        _write(self.path / MANIFEST, self.manifest.dump())
+        return self
 
     def cell(self, key: str) -> Path:
-        """The folder of one cell's parts."""
-        return self.path / "parts" / key
+        """The folder of one cell's parts, as the code made them that the manifest names."""
+        source = self.manifest.source_of(self._labels.get(key, ""))
+        return self.path / "parts" / (f"{key}.{source[:_SHORT]}" if source else key)
+
+    @cached_property
+    def _labels(self) -> dict[str, str]:
+        return {cell["key"]: cell.get("navigator", "") for cell in self.manifest.cells}
+
+    def label_of(self, key: str) -> str:
+        """Return the navigator of a cell."""
+        return self._labels[key]
+
+    def key_of(self, folder: Path) -> str:
+        """The key of the cell whose parts, by whatever code, stand in ``folder``; "" for none."""
+        name = folder.name
+        key = name if name in self._labels else _SUFFIX.sub("", name)
+        return key if key in self._labels else ""
+
+    def drop_others(self, *kept: "RunFolder") -> None:
+        """Remove what code made that neither this nor ``kept`` name; a writer may."""
+        for folder in self.path.glob("parts/*"):
+            key = self.key_of(folder)
+            if key and all(run.cell(key) != folder for run in (self, *kept)):
+                shutil.rmtree(folder)
 
     def parts(self) -> Iterator[Part]:
         """Every sealed part, in the order of the manifest's cells, then of seeds."""
@@ -147,6 +203,12 @@ def _write(path: Path, text: str) -> None:
         raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
 
 
-def _difference(held: Manifest, asked: Manifest) -> str:
-    keys = [k for k in asked.suite if asked.suite.get(k) != held.suite.get(k)]
-    return f" They differ in {', '.join(keys)}." if keys else ""
+def _differing(held: Manifest, asked: Manifest) -> list[str]:
+    """Return the keys of the suite in which the two differ."""
+    left, right = held.plan, asked.plan
+    keys = dict.fromkeys([*right, *left])
+    return [key for key in keys if _json(left.get(key)) != _json(right.get(key))]
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, sort_keys=True)  # a tuple was stored as a list

@@ -10,13 +10,14 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
-from benchnav.errors import CorruptPartError, StoreError
+from benchnav.errors import CorruptPartError, NoRunError, StoreError
 from benchnav.store.manifest import load_manifest
 from benchnav.store.pack import FORMAT, INDEX, MEMBER
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath, run_path
 
 MOST_MEMBERS = 1_000_000
+_ZIP = b"PK"  # with which every zip archive begins
 MOST_INDEX = 256 << 20  # bytes
 
 
@@ -25,7 +26,8 @@ def opened(path: RunPath) -> Iterator[RunFolder]:
     """A run for reading: a folder as it is, a pack unpacked for as long as this lasts.
 
     Raises:
-        StoreError: there is no run, or the archive is not a pack.
+        NoRunError: there is no run, and the file is not a pack.
+        StoreError: the file cannot be read, or another version made the pack.
         CorruptPartError: the pack, or its manifest, is not what was written.
     """
     path = run_path(path)
@@ -43,6 +45,7 @@ def opened(path: RunPath) -> Iterator[RunFolder]:
 def unpack(path: Path, folder: Path) -> None:
     """Write the members of a pack into ``folder``, each only if it is what the index says."""
     try:
+        _refuse_other_files(path)
         with ZipFile(path) as archive:
             infos = archive.infolist()
             _refuse_strange(path, infos)
@@ -56,10 +59,18 @@ def unpack(path: Path, folder: Path) -> None:
         ) from error
 
 
+def _refuse_other_files(path: Path) -> None:
+    with path.open("rb") as file:
+        if not file.read(len(_ZIP)).startswith(_ZIP):
+            raise NoRunError(
+                f"{path} must be a run folder, or a pack that 'benchnav pack' made. It is neither."
+            )
+
+
 def _refuse_strange(path: Path, infos: list[ZipInfo]) -> None:
     """Before a byte is written: names, kinds and sizes."""
     if not infos or infos[0].filename != INDEX:
-        raise StoreError(f"{path} must be a pack that 'benchnav pack' made. It has no {INDEX}.")
+        raise NoRunError(f"{path} must be a pack that 'benchnav pack' made. It has no {INDEX}.")
     if len(infos) > MOST_MEMBERS:
         raise _corrupt(path, f"has {len(infos)} members, more than {MOST_MEMBERS}")
     names = [info.filename for info in infos]

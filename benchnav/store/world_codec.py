@@ -15,8 +15,10 @@ from typing import Any, Union, get_args, get_origin, get_type_hints
 import numpy as np
 
 from benchnav.arena.world import World
+from benchnav.arrays import AnyArray
 
 _DTYPES = ("<f8", "<i8", "|i1", "|b1")
+_PLAIN = (bool, int, float, str)  # JSON has these itself
 
 
 def world_to_json(world: World) -> str:
@@ -50,13 +52,16 @@ def encode(value: Any) -> Any:
 
 
 def decode(kind: Any, value: Any) -> Any:
-    """The value of type ``kind`` that `encode` turned into ``value``."""
-    origin = get_origin(kind)
+    """Return the value of type ``kind`` that `encode` turned into ``value``.
+
+    Raises:
+        KeyError, TypeError, ValueError: ``value`` is not of this type, or no value of
+            this type can be encoded.
+    """
+    kind = _unalias(kind)
+    origin = get_origin(kind) or kind
     if origin is np.ndarray:
-        dtype, shape, items = value
-        if dtype not in _DTYPES:
-            raise ValueError(f"an array must be of {', '.join(_DTYPES)}; got {str(dtype)[:20]!r}")
-        return np.array(items, dtype=np.dtype(dtype)).reshape(shape)
+        return _decode_array(*value)
     if origin in (Union, UnionType):
         if value is None:
             return None
@@ -68,7 +73,25 @@ def decode(kind: Any, value: Any) -> Any:
         return kind(**{name: decode(hint, value[name]) for name, hint in _hints(kind).items()})
     if isinstance(kind, type) and issubclass(kind, Enum):
         return kind(value)
-    return value
+    if kind in _PLAIN:
+        return value
+    raise TypeError(f"a world must not hold values of type {kind}")
+
+
+def _unalias(kind: Any) -> Any:
+    """Return the type that an alias stands for: NDArray is an alias since NumPy 2.5.
+
+    Arguments of the alias are dropped: an array says its own dtype.
+    """
+    while (origin := get_origin(kind) or kind) and hasattr(origin, "__value__"):
+        kind = origin.__value__
+    return kind
+
+
+def _decode_array(dtype: str, shape: list[int], items: list[Any]) -> AnyArray:
+    if dtype not in _DTYPES:
+        raise ValueError(f"an array must be of {', '.join(_DTYPES)}; got {str(dtype)[:20]!r}")
+    return np.array(items, dtype=np.dtype(dtype)).reshape(shape)
 
 
 def _decode_tuple(kinds: tuple[Any, ...], value: list[Any]) -> tuple[Any, ...]:

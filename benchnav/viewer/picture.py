@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeGuard
 
 from benchnav.errors import MissingExtraError, StoreError
+from benchnav.user_folders import home_is_usable, user_cache
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,6 +28,9 @@ def is_picture(path: Path | None) -> TypeGuard[Path]:
 
 def blank(width: float, height: float) -> Figure:
     """An empty figure [inch]. Raises MissingExtraError where matplotlib is not installed."""
+    cache = user_cache().path
+    if not home_is_usable() and cache is not None:  # else it warns, and makes a new one each time
+        os.environ.setdefault("MPLCONFIGDIR", str(cache / "matplotlib"))
     try:
         from matplotlib.figure import Figure
     except ImportError as error:

@@ -1,7 +1,7 @@
 """Worlds from scenarios: (scenario, split, seed) → World, a pure function."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from zlib import crc32
 
 import numpy as np
@@ -13,6 +13,7 @@ from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.errors import UnsolvableError, UsageError, did_you_mean
 from benchnav.geometry.rotation import angle_of
+from benchnav.plural import counted
 from benchnav.scenario.packing import most_that_fit
 from benchnav.scenario.sampler import sample, support
 from benchnav.scenario.scenario import Scenario
@@ -20,7 +21,7 @@ from benchnav.scenario.team import RegionStart, Team
 from benchnav.world.draw_dynamic import check_clear, fixed_bodies, is_fixed, placed_bodies
 from benchnav.world.draw_gap import Barrier, barrier, joined
 from benchnav.world.draw_law import place_at_start
-from benchnav.world.draw_place import NoPlaceError
+from benchnav.world.draw_place import Fault, NoPlaceError, Part
 from benchnav.world.draw_prepared import Prepared, Structure, prepare
 from benchnav.world.draw_static import Piece, draw_pieces
 from benchnav.world.draw_team import Crowd, draw_numbers, place_team
@@ -50,35 +51,57 @@ def build(scenario: Scenario, split: str, seed: int) -> World:
         raise UsageError(f"The seed must be ≥ 0; got {seed}.")
     prepared = prepare(scenario)
     reasons: Counter[str] = Counter()
-    crowded: set[int] = set()
+    failed: dict[tuple[int, Part], Fault] = {}
     for attempt in range(MAX_ATTEMPTS):
         try:
             return _Draw(prepared, SPLITS.index(split), seed, attempt).world()
         except NoPlaceError as reason:
             reasons[str(reason)] += 1
-            crowded |= set() if reason.team is None else {reason.team}
-    worst = "; ".join(f"{text} ({n} draws)" for text, n in reasons.most_common(3))
+            if reason.team is not None:
+                failed.setdefault((reason.team, reason.part), reason.fault)
+    worst = "; ".join(f"{text} ({counted(n, 'draw')})" for text, n in reasons.most_common(3))
     raise UnsolvableError(
         f"{scenario.identity}, split {split}, seed {seed}: no world could be drawn in"
-        f" {MAX_ATTEMPTS} draws: {worst}.{_said_of_room(scenario, sorted(crowded))}"
+        f" {MAX_ATTEMPTS} draws: {worst}.{_said_of_teams(scenario, failed)}"
     )
 
 
-def _said_of_room(scenario: Scenario, crowded: Sequence[int]) -> str:
-    """Of teams whose members found no start: where it stands, and how many fit at the most."""
+def _said_of_teams(scenario: Scenario, failed: Mapping[tuple[int, Part], Fault]) -> str:
+    """Of teams whose members found no start or goal: where that stands, and the cure."""
     lines = []
-    for i in crowded:
+    for (i, part), fault in sorted(failed.items()):
         team = scenario.teams[i]
-        if isinstance(team.start, RegionStart):
-            radius, gap = support(team.radius)[0], team.start.separation
-            margin = radius if scenario.walled else 0.0
-            room = most_that_fit(team.start.region, scenario.bounds, 2.0 * radius + gap, margin)
+        radius = support(team.radius)[0]
+        text = f"\n{scenario.where(('teams', i, part))} of {team.name!r}"
+        if fault == "unreachable":
             lines.append(
-                f"\n{scenario.where_start(i)} of {team.name!r} holds at most {room} agents of"
-                f" radius {radius:g} m that are {gap:g} m apart, packed closely and with nothing"
-                " else there; drawn at random, about half as many find a place."
+                f"{text} is walled off from the start: no way between them is {2 * radius:g} m"
+                " wide, as the agents are. Move it, or open the walls."
+            )
+        elif fault == "blocked":
+            lines.append(
+                f"{text} must be {radius:g} m, the agents' radius, away from all walls and"
+                " obstacles. Move it."
+            )
+        elif part == "start" and isinstance(team.start, RegionStart):
+            lines.append(f"{text} {_room(scenario, team.start, radius)}")
+        else:
+            lines.append(
+                f"{text} has no free place: walls, obstacles or other agents are in the way."
             )
     return "".join(lines)
+
+
+def _room(scenario: Scenario, start: RegionStart, radius: float) -> str:
+    """How many agents fit at the most."""
+    margin = radius if scenario.walled else 0.0
+    gap = start.separation
+    room = most_that_fit(start.region, scenario.bounds, 2.0 * radius + gap, margin)
+    return (
+        f"holds at most {counted(room, 'agent')} of radius {radius:g} m that are {gap:g} m apart,"
+        " packed closely and with nothing else there; drawn at random, about half as many find"
+        " a place."
+    )
 
 
 class _Draw:

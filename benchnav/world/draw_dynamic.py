@@ -30,7 +30,7 @@ def fixed_bodies(group: DynamicGroup, folder: Path, rng: np.random.Generator) ->
     if isinstance(group.law, RecordedTrack):
         laws = recorded_laws(group.law, folder)
     else:
-        laws = [moved_law(draw_law(group.law, rng), np.array(at)) for at in group.at or ()]
+        laws = [moved_law(draw_law(group.law, rng), np.array(at)) for at in group.points]
     return [Body(_shape(group, rng), law) for law in laws]
 
 

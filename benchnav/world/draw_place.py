@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -13,10 +14,16 @@ MANY = (8, 24, 96, 384)  # candidates that are tested together, until one will d
 FEW = (8, 24)
 
 
+Part = Literal["start", "goal"]
+Fault = Literal["no place", "blocked", "unreachable"]
+
+
 class NoPlaceError(Exception):
     """A draw has no place for something; says what. Never leaves `build`."""
 
-    team: int | None = None  # whose start had none
+    part: Part = "start"  # of a team
+    fault: Fault = "no place"
+    team: int | None = None  # whose part had none
 
 
 def draw_points(region: Region, bounds: Bounds, count: int, rng: np.random.Generator) -> FloatArray:

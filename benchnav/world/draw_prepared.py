@@ -123,8 +123,9 @@ def _draw_structure(scenario: Scenario, rng: np.random.Generator) -> Structure:
     if scenario.layout is not None:
         solids += draw_layout(scenario.layout, scenario.bounds, rng)
     meshes = []
-    for wall in scenario.walls:
-        parts, mesh = draw_wall(wall, scenario.folder, rng)
+    standing = [(wall, place) for wall in scenario.walls for place in wall.places]
+    for wall, place in standing:
+        parts, mesh = draw_wall(wall, place, scenario.folder, rng)
         solids += parts
         if mesh is not None:
             meshes.append(mesh)

@@ -12,7 +12,7 @@ from benchnav.arrays import FloatArray
 from benchnav.geometry.rotation import rotated
 from benchnav.scenario.sampler import Scalar, sample
 from benchnav.scenario.shape import Box, Disc, Mesh, Occupancy, Polygon, Polyline, Shape
-from benchnav.scenario.wall import Wall
+from benchnav.scenario.wall import Place, Wall
 
 Bounds = tuple[float, float, float, float]
 
@@ -49,15 +49,17 @@ def draw_solid(
     return Solid(kind, (loop if turn == 0.0 else rotated(loop, turn),))
 
 
-def draw_wall(wall: Wall, folder: Path, rng: np.random.Generator) -> tuple[list[Solid], Any]:
-    """The solids of one wall in the arena's frame, and its mesh (None without one)."""
+def draw_wall(
+    wall: Wall, place: Place, folder: Path, rng: np.random.Generator
+) -> tuple[list[Solid], Any]:
+    """The solids of a wall at one of its places, and its mesh (None without one)."""
     shape = wall.shape
     if isinstance(shape, Occupancy):
-        at = (float(wall.at[0]), float(wall.at[1]))  # type: ignore[arg-type] # plain numbers here
+        at = (float(place[0]), float(place[1]))  # type: ignore[arg-type] # plain numbers here
         path = folder / shape.file
         return list(_occupancy(path, shape.format, at, shape.cell, shape.unknown_is_free)), None
     if isinstance(shape, Mesh):
-        at = (float(wall.at[0]), float(wall.at[1]))  # type: ignore[arg-type]
+        at = (float(place[0]), float(place[1]))  # type: ignore[arg-type]
         yaw = float(wall.heading)  # type: ignore[arg-type]
         path = folder / shape.file
         solids, mesh = _mesh(
@@ -65,7 +67,7 @@ def draw_wall(wall: Wall, folder: Path, rng: np.random.Generator) -> tuple[list[
         )
         return list(solids), mesh
     solid = draw_solid(shape, wall.heading, Kind.WALL, rng)
-    return [solid.moved(np.array([sample(wall.at[0], rng), sample(wall.at[1], rng)]))], None
+    return [solid.moved(np.array([sample(place[0], rng), sample(place[1], rng)]))], None
 
 
 def _loops(shape: Mesh | Occupancy, folder: Path) -> tuple[FloatArray, ...]:

@@ -113,10 +113,10 @@ class _Search:
         """Shapes, and places at the start."""
         pieces: list[Piece] = []
         count = 1 if group.count is None else int(sample(group.count, rng))
-        for k in range(count if group.at is None else len(group.at)):
+        for k in range(count if group.at is None else len(group.points)):
             shape = draw_solid(group.shape, group.heading, Kind.STATIC, rng, self.folder)
             if group.at is not None:
-                place = np.array(group.at[k])
+                place = np.array(group.points[k])
             else:
                 what = f"{name} ({group.shape.type} {k + 1} of {count})"
                 place = self._place(shape, group, standing, what, rng)

@@ -83,6 +83,36 @@ def place_team(
 
 
 @dataclass
+class GoalsTried:
+    """What became of the goals that were tried: why none of them would do."""
+
+    blocked: int = 0  # in a solid, or too close to one
+    unreachable: int = 0  # free, but not joined to the start
+    reached: int = 0
+
+    def count(self, starts: IntArray, goals: IntArray) -> None:
+        """Add goals, given the part of each free space (spaces, N) that they and starts are in."""
+        free = np.all(goals >= 0, axis=0)
+        reached = np.all(goals == starts, axis=0)
+        self.blocked += int((~free).sum())
+        self.unreachable += int((free & ~reached).sum())
+        self.reached += int(reached.sum())
+
+    def explained(self, error: NoPlaceError, what: str) -> NoPlaceError:
+        """The same error; if no goal was ever reached, one that says so."""
+        if self.reached or not self.blocked + self.unreachable:
+            return error
+        if self.unreachable:
+            found = NoPlaceError(f"the goal {what} is unreachable from its start")
+            found.fault = "unreachable"
+        else:
+            found = NoPlaceError(f"the goal {what} lies in or too close to a wall or obstacle")
+            found.fault = "blocked"
+        found.part = "goal"
+        return found
+
+
+@dataclass
 class _Placing:
     """One agent's search for a start and a goal."""
 
@@ -96,16 +126,22 @@ class _Placing:
     bodies: Barrier
     rng: np.random.Generator
     stands: FloatArray  # (N, 2) of a packed start; (0, 2) of any other
+    ends: GoalsTried = field(default_factory=GoalsTried)
 
     def find(self, what: str) -> tuple[FloatArray, FloatArray]:
         """A start and a goal; a start without a goal is drawn again."""
         failure = NoPlaceError(what)
         for _ in range(_STARTS if len(self.batches) > 1 else 1):
-            start = find_place(self.starts, self.start_ok, f"the start {what}", self.batches)
+            self.ends = GoalsTried()
+            try:
+                start = find_place(self.starts, self.start_ok, f"the start {what}", self.batches)
+            except NoPlaceError as error:
+                raise self.ends.explained(error, what) from None
             try:
                 return start, self.goal(start, f"the goal {what}")
             except NoPlaceError as error:
-                failure = error
+                error.part = "goal"
+                failure = self.ends.explained(error, what)
         raise failure
 
     @property
@@ -144,6 +180,7 @@ class _Placing:
         joined = np.all(labels >= 0, axis=0)
         if isinstance(team.goal, AntipodalGoal | ShiftedGoal):
             ends = self._labels(_bound_goals(team.goal, points[good]))
+            self.ends.count(labels[:, joined], ends[:, joined])
             joined &= np.all(ends == labels, axis=0)
         good[good] = joined
         return good
@@ -155,12 +192,14 @@ class _Placing:
         home = self._labels(start[None])
 
         def joined(points: FloatArray) -> BoolArray:
-            reached: BoolArray = np.all(self._labels(points) == home, axis=0)
+            ends = self._labels(points)
+            self.ends.count(home, ends)
+            reached: BoolArray = np.all(ends == home, axis=0)
             return reached
 
         if isinstance(goal, PointsGoal):
             point = np.array([goal.points[self.number]])
-            return find_place(lambda n: point, joined, f"{what} (joined to its start)", (1,))
+            return find_place(lambda n: point, joined, what, (1,))
 
         def accept(points: FloatArray) -> BoolArray:
             good = distances(points, start[None])[:, 0] >= goal.min_distance

@@ -9,7 +9,7 @@ import pytest
 import torch
 import yaml
 from benchnav_baselines.recurrent_ppo import checkpoint
-from benchnav_baselines.recurrent_ppo.recipe import Recipe
+from benchnav_baselines.recurrent_ppo.recipe import Course, Recipe
 from benchnav_baselines.recurrent_ppo.training import WEIGHTS, Training
 from benchnav_baselines.recurrent_ppo.weights import read_weights
 from safetensors import safe_open
@@ -102,6 +102,25 @@ def test_a_training_is_its_recipe_and_seed(tmp_path, network):
     assert about["recipe_hash"] == recipe.hash
     with pytest.raises(UsageError, match="holds a training"):
         Training(recipe, 1, tmp_path / "whole").run(False, silent)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("layers", [0, 1])
+def test_a_stage_may_have_another_number_of_slots(tmp_path, layers):
+    """Four leaders in each row, then one robot whose people are driven by the scenario."""
+    first, last = tiny().stages
+    crowd = (Course(scenario="crowd/circle-crossing", worlds=3),)
+    recipe = tiny(
+        stages=[first, last.model_copy(update={"courses": crowd})],
+        network={"lstm_layers": layers, "lstm_size": 8, "dense": [8]},
+    )
+    whole = Training(recipe, 1, tmp_path / "whole")
+    whole.run(False, silent)
+    assert whole.learner.n_envs == whole.learner.rollout_buffer.n_envs == 2
+    with pytest.raises(Killed):
+        Training(recipe, 1, tmp_path / "broken").run(False, killer(after=2))
+    Training(recipe, 1, tmp_path / "broken").run(True, silent)
+    assert_same(tmp_path / "whole", tmp_path / "broken")
 
 
 def poison(learner):

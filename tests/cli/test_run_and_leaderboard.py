@@ -91,7 +91,7 @@ def test_an_unfinished_run_says_so_and_a_damaged_one_is_refused(call, run):
     code, _, stderr = call("leaderboard", run)
     assert code == 0
     assert f"{run} holds 2 of 4 episodes" in stderr
-    assert f"missing: seeds 0–1 of {parts[0].parent.name}" in stderr
+    assert f"missing: seeds 0–1 of {parts[0].parent.name.rpartition('.')[0]}" in stderr
     damaged = next(iter(parts[1].parent.glob(f"*{RESULTS_FILE}")))
     damaged.write_bytes(b"x" * damaged.stat().st_size)
     code, stdout, stderr = call("leaderboard", run)
@@ -101,15 +101,34 @@ def test_an_unfinished_run_says_so_and_a_damaged_one_is_refused(call, run):
 
 def test_what_is_no_run_is_refused(call, tmp_path):
     code, _, stderr = call("leaderboard", tmp_path)
-    assert code == 1
+    assert code == 2
     assert "must be a run folder" in stderr
 
 
 def test_another_suites_folder_is_refused_by_both_names(call, suite, run):
-    code, _, stderr = call("run", suite, "--out", run, "--seeds", 3, "--workers", 0)
+    code, _, stderr = call("run", suite, "--out", run, "--navigator", "orca", "--workers", 0)
     assert code == 1
     assert stderr.count("tiny@1 (") == 2
-    assert "They differ in seeds" in stderr
+    assert "They differ in navigators." in stderr
+
+
+def test_a_scenario_by_name_or_file_runs_as_a_suite_of_one(call, suite, tmp_path):
+    chosen = ("--navigator", "straight-line", "--seeds", 1, "--workers", 0)
+    for name, called in (
+        (suite.parent / "open.yaml", "tiny-open@1"),
+        ("trap/u:mouth=3", "trap-u@1"),
+    ):
+        code, stdout, stderr = call("run", name, "--out", tmp_path / called, *chosen)
+        assert code == 0
+        assert f"{called}: 1 scenario × 1 track × 1 navigator × 1 seed" in stderr
+        assert "straight-line" in call("leaderboard", stdout.strip())[1]
+
+
+def test_what_is_neither_suite_nor_scenario_is_answered_with_both(call):
+    code, _, stderr = call("run", "trap/v")
+    assert code == 2
+    assert "the name of a scenario, or a file" in stderr
+    assert "Did you mean 'trap/u'?" in stderr
 
 
 def test_navigators_scenarios_tracks_and_seeds_can_be_chosen(call, suite, tmp_path):

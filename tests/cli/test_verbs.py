@@ -2,6 +2,7 @@
 
 import ast
 import json
+import re
 import subprocess
 import sys
 import tomllib
@@ -10,8 +11,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import benchnav
-from benchnav.cli import doctor as doctor_module
-from benchnav.plugins import NAVIGATORS
+from benchnav.plugins import NAVIGATORS, PLANNERS
 from benchnav.threads import core_count
 
 
@@ -19,7 +19,7 @@ from benchnav.threads import core_count
     ("arguments", "complaint"),
     [
         (("lits",), "Did you mean 'list'"),
-        (("run",), "Missing argument 'SUITE'"),
+        (("run",), "Missing argument 'SUITE|SCENARIO'"),
         (("run", "quick", "--wrokers", "2"), "--workers"),
         (("run", "quick", "--workers", "two"), "--workers"),
         (("run", "quikc"), "Did you mean 'quick'"),
@@ -203,13 +203,28 @@ def test_new_writes_a_package_of_fifteen_lines_that_works(call, tmp_path, suite,
     assert call("new", "navigator", "my-idea", "--out", target)[0] == 2
 
 
-def test_doctor_knows_what_is_missing(call, monkeypatch):
-    real = doctor_module.find_spec
-    monkeypatch.setattr(
-        doctor_module, "find_spec", lambda name: None if name == "ompl" else real(name)
-    )
-    stdout = call("doctor")[1]
-    assert "without ompl: pip install 'benchnav[plan]'" in stdout
+def test_doctor_counts_what_can_be_used_and_says_what_is_missing(call, monkeypatch):
+    kinds = ("navigators", "planners", "controllers")
+    whole = " ".join(call("doctor")[1].split())
+    for name in ("ompl", "networkx"):
+        monkeypatch.setitem(sys.modules, name, None)
+    code, stdout, _ = call("doctor")
+    assert code == 0
+    lines = [" ".join(line.split()) for line in stdout.splitlines()]
+    assert "- extra [plan] without ompl, networkx: pip install 'benchnav[plan]'" in lines
+    for registry, names, cause in (
+        (PLANNERS, [n for n in PLANNERS.names() if n.startswith("ompl.")], "An OMPL planner"),
+        (PLANNERS, ["navmesh"], "The planner navmesh"),
+        (NAVIGATORS, ["hierarchical", "ompl-orca", "ompl-pure"], "An OMPL planner"),
+    ):
+        assert (
+            f"- {registry.kind}s without {', '.join(names)}."
+            f" {cause} needs an extra: pip install 'benchnav[plan]'" in lines
+        )
+    usable = [int(re.search(rf"{kind} +(\d+) can be used", whole)[1]) for kind in kinds]
+    left = [int(re.search(rf"{kind} +(\d+) can be used", stdout)[1]) for kind in kinds]
+    assert [a - b for a, b in zip(usable, left, strict=True)] == [3, 6, 0]
+    assert "ors without" not in whole
     assert f"{core_count()}, so" in stdout
 
 

@@ -114,7 +114,7 @@ def test_verifying_on_the_way(call, runs, tmp_path):
     forge(runs[1])
     code, table, stderr = call("leaderboard", *runs, "--verify")
     assert code == 0
-    assert f"{runs[1]} is NOT verified: 1 findings" in stderr
+    assert f"{runs[1]} is NOT verified: 1 finding " in stderr
     assert table.count("| yes ") == 1
     again = call("leaderboard", *runs, "--verify")
     assert again[1] == table
@@ -150,7 +150,7 @@ def test_a_run_cannot_vouch_for_itself(call, runs, tmp_path):
 )
 def test_what_is_no_run_is_refused(call, arguments, complaint):
     code, stdout, stderr = call(*arguments)
-    assert (code, stdout) == (1, "")
+    assert (code, stdout) == (2, "")
     assert complaint in stderr
 
 

@@ -72,8 +72,8 @@ def test_who_idles_sees_and_gets_nothing_until_the_row_restarts(steps):
         assert not seen[info["idle"]].any()
         assert not reward[~info["acted"]].any()
         woke = before[4]["idle"] & ~info["idle"]
-        assert np.array_equal(woke, ~info["acted"] & terminated)
-        assert not (truncated & ~info["acted"]).any()
+        assert np.array_equal(woke, ~info["acted"] & ~info["idle"])
+        assert not ((terminated | truncated) & ~info["acted"]).any()
         idled += int(info["idle"].sum())
         rows = woke.reshape(2, 4).any(1)
         assert not info["idle"].reshape(2, 4)[rows].any()
@@ -98,6 +98,35 @@ def test_a_seed_decides_the_worlds(env):
     assert any(not np.array_equal(env.reset(seed=other)[0], first) for other in range(3, 9))
     assert np.array_equal(env.reset(seed=2)[0], first)
     assert not np.array_equal(env.reset()[0], first)  # goes on in the order that 2 gave
+
+
+def test_seeds_of_numpy_and_lists_of_seeds_are_taken(env):
+    first = env.reset(seed=2)[0]
+    assert np.array_equal(env.reset(seed=np.int64(2))[0], first)
+    listed = env.reset(seed=list(range(8)))[0]
+    env.reset(seed=5)
+    assert np.array_equal(env.reset(seed=np.arange(8))[0], listed)
+    lists = [env.reset(seed=[*range(7), last])[0] for last in range(8, 14)]
+    assert any(not np.array_equal(other, listed) for other in lists)
+    env.reset(seed=2)
+    after = env.reset()[0]
+    env.reset(seed=2)
+    assert np.array_equal(env.reset(seed=[None] * 8)[0], after)
+    for wrong, match in [
+        ([1, 2], "must have 8, one for each. Got 2"),
+        ([None, *range(7)], "all None or all numbers: .* 7 numbers and 1 times None"),
+        ([-1, *range(7)], "0 or more. Got -1"),
+    ]:
+        with pytest.raises(BenchnavError, match=match):
+            env.reset(seed=wrong)
+
+
+def test_it_closes_twice_and_must_be_reset():
+    env = LeaderVectorEnv(4, worlds=1)
+    with pytest.raises(BenchnavError, match=r"call reset\(\)"):
+        env.step(actions(1, 4)[0])
+    env.close()
+    env.close()
 
 
 def test_gymnasium_s_statistics_wrap_it():

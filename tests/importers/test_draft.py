@@ -1,4 +1,5 @@
 import shutil
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -6,9 +7,14 @@ import yaml
 
 from benchnav.errors import MapError, UsageError
 from benchnav.runner.rollout import Assignment, rollout
-from benchnav.scenario.importers import import_movingai, import_ros_map, write_scenario
+from benchnav.scenario.importers import (
+    default_name,
+    import_movingai,
+    import_ros_map,
+    write_scenario,
+)
 from benchnav.scenario.load import load_scenario
-from benchnav.scenario.occupancy import occupancy_solids
+from benchnav.scenario.occupancy import occupancy_solids, read_occupancy
 from benchnav.world.build import build
 from tests.importers.data import published
 
@@ -63,7 +69,7 @@ def test_what_cannot_be_asked_for(tiny, tmp_path):
     scen = tiny.with_suffix(".scen")
     with pytest.raises(MapError, match=r"4 queries that share .*; there are 3\. Ask for fewer"):
         import_movingai(tiny, scen, agents=4)
-    with pytest.raises(MapError, match=r"2 queries in bucket 7 .* there are 0"):
+    with pytest.raises(MapError, match=r"2 queries in bucket 7 .* there are 0\. .* 0 to 2"):
         import_movingai(tiny, scen, agents=2, bucket=7)
     with pytest.raises(UsageError, match=r"A bucket is one of a \.scen file; got 1"):
         import_movingai(tiny, bucket=1)
@@ -105,23 +111,25 @@ def test_a_ros_map_takes_its_image_along(ros, tmp_path):
     )
 
 
-def test_nothing_is_overwritten_unless_forced(tiny, tmp_path):
+def test_no_scenario_is_overwritten_unless_forced(tiny, tmp_path):
     out = tmp_path / "to" / "tiny.yaml"
     mapping = import_movingai(tiny)
     write_scenario(mapping, out)
     before = out.read_text()
-    with pytest.raises(UsageError, match=r"tiny\.yaml, .*Map!\.map must not exist yet"):
+    with pytest.raises(UsageError, match=r"tiny\.yaml must not exist yet; --force overwrites it"):
         write_scenario({**mapping, "title": "other"}, out)
     assert out.read_text() == before
     write_scenario({**mapping, "title": "other"}, out, force=True)
     assert "other" in out.read_text()
+    assert sorted(path.name for path in out.parent.iterdir()) == [tiny.name, "tiny.yaml"]
 
 
 def test_beside_its_map_a_scenario_copies_nothing(ros, tiny):
     files = write_scenario(import_movingai(tiny), tiny.parent / "tiny.yaml")
     assert files == [tiny.parent / "tiny.yaml", tiny]
-    with pytest.raises(UsageError, match=r"lab\.yaml is the map's own name"):
-        write_scenario(import_ros_map(ros), ros)
+    for force in (False, True):
+        with pytest.raises(UsageError, match=r"lab\.yaml is the map's own name"):
+            write_scenario(import_ros_map(ros), ros, force)
 
 
 def test_where_nothing_can_be_written(tiny, tmp_path):
@@ -177,3 +185,119 @@ def test_agents_are_as_large_and_as_many_as_a_map_has_room_for(ros, tmp_path):
         import_ros_map(ros, radius=0.6)
     with pytest.raises(UsageError, match="radius must be > 0 m; got 0"):
         import_ros_map(ros, radius=0)
+
+
+def warehouse(folder, pillar):
+    """A map that is called as map_saver calls every map, with a pillar in some column."""
+    folder.mkdir(parents=True)
+    shades = np.full((20, 40), 254, np.uint8)
+    shades[9:11, pillar] = 0
+    (folder / "map.pgm").write_bytes(b"P5\n40 20\n255\n" + shades.tobytes())
+    (folder / "map.yaml").write_text(
+        "image: map.pgm\nresolution: 0.5\norigin: [0, 0, 0]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    )
+    return folder / "map.yaml"
+
+
+def pillar_of(scenario):
+    """Column of the cells that the scenario's map blocks."""
+    shape = load_scenario(scenario).walls[0].shape
+    return int(np.nonzero(read_occupancy(scenario.parent / shape.file, "ros").blocked)[1][0])
+
+
+@pytest.mark.parametrize("force", [False, True])
+def test_maps_of_one_name_stand_side_by_side(tmp_path, force):
+    for name, pillar in (("a", 10), ("b", 20), ("c", 30)):
+        mapping = import_ros_map(warehouse(tmp_path / name, pillar), agents=2)
+        write_scenario(mapping, tmp_path / "to" / f"{name}.yaml", force)
+        write_scenario(mapping, tmp_path / "to" / f"{name}.yaml", True)  # once more adds nothing
+    assert [pillar_of(tmp_path / "to" / f"{name}.yaml") for name in "abc"] == [10, 20, 30]
+    assert len({load_scenario(tmp_path / "to" / f"{name}.yaml").name for name in "abc"}) == 3
+    assert len(list((tmp_path / "to").iterdir())) == 9
+
+
+def test_no_map_takes_the_name_of_a_scenario(tmp_path):
+    mapping = import_ros_map(warehouse(tmp_path / "a", 10), agents=2)
+    files = write_scenario(mapping, tmp_path / "to" / "map.yaml")
+    assert [file.name for file in files] == ["map.yaml", "map-map.yaml", "map.pgm"]
+    assert pillar_of(tmp_path / "to" / "map.yaml") == 10
+    write_scenario(mapping, tmp_path / "to" / "a.yaml")  # where map.yaml is a scenario
+    assert pillar_of(tmp_path / "to" / "a.yaml") == pillar_of(tmp_path / "to" / "map.yaml") == 10
+
+
+def test_a_scenario_overwrites_no_map_of_another_one(tmp_path):
+    write_scenario(import_ros_map(warehouse(tmp_path / "a", 10), agents=2), tmp_path / "a.yaml")
+    other = import_ros_map(warehouse(tmp_path / "b", 20), agents=2)
+    for name in ("map.yaml", "map.pgm"):
+        with pytest.raises(UsageError, match=rf"{name} is not a scenario; give the new scenario"):
+            write_scenario(other, tmp_path / name, force=True)
+    assert pillar_of(tmp_path / "a.yaml") == 10
+
+
+def test_a_map_that_has_changed_is_copied_anew_and_the_old_one_stays(tmp_path):
+    path = warehouse(tmp_path / "a", 10)
+    write_scenario(import_ros_map(path, agents=2), tmp_path / "to" / "one.yaml")
+    shutil.rmtree(path.parent)
+    warehouse(path.parent, 20)
+    write_scenario(import_ros_map(path, agents=2), tmp_path / "to" / "two.yaml", force=True)
+    assert pillar_of(tmp_path / "to" / "one.yaml") == 10
+    assert pillar_of(tmp_path / "to" / "two.yaml") == 20
+
+
+def test_names_tell_maps_apart(tmp_path, tiny):
+    assert default_name("ros", tmp_path / "maps" / "002" / "map.yaml") == "ros/002"
+    assert default_name("ros", tmp_path / "Map.yaml", tmp_path / "Lab 2.yaml") == "ros/lab-2"
+    assert default_name("ros", tmp_path / "b" / "map.yaml", tmp_path / "map.yaml") == "ros/b"
+    assert default_name("ros", Path("/maps/map.yaml")) == "ros/map"
+    assert import_movingai(tiny, name="mine/hall_2")["name"] == "mine/hall_2"
+    for name in ("My Hall", "mine/", "ä", "a" * 101, ""):
+        with pytest.raises(UsageError, match="A scenario's name must be small letters"):
+            import_movingai(tiny, name=name)
+
+
+def test_a_map_without_a_free_cell_tells_blocked_from_unknown(ros, tmp_path):
+    image = ros.parent / "images" / "lab.pgm"
+    image.write_bytes(b"P5\n40 20\n255\n" + bytes([205] * 790) + bytes(10))
+    says = r"none is free, 10 are blocked and 790 are unknown\. --unknown-is-free opens"
+    with pytest.raises(MapError, match=says):
+        import_ros_map(ros)
+    open_to_all = import_ros_map(ros, unknown_is_free=True)
+    assert open_to_all["walls"][0]["shape"]["unknown_is_free"] is True
+    with pytest.raises(MapError, match=r"10 are blocked and 790 are unknown\. `unknown_is_free: t"):
+        occupancy_solids(ros, "ros")
+    image.write_bytes(b"P5\n40 20\n255\n" + bytes(800))
+    with pytest.raises(MapError, match="all 800 are blocked"):
+        import_ros_map(ros, unknown_is_free=True)
+
+
+def test_remarks_on_cells_and_journeys(ros, tiny):
+    remarks = []
+    import_movingai(tiny, tiny.with_suffix(".scen"), agents=3, cell=0.5, remark=remarks.append)
+    assert remarks == [
+        "5 × 4 cells of 0.5 m: 15 free, 5 blocked, 0 unknown.",
+        "3 journeys: shortest 0.5 m, median 0.5 m, longest 0.5 m.",
+    ]
+    remarks.clear()
+    import_ros_map(ros, remark=remarks.append)
+    assert remarks[:2] == [
+        "40 × 20 cells of 0.5 m: 790 free, 5 blocked, 5 unknown.",
+        "Agents may not enter unknown cells; --unknown-is-free opens them.",
+    ]
+    ros.write_text(ros.read_text().replace("0.196", "0.25"))
+    remarks.clear()
+    import_ros_map(ros, remark=remarks.append)
+    assert remarks[0] == "40 × 20 cells of 0.5 m: 795 free, 5 blocked, 0 unknown."
+    assert remarks[1].startswith("5 free cells have the grey 205")
+    assert "set the map's free_thresh to 0.196" in remarks[1]
+    assert max(len(line) for remark in remarks for line in remark.splitlines()) <= 80
+
+
+def test_the_image_counts_whatever_the_map_file_is_called(tmp_path):
+    path = warehouse(tmp_path / "a", 10)
+    write_scenario(import_ros_map(path.rename(path.with_name("map.YAML"))), tmp_path / "a.yaml")
+    assert set(load_scenario(tmp_path / "a.yaml").named_files()) == {"map.YAML", "map.pgm"}
+    before = load_scenario(tmp_path / "a.yaml").hash
+    pixels = (tmp_path / "map.pgm").read_bytes()
+    (tmp_path / "map.pgm").write_bytes(pixels[:-1] + bytes([0]))
+    assert load_scenario(tmp_path / "a.yaml").hash != before

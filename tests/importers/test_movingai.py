@@ -126,7 +126,10 @@ def query(*changes):
         ("version 2\n", 1, "version 1"),
         ("", 1, "version 1"),
         ("version 1\n\n", 2, "at least one query"),
-        (query() + "1 2 3\n", 3, "9 fields between tabs; got 1"),
+        ("version one\n", 1, "version 1"),
+        ("version 1\n1 2 3\n", 2, "9 fields between tabs or spaces; got 3"),
+        ("1 2 3\n", 1, "9 fields between tabs or spaces; got 3"),
+        ("\x89PNG\r\n", 1, "9 fields"),
         (query((1, "other.map")), 2, "about tiny.map; got 'other.map'"),
         (query((2, "6")), 2, "those of the map, 5 and 4; got 6 and 4"),
         (query((4, "-1")), 2, "whole numbers"),
@@ -143,6 +146,60 @@ def test_a_broken_scen_is_refused_with_its_line(tmp_path, tiny, text, line, says
         movingai.read_scen(path, tiny, movingai.read_map(tiny))
     assert str(error.value).startswith(f"{path}:{line}: ")
     assert says in str(error.value)
+
+
+ROWS = "0 maps/tiny.map 5 4 0 0 4 3 6.41421356\n0 tiny.map 5 4 0 2 1 2 1\n"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "version 1.0\n" + ROWS,
+        "version 1\n" + ROWS.replace(" ", "\t"),
+        "version 1.0\n" + ROWS.replace(" ", "   "),
+        "version 1\n" + ROWS.replace(" 5 4 ", "\t5 4\t"),
+        "\n  version   1.0  \r\n\r\n" + ROWS.replace("\n", "  \r\n\r\n"),
+        "version 1\n" + ROWS.rstrip("\n"),
+        "version 1\r" + ROWS.replace("\n", "\r"),
+        "\xef\xbb\xbfversion 1\n" + ROWS,
+        "version 1\n" + ROWS.replace("6.41421356", "6.41421356e+00").replace(" 1\n", " 1.00\n"),
+        "version 1\n" + ROWS.replace("maps/tiny.map", "C:\\maps\\Tiny.map"),
+        "version 1\n" + ROWS.replace("maps/tiny.map", "my maps/tiny.map"),
+        ROWS,
+        ROWS.replace(" 5 4 ", " "),
+        "version 0\n" + ROWS.replace(" 5 4 ", "\t"),
+    ],
+)
+def test_published_ways_to_write_the_same_queries(tmp_path, tiny, text):
+    path = write(tmp_path, text, "tiny.scen")
+    queries = movingai.read_scen(path, tiny, movingai.read_map(tiny))
+    assert queries.start.tolist() == [[0, 3], [0, 1]]
+    assert queries.goal.tolist() == [[4, 0], [1, 1]]
+    assert queries.length.tolist() == pytest.approx([6.41421356, 1.0])
+    assert queries.left_out == ()
+
+
+def test_a_map_name_with_spaces(tmp_path):
+    path = write(tmp_path, TINY, "Tiny Map (2).map")
+    for between in ("\t", " "):
+        row = between.join(["0", "Tiny Map (2).map", "5", "4", "0", "0", "4", "3", "7"])
+        scen = write(tmp_path, f"version 1\n{row}\n", "tiny.scen")
+        assert len(movingai.read_scen(scen, path, movingai.read_map(path)).length) == 1
+
+
+def test_rows_that_cannot_be_used_refuse_no_file(tmp_path, tiny):
+    broken = "3 tiny.map 5 4\n4 other.map 9 9 0 0 1 1 1\n5 tiny.map 5 4 1 1 0 0 1\n"
+    text = "version 1\n" + broken + ROWS + "6 tiny.map 5 4 0 0 nowhere\n"
+    path = write(tmp_path, text, "tiny.scen")
+    queries = movingai.read_scen(path, tiny, movingai.read_map(tiny))
+    assert len(queries.length) == 2
+    assert [text.split(":")[1] for text in queries.left_out] == ["2", "3", "4", "7"]
+
+
+def test_small_letters_blank_lines_and_spaces_do_not_matter(tmp_path, tiny):
+    rows = "type octile\n\nwidth 5\nheight 4\n map \n\n.....\n\n.@t..  \ng.oW.\n@...s"
+    other = movingai.read_map(write(tmp_path, rows, "other.map"))
+    assert np.array_equal(other.blocked, movingai.read_map(tiny).blocked)
 
 
 @pytest.mark.slow

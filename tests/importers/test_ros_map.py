@@ -105,17 +105,58 @@ def test_one_bit(tmp_path):
     check(read_map(path), blocked, np.zeros((2, 3), bool))
 
 
-@pytest.mark.parametrize("mode", ["RGBA", "LA"])
-def test_opacity_counts_as_a_colour_in_trinary(tmp_path, mode):
-    """Transparent black is (0 + … + 0) / n; opaque black is brighter: 255 / n."""
+CLEAR = {  # black, black and white, of which only the first is opaque
+    "LA": [[[0, 255], [0, 0], [255, 254]]],
+    "RGBA": [[[0, 0, 0, 255], [0, 0, 0, 0], [255, 255, 255, 254]]],
+}
+
+
+@pytest.mark.parametrize("mode", CLEAR)
+@pytest.mark.parametrize("map_mode", ["trinary", "scale"])
+def test_a_pixel_that_is_not_opaque_is_unknown(tmp_path, mode, map_mode):
+    path = put(tmp_path, False, "tiny.png", mode=map_mode)
+    Image.fromarray(np.array(CLEAR[mode], np.uint8)).save(tmp_path / "tiny.png")
+    check(read_map(path), np.array([[1, 0, 0]], bool), np.array([[0, 1, 1]], bool))
+
+
+@pytest.mark.parametrize("mode", ["1", "L", "LA", "RGB", "RGBA", "P", "I;16"])
+def test_opaque_pictures_of_every_mode_are_the_same_map(tmp_path, mode):
     path = put(tmp_path, False, "tiny.png")
-    grey = Image.fromarray(np.array([[255, 0, 0]], np.uint8))
-    image = grey.convert(mode)
-    image.putalpha(Image.fromarray(np.array([[255, 255, 0]], np.uint8)))
+    black_or_white = np.array([[255, 0, 0], [0, 255, 0]], np.uint8)
+    if mode == "I;16":
+        image = Image.fromarray(black_or_white.astype(np.uint16) * 257)
+    else:
+        image = Image.fromarray(black_or_white).convert(mode)
+    assert image.mode == mode
     image.save(tmp_path / "tiny.png")
-    half = mode == "LA"  # (0 + 255) / 2: neither free nor blocked
-    blocked = np.array([[False, not half, True]])
-    check(read_map(path), blocked, np.array([[False, half, False]]))
+    check(read_map(path), np.array([[1, 0, 1], [0, 1, 1]], bool), np.zeros((2, 3), bool))
+
+
+@pytest.mark.parametrize(("mode", "clear"), [("1", 0), ("L", 0), ("RGB", (0, 0, 0)), ("I;16", 0)])
+def test_a_colour_that_a_png_declares_clear_is_unknown(tmp_path, mode, clear):
+    path = put(tmp_path, False, "tiny.png")
+    shades = np.array([[255, 0]], np.uint16 if mode == "I;16" else np.uint8)
+    image = Image.fromarray(shades * (257 if mode == "I;16" else 1))
+    image = image if mode == "I;16" else image.convert(mode)
+    image.save(tmp_path / "tiny.png", transparency=clear)
+    check(read_map(path), np.array([[0, 0]], bool), np.array([[0, 1]], bool))
+
+
+@pytest.mark.parametrize("name", ["tiny.jpg", "tiny.JPEG", "tiny.gif", "tiny.tif", "tiny.ppm"])
+def test_other_formats_of_images(tmp_path, name):
+    path = put(tmp_path, False, name)
+    shades = np.full((16, 16), 254, np.uint8)
+    shades[:, :8] = 0
+    Image.fromarray(shades).convert("RGB" if name == "tiny.ppm" else "L").save(tmp_path / name)
+    check(read_map(path), shades == 0, np.zeros((16, 16), bool))
+
+
+def test_colours_count_by_their_luma(tmp_path):
+    """Green, 0.587, is unknown and yellow, 0.886, free; their means, ⅓ and ⅔, are neither."""
+    path = put(tmp_path, False, "tiny.png")
+    colours = np.array([[[0, 255, 0], [255, 255, 0], [255, 0, 0], [0, 0, 255]]], np.uint8)
+    Image.fromarray(colours).save(tmp_path / "tiny.png")
+    check(read_map(path), np.array([[0, 0, 1, 1]], bool), np.array([[1, 0, 0, 0]], bool))
 
 
 def test_scale_keeps_colour_and_opacity_apart(tmp_path):
@@ -135,6 +176,60 @@ def test_raw_is_per_cent(tmp_path):
         np.array([[0, 0, 0, 0, 1, 1, 0, 0]], bool),
         np.array([[0, 0, 1, 1, 0, 0, 1, 1]], bool),
     )
+
+
+def test_raw_takes_no_notice_of_negate_or_opacity(tmp_path):
+    path = put(tmp_path, False, "tiny.png", mode="raw", negate=1)
+    Image.fromarray(np.array([[[0, 0], [100, 255]]], np.uint8)).save(tmp_path / "tiny.png")
+    check(read_map(path), np.array([[0, 1]], bool), np.zeros((1, 2), bool))
+
+
+def test_scale_grades_what_is_between_and_rounds(tmp_path):
+    """nav2's grades of these pixels are 0, 0, 1, 50, 99, 100 and 100."""
+    shades = np.array([[255, 254, 252, 127, 3, 1, 0]], np.uint8)
+    path = put(tmp_path, shades, mode="scale", occupied_thresh=1.0, free_thresh=0.0)
+    blocked = np.array([[0, 0, 0, 0, 0, 1, 1]], bool)
+    check(read_map(path), blocked, np.array([[0, 0, 1, 1, 1, 0, 0]], bool))
+
+
+def test_free_cells_with_the_grey_of_unknown_ones_are_counted(tmp_path):
+    assert read_map(put(tmp_path)).doubtful == 0  # 0.1961 > free_thresh
+    assert read_map(put(tmp_path, free_thresh=0.25)).doubtful == 1
+    assert read_map(put(tmp_path, free_thresh=0.25, mode="scale")).doubtful == 0
+
+
+VALUES = [
+    'resolution: "0.50000"', "resolution: '  5e-1 '", "resolution: .5", "resolution: 00.5",
+    "negate: no", "negate: No", "negate: OFF", "negate: n", "negate: false", 'negate: "0"',
+    "negate: 'False'", "mode: Trinary", "mode: TRINARY", 'mode: "trinary"',
+    'origin: ["1.0", -2, "0"]', "origin:\n- 1\n- '-2.'\n- 0", 'occupied_thresh: "0.65"',
+    "free_thresh: '0.196'", "image: ./tiny.pgm", "image: 'tiny.pgm'  # the picture",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("line", VALUES)
+def test_values_are_read_as_yaml_cpp_reads_them(tmp_path, line):
+    path = put(tmp_path)
+    key = line.split(":")[0]
+    kept = [kept for kept in path.read_text().splitlines() if not kept.startswith(f"{key}:")]
+    path.write_text("\n".join([*kept, line, ""]))
+    occupancy = read_map(path)
+    check(occupancy)
+    assert (occupancy.cell, occupancy.origin) == (0.5, (1.0, -2.0, 0.0))
+
+
+@pytest.mark.parametrize("value", ["yes", "Y", "ON", "true", '"1"', "1", "'Yes'"])
+def test_negate_may_be_said_in_words(tmp_path, value):
+    path = put(tmp_path, 255 - SHADES)
+    path.write_text(path.read_text().replace("negate: 0", f"negate: {value}"))
+    check(read_map(path))
+
+
+def test_an_absolute_path_and_another_folder(tmp_path):
+    (tmp_path / "pictures").mkdir()
+    Image.fromarray(SHADES).save(tmp_path / "pictures" / "a b.pgm")
+    for name in ("pictures/a b.pgm", str(tmp_path / "pictures" / "a b.pgm")):
+        check(read_map(put(tmp_path, False, name)))
 
 
 def test_a_palette_with_a_clear_colour(tmp_path):
@@ -159,7 +254,15 @@ def test_a_palette_with_a_clear_colour(tmp_path):
         ({"image": "a\x00b"}, 1, "image"),
         ({"origin": [0, 0]}, 3, "origin"),
         ({"origin": [0, 0, "north"]}, 3, "origin[2] must be a number"),
-        ({"negate": 2}, 4, "negate"),
+        ({"origin": ["1", "2", "east"]}, 3, "origin[2] must be a number; got 'east'"),
+        ({"origin": 7}, 3, "origin must be"),
+        ({"resolution": "0.05m"}, 2, "resolution must be a number; got '0.05m'"),
+        ({"resolution": "-1"}, 2, "resolution must be > 0"),
+        ({"negate": 2}, 4, "negate must be 0 or 1, or yes or no; got 2"),
+        ({"negate": "maybe"}, 4, "negate must be 0 or 1, or yes or no; got 'maybe'"),
+        ({"negate": [0]}, 4, "negate must be 0 or 1, or yes or no; got"),
+        ({"negate": None}, 1, "negate must be given"),
+        ({"occupied_thresh": "65%"}, 5, "occupied_thresh must be a number; got '65%'"),
         ({"occupied_thresh": 1.5}, 5, "occupied_thresh must be ≤ 1"),
         ({"free_thresh": 0.7}, 6, "free_thresh must be < occupied_thresh"),
         ({"mode": "trinery"}, 7, "Did you mean 'trinary'?"),
@@ -172,6 +275,7 @@ def test_a_broken_header_is_refused_with_line_and_key(tmp_path, changes, line, s
         read_map(path)
     assert str(error.value).startswith(f"{path}:{line}: ")
     assert says in str(error.value)
+    assert "\n" not in str(error.value)  # one complaint for one mistake
 
 
 @pytest.mark.parametrize(

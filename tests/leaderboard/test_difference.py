@@ -1,86 +1,182 @@
-"""Intervals of paired differences, on closed cases. Their coverage is in test_coverage.py."""
+"""Paired differences over fixed scenarios: interval and p-value are one inference."""
+
+import math
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from benchnav.leaderboard.difference import Pairs, correlation, difference
+from benchnav.leaderboard.difference import Moments, difference, least_p
 from benchnav.leaderboard.estimate import columns_of
-from benchnav.leaderboard.interval import mid_p, resample
 from tests.leaderboard.tables import METRICS
+from tests.reference.paired_difference import inference
 
-SIDES = st.lists(st.tuples(st.integers(0, 4), st.integers(0, 4)), min_size=2, max_size=30)
+QUARTERS = st.integers(-4, 4).map(lambda k: k / 4)
+SCENARIOS = st.lists(st.lists(QUARTERS, min_size=1, max_size=12), min_size=1, max_size=6)
 
 
-def found(one, other, name="success", agents=4.0):
-    one, other = (np.asarray(side, float).reshape(len(one), -1) for side in (one, other))
-    size = np.full_like(one, agents)
-    pairs = Pairs(one, other, size, size, resample(len(one), np.random.default_rng(0)))
-    return difference(pairs, columns_of([METRICS[name]] * one.shape[1]))
+def found(scenarios, metric="success"):
+    """Of lists of differences, one list for each scenario."""
+    parts = [Moments.of(np.array(worlds, float).reshape(-1, 1)) for worlds in scenarios]
+    return difference(parts, columns_of([METRICS[metric]]))
+
+
+def excluded(d):
+    return bool(d.low[0] > 0.0 or d.high[0] < 0.0)
+
+
+@settings(max_examples=300, deadline=None)
+@given(SCENARIOS, st.sampled_from(["success", "spl", "turning"]))
+def test_the_interval_excludes_zero_exactly_where_p_is_below_five_percent(scenarios, metric):
+    d = found(scenarios, metric)
+    assert excluded(d) == (d.p[0] < 0.05)
+    if not math.isnan(d.low[0]):
+        assert d.low[0] <= d.value[0] <= d.high[0]
+
+
+@settings(max_examples=100, deadline=None)
+@given(SCENARIOS, st.sampled_from([("success", 1.0), ("turning", math.inf)]))
+def test_it_agrees_with_its_slow_twin(scenarios, kind):
+    metric, width = kind
+    assume(sum(map(len, scenarios)) > 1)
+    d, twin = found(scenarios, metric), inference(scenarios, width)
+    assert d.value[0] == pytest.approx(twin.value, abs=1e-12)
+    if not twin.error:
+        assert (d.p[0], math.isnan(d.low[0])) == (1.0, True)
+        return
+    assert d.p[0] == pytest.approx(twin.p(), rel=1e-6)
+    low, high = twin.interval()
+    assert d.low[0] == pytest.approx(max(low, -width), abs=1e-7)
+    assert d.high[0] == pytest.approx(min(high, width), abs=1e-7)
+
+
+@settings(max_examples=100, deadline=None)
+@given(SCENARIOS, st.randoms(use_true_random=False))
+def test_neither_order_nor_sign_changes_anything(scenarios, random):
+    d = found(scenarios)
+    turned = found([[-x for x in worlds] for worlds in scenarios])
+    assert turned.p == pytest.approx(d.p)
+    assert (turned.low[0], turned.high[0]) == pytest.approx((-d.high[0], -d.low[0]))
+    mixed = [random.sample(worlds, len(worlds)) for worlds in scenarios]
+    random.shuffle(mixed)
+    again = found(mixed)
+    assert (again.p[0], again.low[0]) == pytest.approx((d.p[0], d.low[0]))
 
 
 @settings(max_examples=50, deadline=None)
-@given(SIDES)
-def test_turned_round_it_is_the_same(sides):
-    one, other = (np.array(side) / 4 for side in zip(*sides, strict=True))
-    ahead, behind = found(one, other), found(other, one)
-    assert ahead.value == pytest.approx(-behind.value)
-    assert ahead.low == pytest.approx(-behind.high)
-    assert -1 <= ahead.low <= ahead.value <= ahead.high <= 1
+@given(SCENARIOS, st.sampled_from([1e-9, 0.1, 1e9]))
+def test_the_unit_of_an_unbounded_metric_changes_nothing(scenarios, unit):
+    plain = found(scenarios, "turning")
+    other = found([[unit * x for x in worlds] for worlds in scenarios], "turning")
+    assert other.p == pytest.approx(plain.p, rel=1e-6)
+    assert other.low == pytest.approx(unit * plain.low, nan_ok=True)
 
 
-@settings(max_examples=50, deadline=None)
-@given(SIDES)
-def test_all_who_failed_instead_of_succeeding_turn_it_too(sides):
-    one, other = (np.array(side) / 4 for side in zip(*sides, strict=True))
-    assert found(1 - one, 1 - other).low == pytest.approx(found(other, one).low)
+def test_of_continuous_values_in_one_scenario_it_is_scipys_paired_t():
+    symmetric = stats.norm.ppf((np.arange(30) + 0.5) / 30) + 0.4
+    d = found([symmetric], "turning")
+    known = stats.ttest_1samp(symmetric, 0.0)
+    assert d.p[0] == pytest.approx(known.pvalue, rel=1e-6)
+    assert (d.low[0], d.high[0]) == pytest.approx(tuple(known.confidence_interval(0.95)))
 
 
-def test_of_single_agents_it_is_newcombes_with_mid_p():
-    """36 pairs won by both, 12 by the first alone, 2 by the second, none by neither."""
-    one = np.repeat([1.0, 1.0, 0.0], [36, 12, 2])
-    other = np.repeat([1.0, 0.0, 1.0], [36, 12, 2])
-    (l1, l2), (u1, u2) = mid_p(np.array([0.96, 0.76]), np.full(2, 50.0))
-    phi = np.corrcoef(one, other)[0, 1]
-    down = (0.96 - l1) ** 2 - 2 * phi * (0.96 - l1) * (u2 - 0.76) + (u2 - 0.76) ** 2
-    up = (u1 - 0.96) ** 2 - 2 * phi * (u1 - 0.96) * (0.76 - l2) + (0.76 - l2) ** 2
-    known = found(one, other, agents=1.0)
-    assert known.value == pytest.approx([0.2])
-    assert known.low == pytest.approx([0.2 - np.sqrt(down)])
-    assert known.high == pytest.approx([0.2 + np.sqrt(up)])
+def test_two_scenarios_are_welchs_test():
+    """The mean of x and y is half the difference of x and −y."""
+    x = stats.norm.ppf((np.arange(20) + 0.5) / 20) + 0.5
+    y = 0.3 * stats.norm.ppf((np.arange(10) + 0.5) / 10) - 0.3
+    d = found([x, y], "turning")
+    known = stats.ttest_ind(x, -y, equal_var=False)
+    assert d.value[0] == pytest.approx((x.mean() + y.mean()) / 2)
+    # the degrees of freedom are Welch's own and not Satterthwaite's: a little more
+    assert d.p[0] == pytest.approx(known.pvalue, rel=0.2)
 
 
-def test_of_many_worlds_it_is_scipys_paired_t():
-    rng = np.random.default_rng(1)
-    ease = rng.beta(4, 2, 4000)
-    one, other = (rng.binomial(4, np.clip(ease + d, 0, 1)) / 4 for d in (0.05, -0.05))
-    known = stats.ttest_rel(one, other).confidence_interval(0.95)
-    width = known.high - known.low
-    for name in ("success", "spl"):
-        ours = found(one, other, name)
-        assert ours.low == pytest.approx([known.low], abs=0.03 * width)
-        assert ours.high == pytest.approx([known.high], abs=0.03 * width)
+@settings(max_examples=60, deadline=None)
+@given(
+    st.sampled_from(["success", "spl", "turning"]), st.integers(1, 6), st.integers(2, 30),
+    st.floats(1e-3, 1.0), st.floats(0.0, 0.1), st.integers(0, 99),
+)  # fmt: skip
+def test_better_by_a_constant_in_every_world_is_significant(
+    metric, scenarios, worlds, constant, noise, seed
+):
+    assume(scenarios * worlds >= 10)
+    noisy = 1.0 + noise * np.random.default_rng(seed).uniform(-1, 1, (scenarios, worlds))
+    d = found(constant * noisy / noisy.max(), metric)
+    assert d.p[0] < 1e-3
+    assert 0.0 < d.low[0] <= d.value[0] <= d.high[0]
+
+
+def test_scenarios_that_differ_from_each_other_are_no_noise():
+    """Better by 80 points in some scenarios and worse by 40 in others: 20 points in the mean."""
+    rng = np.random.default_rng(2)
+    levels = [0.8, -0.4, 0.8, -0.4, 0.2]
+    d = found([level + rng.choice([-0.1, 0.0, 0.1], 20) for level in levels])
+    assert d.p[0] < 1e-6
+    assert 0.1 < d.low[0] < 0.2 < d.high[0] < 0.3
+    pooled = stats.ttest_1samp(np.concatenate([[level] * 20 for level in levels]), 0.0)
+    assert pooled.pvalue > 1e-4  # as if scenarios were a sample
+
+
+def test_signs_that_cancel_are_no_difference():
+    rng = np.random.default_rng(4)
+    d = found([level + rng.choice([-0.25, 0.0, 0.25], 20) for level in (0.5, -0.5, 0.5, -0.5)])
+    assert d.p[0] > 0.05
 
 
 def test_equal_values_keep_the_width_that_their_number_allows():
-    ours = found([1.0] * 30, [1.0] * 30)
-    assert (ours.value[0], ours.low[0] < -0.09, ours.high[0] > 0.09) == (0.0, True, True)
-    ours = found([0.5] * 30, [0.5] * 30, "spl")
-    assert ours.low == pytest.approx(-(1 - 0.025 ** (1 / 30)))
-    assert np.isnan(found([0.5] * 30, [0.5] * 30, "turning").low)
+    few, many = found([[0.0] * 20]), found([[0.0] * 20] * 5)
+    assert (few.value[0], few.p[0]) == (0.0, 1.0)
+    assert few.low[0] == pytest.approx(-stats.t.ppf(0.975, 19) * math.sqrt(2) / 20)
+    assert few.low[0] == -few.high[0]
+    assert few.high[0] / 6 < many.high[0] < few.high[0] / 4
+    assert math.isnan(found([[0.0] * 20], "turning").low[0])
+    assert found([[0.0] * 20], "turning").p[0] == 1.0
 
 
-def test_worlds_that_one_side_lacks_say_nothing():
-    one = np.array([0.5, 1.0, 0.0, 0.75, np.nan, 1.0])
-    other = np.array([0.0, 1.0, 0.25, 0.5, 1.0, np.nan])
-    whole, part = found(one, other), found(one[:4], other[:4])
-    assert (whole.value, whole.low, whole.high) == (part.value, part.low, part.high)
+def test_one_world_says_nothing_and_two_say_little():
+    one = found([[1.0]])
+    assert (one.value[0], one.low[0], one.high[0], one.p[0]) == (1.0, -1.0, 1.0, 1.0)
+    unbounded = found([[3.0]], "turning")
+    assert (unbounded.p[0], math.isnan(unbounded.low[0])) == (1.0, True)
+    assert found([[1.0, 1.0]]).p[0] > 0.05
 
 
-def test_the_correlation_is_numpys_or_nothing():
-    rng = np.random.default_rng(2)
-    one, other = rng.normal(size=(9, 2)), rng.normal(size=(9, 2))
-    other[:, 1] = 0.5
-    assert correlation(one, other) == pytest.approx([np.corrcoef(one[:, 0], other[:, 0])[0, 1], 0])
+def test_scenarios_of_one_world_each_are_a_sample_of_scenarios():
+    values = stats.norm.ppf((np.arange(12) + 0.5) / 12) + 0.6
+    apart, together = found(values.reshape(-1, 1), "turning"), found([values], "turning")
+    assert apart.p[0] == pytest.approx(together.p[0], rel=0.2)
+    assert apart.value[0] == pytest.approx(together.value[0])
+
+
+def test_worlds_without_a_value_say_nothing():
+    part = found([[0.5, 0.25, -0.25, 0.5], [0.0, 0.25]])
+    whole = found([[0.5, math.nan, 0.25, -0.25, 0.5], [0.0, 0.25, math.nan], [math.nan] * 3])
+    assert (whole.value[0], whole.low[0], whole.p[0]) == (part.value[0], part.low[0], part.p[0])
+    assert whole.worlds[0] == 6
+    nothing = found([[math.nan] * 3, [math.nan]])
+    assert (nothing.worlds[0], nothing.p[0], math.isnan(nothing.value[0])) == (0, 1.0, True)
+
+
+def test_rounding_is_no_spread():
+    """0.1 + 0.2 − 0.3 and the like: noise in the last digit must not look like certainty."""
+    noisy = 0.3 + np.array([0.0, 1.0, -1.0, 0.0]) * 5e-17
+    assert found([noisy]).p[0] == pytest.approx(found([[0.3] * 4]).p[0], rel=1e-6)
+
+
+def test_columns_do_not_feel_each_other():
+    rng = np.random.default_rng(6)
+    table = rng.integers(-4, 5, (15, 8)) / 4
+    column = columns_of([METRICS["success"]] * 8)
+    together = difference([Moments.of(table[:9]), Moments.of(table[9:])], column)
+    for k in range(8):
+        alone = found([table[:9, k], table[9:, k]])
+        assert (alone.p[0], alone.low[0]) == pytest.approx((together.p[k], together.low[k]))
+
+
+def test_the_least_p_is_that_of_worlds_that_all_differ_by_the_whole_range():
+    for worlds in (2, 3, 5, 20):
+        assert least_p(worlds) == pytest.approx(found([[1.0] * worlds]).p[0])
+    assert least_p(1) == 1.0
+    assert least_p(4) > 0.05 > least_p(5)

@@ -5,14 +5,16 @@ import pyarrow as pa
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy import stats
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import Leaderboard, NotApplicable, comparisons, leaderboard
-from benchnav.leaderboard.label import COLUMN as HASH
+from benchnav.leaderboard.duel import duel
 from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE
 from tests.leaderboard.tables import METRICS, metric, row, scores, simulated, table
 
+HASH = "navigator_hash"
 NAVIGATORS = ("a", "b", "c", "d")
 
 
@@ -62,6 +64,31 @@ def test_clear_differences_rank_and_unclear_ones_tie():
     found = board(scores(graded(0.9, 0.85, 0.1)))
     intervals = {n: (only(found, n).rank_low, only(found, n).rank_high) for n in "abc"}
     assert intervals == {"a": (1, 2), "b": (1, 2), "c": (3, 3)}
+
+
+def test_scenarios_of_other_signs_are_no_noise_to_a_rank():
+    """Far apart in three scenarios and reversed in one, with little chance in each."""
+    rows = []
+    for name, one, other in (("w", 19, 8), ("x", 18, 9), ("y", 20, 8), ("z", 8, 15)):
+        values = {"a": [1.0] * one + [0.0] * (20 - one), "b": [1.0] * other + [0.0] * (20 - other)}
+        rows += scores(values, scenario=f"{name}@1")
+    found = board(rows)
+    a, b = only(found, "a", scenario=ALL), only(found, "b", scenario=ALL)
+    assert a.low > b.high
+    assert (a.rank_high, b.rank_low) == (1, 2)
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32))
+def test_two_entries_rank_as_the_interval_of_their_difference_says(seed):
+    rows = simulated("ab", 3, 6, np.random.default_rng(seed))
+    found = board(rows)
+    for name in ("success", "spl", "turning"):
+        for c in duel(table(rows), METRICS, (name,), "a", "b").comparisons:
+            apart = c.low > 0.0 or c.high < 0.0
+            assert (only(found, "a", name, scenario=c.scenario).rank_low == 2) == (
+                apart and (c.difference > 0) == (METRICS[name].better == "lower")
+            )
 
 
 def test_less_is_better_where_the_metric_says_so():
@@ -178,7 +205,7 @@ def test_a_failed_navigator_does_not_rank_where_there_is_no_worst():
     rows = scores({n: [0.1, 0.2, 0.3, 0.4] for n in "abc"}, "turning")
     rows[0]["failure"] = "raised ValueError"
     r = only(board(rows), "a", "turning")
-    assert (r.rank_low, r.note) == (None, "undefined in 1 episodes in which others have a value")
+    assert (r.rank_low, r.note) == (None, "undefined in 1 episode in which others have a value")
 
 
 def test_conditional_metrics_show_their_n_and_never_rank():
@@ -286,7 +313,7 @@ def test_comparisons_pair_the_worlds_of_both():
     (found,) = comparisons(table(rows), METRICS, "time_to_goal")
     assert (found.first, found.second, found.worlds) == ("a", "b", 2)
     assert found.difference == pytest.approx(1.5)
-    assert found.p == pytest.approx(0.5)
+    assert found.p == pytest.approx(2 * stats.t.sf(3.0, 1))  # mean 1.5, standard error 0.5
     with pytest.raises(UsageError, match="Did you mean 'success'"):
         comparisons(table(rows), METRICS, "succes")
 
@@ -302,7 +329,7 @@ def hashed(rows, *hashes):
 def test_two_navigators_under_one_label_are_never_merged():
     rows = [row("a", 0, "success", 1.0), row("a", 1, "success", 0.0)]
     for reader in (leaderboard, lambda t, m: comparisons(t, m, "success")):
-        with pytest.raises(UsageError, match=r"label 'a' must .* aaaa in .* and bbbb in .* label"):
+        with pytest.raises(UsageError, match=r"label 'a' must .*aaaa in .* and bbbb in .* label"):
             reader(hashed(rows, "aaaa", "bbbb"), METRICS)
 
 

@@ -11,6 +11,7 @@ import pytest
 
 from benchnav.errors import MissingExtraError, UsageError
 from benchnav.isolation import fence, isolated, pool
+from benchnav.navigation.navigator import AgentNavigator
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner import rollout
 from benchnav.runner.latency import latency, peak_memory
@@ -178,8 +179,9 @@ def test_the_suite_knows_of_isolated_navigators_what_it_knows_of_others():
 
 def test_what_another_process_cannot_import_is_refused():
     @NAVIGATORS.register("of-this-process")
-    class Local:
-        pass
+    class Local(AgentNavigator):
+        def act_agent(self, view, briefing):
+            return view.goal - view.position
 
     try:
         with pytest.raises(UsageError, match="registered in this process alone"):

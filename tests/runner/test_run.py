@@ -10,7 +10,6 @@ import time
 import pytest
 
 from benchnav.errors import (
-    BenchnavError,
     RunConflictError,
     UnsolvableError,
     UsageError,
@@ -21,6 +20,7 @@ from benchnav.runner import task as task_module
 from benchnav.runner.measured import measure_again
 from benchnav.runner.progress import Progress
 from benchnav.runner.run import run_suite
+from benchnav.runner.shard import Shard
 from benchnav.runner.suite import Selection, load_suite
 from benchnav.runner.task import chunks
 from benchnav.store.manifest import load_manifest
@@ -157,9 +157,43 @@ def test_another_suite_does_not_get_the_folder(suite_file, tmp_path):
     out = tmp_path / "run"
     run_suite(load_suite(str(suite_file), Selection(seeds="1")), out, workers=0)
     before = digests(out)
-    with pytest.raises(RunConflictError, match="They differ in seeds"):
-        run_suite(load_suite(str(suite_file), Selection(seeds="2")), out, workers=0)
+    with pytest.raises(RunConflictError, match=r"They differ in seeds, navigators\."):
+        run_suite(
+            load_suite(str(suite_file), Selection(seeds="2", navigators=("orca",))), out, workers=0
+        )
     assert digests(out) == before
+
+
+def test_more_seeds_extend_the_run(suite_file, tmp_path):
+    def run(out, seeds):
+        return run_suite(
+            load_suite(str(suite_file), Selection(seeds=seeds, salt=SALT)), out, workers=0
+        )
+
+    grown, whole = tmp_path / "grown", tmp_path / "whole"
+    run(grown, "2:3")
+    summary = run(grown, "2:5")
+    assert (summary.found, summary.stored) == (2, 6)
+    summary = run(grown, "0:2")
+    assert (summary.found, summary.stored) == (0, 4)
+    run(whole, "0:5")
+    assert load_manifest(grown).suite == load_manifest(whole).suite
+    assert digests(grown) == digests(whole)
+    fewer = run(grown, "3")
+    assert (fewer.found, fewer.stored) == (6, 6)
+    assert load_manifest(grown).suite["seeds"] == [0, 5]
+
+
+def test_seeds_with_a_gap_before_them_and_those_of_a_shard_do_not_extend(suite_file, tmp_path):
+    def suite(seeds):
+        return load_suite(str(suite_file), Selection(seeds=seeds, salt=SALT))
+
+    run_suite(suite("1"), tmp_path / "whole", workers=0)
+    with pytest.raises(RunConflictError, match=r"must touch .* 0:1\. Ask for --seeds 0:4"):
+        run_suite(suite("3:4"), tmp_path / "whole", workers=0)
+    run_suite(suite("2"), tmp_path / "share", workers=0, shard=Shard(1, 2))
+    with pytest.raises(RunConflictError, match=r"They differ in seeds\."):
+        run_suite(suite("3"), tmp_path / "share", workers=0, shard=Shard(1, 2))
 
 
 @pytest.mark.parametrize("workers", [0, 1])
@@ -254,9 +288,10 @@ def test_a_navigator_of_this_process_runs_in_this_process(suite_file, tmp_path):
     register_navigator("mine-for-a-test")(type("Mine", (Walk,), {}))
     chosen = Selection(navigators=("mine-for-a-test",))
     suite = load_suite(str(suite_file), chosen)
-    assert run_suite(suite, tmp_path / "here", workers=0).stored == 6
-    with pytest.raises(BenchnavError, match="no navigator 'mine-for-a-test'"):
-        run_suite(suite, tmp_path / "there", workers=1)
+    for workers in (0, 1):
+        summary = run_suite(suite, tmp_path / f"{workers}", workers=workers)
+        assert summary.stored == 6
+        assert summary.in_process == (("mine-for-a-test",) if workers else ())
 
 
 def _heed_ctrl_c():
@@ -288,7 +323,7 @@ def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file,
     assert process.returncode == 130
     assert stdout == ""
     assert "Interrupted: " in stderr
-    assert f"--out {out} goes on from there" in stderr
+    assert f"--out {out} continues there" in stderr
     assert "Traceback" not in stderr
     stored = len(list(read_episodes(out)))
     assert 0 < stored < seeds

@@ -123,6 +123,29 @@ def test_a_wrong_selection_is_asked_wrongly(write):
             load_suite(write(), Selection(salt=wrong))
 
 
+@pytest.mark.parametrize(
+    ("selection", "complaint"),
+    [
+        (Selection(navigators=("orca", "orca")), "--navigator must name each of the navigators"),
+        (Selection(navigators=("orca", "{type: orca}")), "as 'orca' and as '{type: orca}'"),
+        (Selection(tracks=("known", "known")), "--track must name each of the tracks once"),
+        (Selection(scenarios=("trap/u", "trap/u@1")), "--scenario must name each of the scenarios"),
+        (Selection(scenarios=("trap/u", "trap/u@1")), "'trap/u@1' more than once, as 'trap/u' and"),
+    ],
+)
+def test_what_is_selected_twice_is_blamed_on_the_option(write, selection, complaint):
+    path = write()
+    with pytest.raises(UsageError) as refused:
+        load_suite(path, selection)
+    assert complaint in str(refused.value)
+    assert "suite.yaml" not in str(refused.value)
+
+
+def test_what_stands_twice_in_the_file_is_blamed_on_its_line(write):
+    with pytest.raises(UsageError, match=r"suite\.yaml:\d+: navigators\[2\] .* navigators\[0\]"):
+        load_suite(write(navigators="[orca, straight-line, orca]"))
+
+
 def test_a_navigator_can_be_written_out_where_it_is_selected(write):
     written = "{type: orca, label: far-sighted, time_horizon: 9.0}"
     suite = load_suite(write(), Selection(navigators=("orca", written)))

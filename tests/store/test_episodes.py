@@ -7,10 +7,42 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from typing_extensions import TypeAliasType, TypeVar
 
 from benchnav.store.digest import digest
 from benchnav.store.episodes import LATER, from_table, to_table
 from benchnav.store.world_codec import decode, encode, world_from_json, world_to_json
+
+Scalar = TypeVar("Scalar", bound=np.generic)
+# What NDArray is since NumPy 2.5, whichever NumPy is installed.
+Alias = TypeAliasType("Alias", np.ndarray[tuple[int, ...], np.dtype[Scalar]], type_params=(Scalar,))
+Nested = TypeAliasType("Nested", Alias[np.float64])
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Aliased:
+    """Arrays under every kind of type hint that stands for one."""
+
+    alias: Alias[np.float64]
+    nested: Nested
+    plain: np.ndarray
+    several: tuple[Alias[np.int64], ...]
+    maybe: Alias[np.bool_] | None
+
+
+@pytest.mark.parametrize("values", [[], [0.5, -np.inf]])
+@pytest.mark.parametrize("maybe", [None, np.array([True, False])])
+def test_an_array_comes_back_however_its_type_is_written(tools, values, maybe):
+    floats = np.array(values)
+    several = (np.arange(4).reshape(2, 2), np.array([], dtype=np.int64))
+    written = Aliased(floats, floats, floats, several, maybe)
+    tools.same(written, decode(Aliased, json.loads(json.dumps(encode(written)))))
+
+
+@pytest.mark.parametrize("hint", [list[int], dict, object, np.float64, set[float]])
+def test_a_type_that_cannot_be_decoded_is_refused(hint):
+    with pytest.raises(TypeError, match="must not hold values of type"):
+        decode(hint, [1.0])
 
 
 @pytest.mark.parametrize("agents", [2, 3])

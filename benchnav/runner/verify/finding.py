@@ -4,6 +4,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from itertools import zip_longest
 
+from benchnav.plural import counted
+
 KINDS = {  # what a finding is about → what must hold there
     "manifest": "the suite, its cells and hashes fit each other",
     "scenario": "a scenario is what its hash says, and its files are there",
@@ -42,6 +44,7 @@ class Report:
     notes: Counter[str] = field(default_factory=Counter)  # what was not checked, and how often
     unknown: set[str] = field(default_factory=set)  # metrics that are not installed here
     versions: list[str] = field(default_factory=list)  # of packages that differ from the run's
+    sources: list[str] = field(default_factory=list)  # a sentence for each navigator
 
     @property
     def clean(self) -> bool:
@@ -73,25 +76,28 @@ class Report:
     @property
     def checked(self) -> list[str]:
         """What was checked, in words."""
-        c = self.counts
+        c, n = self.counts, self._counted
         lines = [
-            f"{c['episodes']} episodes and {c['rehearsals']} rehearsals: worlds drawn again,"
-            f" commands re-simulated, {c['states']} states of agents and {c['events']} events bit"
-            f" for bit; {c['values']} values within 1e-9"
+            f"{n('episodes', 'episode')} and {n('rehearsals', 'rehearsal')}: worlds drawn again,"
+            f" commands re-simulated, {n('states', 'state')} of agents and {n('events', 'event')}"
+            f" bit for bit; {n('values', 'value')} within 1e-9"
         ]
         if c["twin episodes"]:
             lines.append(
-                f"{c['twin episodes']} episodes by the slow twin of the kernels:"
-                f" {c['twin decisions']} decisions, {c['twin events']} events"
+                f"{n('twin episodes', 'episode')} by the slow twin of the kernels:"
+                f" {n('twin decisions', 'decision')}, {n('twin events', 'event')}"
             )
         if c["judged states"]:
             lines.append(
-                f"{c['judged events']} events by trimesh and python-fcl, and"
-                f" {c['judged states']} states of agents for events that lack"
+                f"{n('judged events', 'event')} by trimesh and python-fcl, and"
+                f" {n('judged states', 'state')} of agents for events that lack"
             )
         if c["rerun"]:
-            lines.append(f"{c['rerun']} episodes by running their navigators again")
+            lines.append(f"{n('rerun', 'episode')} by running their navigators again")
         return lines
+
+    def _counted(self, what: str, noun: str) -> str:
+        return counted(self.counts[what], noun)
 
     @property
     def unchecked(self) -> list[str]:
@@ -104,6 +110,6 @@ class Report:
         if not c["rerun"]:
             lines.append("whether the navigators gave these commands (--rerun asks them)")
         if c["n/a cells"] and not c["rerun n/a"]:
-            lines.append(f"why {c['n/a cells']} cells are n/a, which navigators say (--rerun)")
+            lines.append(f"why cells are n/a ({c['n/a cells']}), which navigators say (--rerun)")
         lines += [f"{n} × {text}" for text, n in sorted(self.notes.items())]
         return lines

@@ -7,17 +7,16 @@ from typing import Any
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import BenchnavError
-from benchnav.isolation.program import PROCESS
 from benchnav.runner.cell import Cell
 from benchnav.runner.entry import Entry, Meeting
 from benchnav.runner.rehearsal import Performance, perform
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.part_check import Pair, PartCheck
+from benchnav.runner.verify.stranger import is_by_module, is_program
 from benchnav.store.manifest import ISOLATED
 from benchnav.store.run_folder import RunFolder
 from benchnav.world.build import sensing_of
 
-_BY_MODULE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 _TOLD = ("act ", "reset ", "in rehearsal ", "the scenario's background ")  # raised or answered
 
 
@@ -73,9 +72,9 @@ def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry 
     Nothing that a stranger names by module is imported, and no program of theirs is started:
     only what is registered here. ``cells`` have the sensors that it is asked about.
     """
-    if packed and _is_program(entry.spec):
+    if packed and is_program(entry.spec):
         return None, f"{entry.label} is a program, in somebody else's pack"
-    if packed and _by_module(entry.spec):
+    if packed and is_by_module(entry.spec):
         return None, f"{entry.label} is named by its module, in somebody else's pack"
     sensings = tuple(dict.fromkeys(sensing_of(cell.scenario) for cell in cells))
     meeting = Meeting(sensings, entry.mode == ISOLATED)
@@ -88,21 +87,9 @@ def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry 
         return None, f"{entry.label} cannot be made here: {found.lacks}"
     if found.hash != entry.hash:
         return None, f"{entry.label} is another one here ({found.source} instead of {entry.source})"
+    if entry.source_hash and found.source_hash != entry.source_hash:
+        return None, f"{entry.label} has another source here"
     return found, ""
-
-
-def _is_program(said: Any) -> bool:
-    if isinstance(said, Mapping):
-        return _is_program(said.get("type")) or any(map(_is_program, said.values()))
-    return isinstance(said, str) and said == PROCESS
-
-
-def _by_module(said: Any) -> bool:
-    if isinstance(said, Mapping):
-        return any(_by_module(value) for value in said.values())
-    if isinstance(said, list | tuple):
-        return any(_by_module(value) for value in said)
-    return isinstance(said, str) and _BY_MODULE.fullmatch(said) is not None
 
 
 def check_reasons(run: RunFolder, cells: Sequence[Cell], report: Report) -> None:

@@ -50,7 +50,8 @@ def restore(run: RunFolder, root: Path, report: Report) -> Restored | None:
         whole = all(type(seed) is int and seed >= 0 for seed in (first, stop))
         if not whole or not 1 <= stop - first <= MAX_SEEDS or split not in _SPLITS:
             raise ValueError(f"seeds {suite['seeds']!r} of split {split!r}")
-        entries = [_entry(said) for said in suite["navigators"]]
+        sources = run.manifest.sources
+        entries = [_entry(said, sources.get(said["label"], {})) for said in suite["navigators"]]
         known = len(report.findings)
         scenarios = [
             _scenario(run, root / str(i), said, report) for i, said in enumerate(suite["scenarios"])
@@ -97,7 +98,7 @@ def _tuples(said: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
     return {name: tuple(map(str, listed)) for name, listed in said.items()}
 
 
-def _entry(said: Mapping[str, Any]) -> Entry:
+def _entry(said: Mapping[str, Any], source: Mapping[str, Any] = {}) -> Entry:
     led = _entry(said["leader"]) if "leader" in said else None
     training = Training(**said["training"]) if "training" in said else None
     return Entry(
@@ -106,6 +107,7 @@ def _entry(said: Mapping[str, Any]) -> Entry:
         rehearsal=int(said.get("rehearsal", 0)), leader=led,
         uses_map=bool(said.get("uses_map", True)),
         mode=ISOLATED if said.get("mode") == ISOLATED else IN_PROCESS,
+        places=tuple(source.get("places", ())), source_hash=str(source.get("hash", "")),
     )  # fmt: skip
 
 

@@ -15,6 +15,7 @@ from benchnav.runner.progress import Progress
 from benchnav.runner.verify.coverage import covered
 from benchnav.runner.verify.examine import Examination, examine
 from benchnav.runner.verify.finding import Report
+from benchnav.runner.verify.installed_source import compare_source
 from benchnav.runner.verify.part_check import PartCheck
 from benchnav.runner.verify.referee import require_referee
 from benchnav.runner.verify.rerun import check_reasons
@@ -83,6 +84,8 @@ def _tasks(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[E
     suite = restore(run, root, report)
     if suite is None:
         return []
+    entries = {cell.entry.label: cell.entry for cell in suite.cells}
+    report.sources += [compare_source(e, run.packed is not None) for e in entries.values()]
     if wanted.rerun:
         check_reasons(run, suite.cells, report)
     version = str(run.manifest.versions.get("benchnav", ""))

@@ -1,5 +1,6 @@
 """Readers of other projects' files, and the scenarios that are made of them."""
 
-from benchnav.scenario.importers.draft import import_movingai, import_ros_map, write_scenario
+from benchnav.scenario.importers.bundle import write_scenario
+from benchnav.scenario.importers.draft import default_name, import_movingai, import_ros_map
 
-__all__ = ["import_movingai", "import_ros_map", "write_scenario"]
+__all__ = ["default_name", "import_movingai", "import_ros_map", "write_scenario"]

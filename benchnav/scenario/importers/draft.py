@@ -1,28 +1,32 @@
-"""Scenarios made of maps: a mapping in the words of a scenario file, and the files it needs."""
+"""Scenarios made of maps: a mapping in the words of a scenario file."""
 
 import math
 import re
-import shutil
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-import yaml
-
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import FloatArray
 from benchnav.errors import MapError, UsageError
+from benchnav.scenario.base import MAX_NAME, NAME_PATTERN
 from benchnav.scenario.document import shown
-from benchnav.scenario.importers import movingai, ros_map
-from benchnav.scenario.importers.grid import Occupancy
+from benchnav.scenario.importers import journeys, movingai, ros_map
+from benchnav.scenario.importers.grid import Occupancy, demand_free
 from benchnav.scenario.importers.room import Room, largest_room
 
 Mapping = dict[str, Any]
+Remark = Callable[[str], None]
 
 _MOST = 20  # agents, unless more are asked for
 _RADII = tuple(0.2 / 2**k for k in range(6))  # [m]
 _SPEED = 1.0  # [m/s]
 _APART = 0.25  # of the smaller side of where they are: start and goal, at least
 _PATIENCE = 3.0  # the horizon is so many times the time of an undisturbed journey
+_COMMON = {"", "map", "maps", "out", "s", "scenario", "scenarios"}  # names that many maps share
+
+
+def _silent(text: str) -> None:
+    """Ignore a remark."""
 
 
 def import_movingai(
@@ -33,47 +37,53 @@ def import_movingai(
     bucket: int | None = None,
     cell: float = 1.0,
     radius: float | None = None,
+    name: str | None = None,
+    remark: Remark = _silent,
 ) -> Mapping:
-    """A scenario on a MovingAI map.
+    """Return a scenario on a MovingAI map.
 
-    With a ``.scen`` file, starts and goals are those of its first rows, from above,
-    that share neither a start nor a goal with one before; else they are drawn as on a
+    With a ``.scen`` file, starts and goals are those of its rows, spread over the
+    buckets, of which no two share a start or a goal; else they are drawn as on a
     map_server map.
 
     Args:
         map_path: a ``.map`` file.
         scen_path: a ``.scen`` file of that map.
-        agents: how many; None: 20, or without a ``.scen`` file as many as have room.
-        bucket: takes only the rows of this bucket.
+        agents: how many; None: up to 20, as many as have room or as the file has rows.
+        bucket: takes only the rows of this bucket, the first ones.
         cell: [m] a cell.
         radius: [m] of an agent; None: 0.3 cells.
+        name: of the scenario; None: ``movingai/`` and the name of the map.
+        remark: called with each remark about the map and the journeys.
 
     Raises:
         MapError: a file is not what it must be, has too few rows, or no agent has room.
         UsageError: a bucket without a ``.scen`` file, or no agents, or no radius.
     """
-    _demand_sane(agents, radius)
+    _demand_sane(agents, radius, name)
     path = Path(map_path)
     occupancy = movingai.read_map(path, cell)
-    _demand_free(path, ~occupancy.blocked)
+    demand_free(f"{path}:1", occupancy, False, "")
+    _remark_cells(occupancy, False, remark)
     size = 0.3 * cell if radius is None else radius
     shape = {"type": "occupancy", "file": str(path.resolve()), "format": "movingai", "cell": cell}
+    called = name or default_name("movingai", path)
     if scen_path is None:
         if bucket is not None:
             raise UsageError(f"A bucket is one of a .scen file; got {bucket} without such a file.")
-        room = _room(path, occupancy, ~occupancy.blocked, (size,))
-        agents = _crew(room) if agents is None else agents
-        places, journey = _within(room), sum(room.sides)
-    else:
-        agents = _MOST if agents is None else agents
-        queries = movingai.read_scen(scen_path, path, occupancy)
-        rows = _rows(Path(scen_path), queries, agents, bucket)
-        places = {
-            "start": _points(occupancy.centres(*queries.start[rows].T)),
-            "goal": _points(occupancy.centres(*queries.goal[rows].T)),
-        }
-        journey = float(queries.length[rows].max()) * cell
-    return _scenario("movingai", path, shape, occupancy, places, agents, size, journey)
+        room = _room(path, occupancy, False, (size,))
+        places, journey, count = _drawn(room, agents, remark)
+        return _scenario(called, path, shape, occupancy, places, count, size, journey)
+    queries = movingai.read_scen(scen_path, path, occupancy)
+    rows = _rows(Path(scen_path), queries, agents, bucket, remark)
+    places = {
+        "start": _points(occupancy.centres(*queries.start[rows].T)),
+        "goal": _points(occupancy.centres(*queries.goal[rows].T)),
+    }
+    lengths = queries.length[rows] * cell
+    remark(journeys.summary(lengths))
+    journey = float(lengths.max())
+    return _scenario(called, path, shape, occupancy, places, len(rows), size, journey)
 
 
 def import_ros_map(
@@ -82,8 +92,10 @@ def import_ros_map(
     agents: int | None = None,
     radius: float | None = None,
     unknown_is_free: bool = False,
+    name: str | None = None,
+    remark: Remark = _silent,
 ) -> Mapping:
-    """A scenario on a map_server map.
+    """Return a scenario on a map_server map.
 
     Starts and goals are drawn in the largest part of the map that agents can be in,
     goals at least a quarter of its smaller side away.
@@ -93,81 +105,62 @@ def import_ros_map(
         agents: how many; None: 20, or as many as have room.
         radius: [m] of an agent; None: 0.2 m, or half of it, a quarter, … until two have room.
         unknown_is_free: whether agents may enter cells that the map does not know.
+        name: of the scenario; None: ``ros/`` and the name of the map, or of its folder
+            where the map is called ``map``.
+        remark: called with each remark about the map and the journeys.
 
     Raises:
         MapError: the file is not what it must be, or no agent has room.
         UsageError: no agents, or no radius.
     """
-    _demand_sane(agents, radius)
+    _demand_sane(agents, radius, name)
     path = Path(path)
     occupancy = ros_map.read_map(path)
-    free = ~occupancy.blocked if unknown_is_free else ~(occupancy.blocked | occupancy.unknown)
-    _demand_free(path, free)
+    demand_free(f"{path}:1", occupancy, unknown_is_free, "--unknown-is-free")
+    _remark_cells(occupancy, unknown_is_free, remark)
     shape: Mapping = {"type": "occupancy", "file": str(path.resolve()), "format": "ros"}
     if unknown_is_free:
         shape["unknown_is_free"] = True
     sizes = _RADII if radius is None else (radius,)
-    room = _room(path, occupancy, free, sizes)
-    count = _crew(room) if agents is None else agents
-    places, journey = _within(room), sum(room.sides)
-    return _scenario("ros", path, shape, occupancy, places, count, room.radius, journey)
+    room = _room(path, occupancy, unknown_is_free, sizes)
+    places, journey, count = _drawn(room, agents, remark)
+    called = name or default_name("ros", path)
+    return _scenario(called, path, shape, occupancy, places, count, room.radius, journey)
 
 
-def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> list[Path]:
-    """Writes a scenario as YAML and copies its maps beside it, so that the folder is complete.
+def default_name(family: str, map_path: Path, out: Path | None = None) -> str:
+    """Return ``family/`` and the name of the scenario file, of the map or of its folder.
 
-    Returns the paths of all files, the scenario first.
-
-    Raises:
-        UsageError: a file is there already and ``force`` is not given, or cannot be written.
-        MapError: a map cannot be read any more.
+    The first of these counts that is not a name which many maps share.
     """
-    out = Path(out)
-    contents: dict[Path, bytes | Path] = {}
-    copy = {**mapping, "walls": [dict(wall) for wall in mapping.get("walls", [])]}
-    for wall in copy["walls"]:
-        source = Path(wall["shape"]["file"])
-        contents.update(_copies(source, wall["shape"].get("format", ""), out.parent))
-        wall["shape"] = {**wall["shape"], "file": source.name}
-    text = yaml.safe_dump(copy, sort_keys=False, default_flow_style=None, allow_unicode=True)
-    if out in contents:
-        raise UsageError(f"{out} is the map's own name; give the scenario another one.")
-    contents = {out: text.encode(), **contents}
-    changed = {p: c for p, c in contents.items() if not _same(p, c)}
-    present = [str(path) for path in changed if path.exists()]
-    if present and not force:
-        raise UsageError(f"{', '.join(present)} must not exist yet; it would be overwritten.")
-    try:
-        out.parent.mkdir(parents=True, exist_ok=True)
-        for path, content in changed.items():
-            if isinstance(content, Path):
-                shutil.copyfile(content, path)
-            else:
-                path.write_bytes(content)
-    except OSError as error:
-        raise UsageError(f"{out.parent} must be writable; {error.strerror or error}.") from None
-    return list(contents)
+    folder = map_path.resolve().parent.name
+    stems = ([out.stem] if out else []) + [map_path.stem, folder]
+    names = [re.sub(r"[^a-z0-9]+", "-", stem.lower()).strip("-") for stem in stems]
+    telling = [name for name in names if name not in _COMMON]
+    return f"{family}/{(telling or ['map'])[0][:60].strip('-')}"
 
 
-def _same(path: Path, content: bytes | Path) -> bool:
-    return isinstance(content, Path) and path.exists() and path.samefile(content)
-
-
-def _copies(source: Path, format: str, folder: Path) -> dict[Path, bytes | Path]:
-    """What must stand in ``folder``: file → its bytes, or the file to copy."""
-    if format != "ros":
-        return {folder / source.name: source}
-    document, spec = ros_map.read_header(source)
-    image = ros_map.image_path(document, spec)
-    if spec.image == image.name:
-        return {folder / source.name: source, folder / image.name: image}
-    renamed = {**document.data, "image": image.name}
-    text = yaml.safe_dump(renamed, sort_keys=False, default_flow_style=None)
-    return {folder / source.name: text.encode(), folder / image.name: image}
+def _remark_cells(occupancy: Occupancy, unknown_is_free: bool, remark: Remark) -> None:
+    high, wide = occupancy.blocked.shape
+    free, blocked, unknown = occupancy.counts
+    remark(
+        f"{wide} × {high} cells of {occupancy.cell:g} m: {free} free, {blocked} blocked,"
+        f" {unknown} unknown."
+    )
+    if unknown and unknown_is_free:
+        remark("Agents may enter unknown cells.")
+    elif unknown:
+        remark("Agents may not enter unknown cells; --unknown-is-free opens them.")
+    if occupancy.doubtful:
+        remark(
+            f"{occupancy.doubtful} free cells have the grey {ros_map.UNKNOWN_GREY},"
+            " by which map_saver marks unknown cells.\n"
+            "If they are unknown, set the map's free_thresh to 0.196 and import it again."
+        )
 
 
 def _scenario(
-    family: str,
+    name: str,
     path: Path,
     shape: Mapping,
     occupancy: Occupancy,
@@ -176,11 +169,10 @@ def _scenario(
     radius: float,
     journey: float,
 ) -> Mapping:
-    name = re.sub(r"[^a-z0-9]+", "-", path.stem.lower()).strip("-") or "map"
     horizon = 10.0 * math.ceil(max(50.0, _PATIENCE * journey / _SPEED) / 10.0)
     team = {"name": "agents", "count": agents, "radius": radius, "max_speed": _SPEED, **places}
     return {
-        "name": f"{family}/{name[:60].strip('-')}",
+        "name": name,
         "version": 1,
         "title": f"{agents} agents on {shown(path.name)}",
         "bounds": [float(b) for b in occupancy.bounds],
@@ -192,30 +184,46 @@ def _scenario(
     }
 
 
-def _demand_sane(agents: int | None, radius: float | None) -> None:
+def _demand_sane(agents: int | None, radius: float | None, name: str | None) -> None:
+    if name is not None and not (re.fullmatch(NAME_PATTERN, name) and len(name) <= MAX_NAME):
+        raise UsageError(
+            "A scenario's name must be small letters, digits, - and _, with / between its parts,"
+            f" such as ros/warehouse; got {shown(name)!r}."
+        )
     if agents is not None and agents < 1:
         raise UsageError(f"agents must be ≥ 1; got {agents}.")
     if radius is not None and not 0.0 < radius < math.inf:
         raise UsageError(f"radius must be > 0 m; got {radius}.")
 
 
-def _room(path: Path, occupancy: Occupancy, free: BoolArray, radii: Sequence[float]) -> Room:
+def _room(path: Path, occupancy: Occupancy, unknown_is_free: bool, radii: Sequence[float]) -> Room:
     """Of the first radius for which two agents have room, else of the last for which one has."""
-    found = None
+    free, found = occupancy.free(unknown_is_free), None
     for radius in radii:
         found = largest_room(occupancy, free, radius) or found
         if found is not None and found.capacity >= 2:
             return found
     if found is None:
+        closed = occupancy.unknown.any() and not unknown_is_free
         raise MapError(
             f"{path}:1: the map must have a place for an agent; none has a radius of"
-            f" {radii[-1]:g} m free around it. Try a smaller radius."
+            f" {radii[-1]:g} m free around it. Try a smaller radius"
+            f"{', or --unknown-is-free to open unknown cells' if closed else ''}."
         )
     return found
 
 
-def _crew(room: Room) -> int:
-    return max(1, min(_MOST, room.capacity))
+def _drawn(room: Room, agents: int | None, remark: Remark) -> tuple[Mapping, float, int]:
+    """Where agents start and want to go, the length [m] of a long journey, and how many."""
+    count = max(1, min(_MOST, room.capacity)) if agents is None else agents
+    places = _within(room)
+    wide, high = room.sides
+    remark(
+        f"{count} agent{'s' if count > 1 else ''} of radius {room.radius:g} m; starts and goals"
+        f" are drawn in {wide:.1f} × {high:.1f} m,\n"
+        f"at least {places['goal']['min_distance']:g} m from each other."
+    )
+    return places, sum(room.sides), count
 
 
 def _within(room: Room) -> Mapping:
@@ -231,27 +239,23 @@ def _points(places: FloatArray) -> Mapping:
     return {"type": "points", "points": [[float(x), float(y)] for x, y in places]}
 
 
-def _rows(path: Path, queries: movingai.Queries, agents: int, bucket: int | None) -> list[int]:
-    """The first rows with starts and goals of their own."""
-    starts: set[tuple[int, ...]] = set()
-    goals: set[tuple[int, ...]] = set()
-    rows: list[int] = []
-    for row in range(len(queries.length)):
-        start, goal = tuple(queries.start[row].tolist()), tuple(queries.goal[row].tolist())
-        wanted = bucket is None or queries.bucket[row] == bucket
-        if wanted and start != goal and start not in starts and goal not in goals:
-            starts.add(start)
-            goals.add(goal)
-            rows.append(row)
-        if len(rows) == agents:
-            return rows
-    within = "" if bucket is None else f" in bucket {bucket}"
-    raise MapError(
-        f"{path}:1: there must be {agents} queries{within} that share no start and no goal; "
-        f"there are {len(rows)}. Ask for fewer agents."
-    )
-
-
-def _demand_free(path: Path, free: BoolArray) -> None:
-    if not free.any():
-        raise MapError(f"{path}:1: the map must have a free cell; all are blocked.")
+def _rows(
+    path: Path, queries: movingai.Queries, agents: int | None, bucket: int | None, remark: Remark
+) -> list[int]:
+    """The rows that become agents, as many as wanted."""
+    left_out = len(queries.left_out)
+    if left_out:
+        rows_are = "row is" if left_out == 1 else "rows are"
+        remark(f"{left_out} {rows_are} left out. The first:\n{queries.left_out[0]}")
+    rows = journeys.choose(queries, _MOST if agents is None else agents, bucket)
+    wanted = agents or 1
+    if len(rows) < wanted:
+        within = "" if bucket is None else f" in bucket {bucket}"
+        cure = "Ask for fewer agents."
+        if not rows and bucket is not None:
+            cure = f"The file has buckets {queries.bucket.min()} to {queries.bucket.max()}."
+        raise MapError(
+            f"{path}:1: there must be {wanted} {'query' if wanted == 1 else 'queries'}{within}"
+            f" that share no start and no goal; there are {len(rows)}. {cure}"
+        )
+    return rows

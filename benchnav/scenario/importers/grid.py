@@ -20,6 +20,7 @@ class Occupancy:
     unknown: BoolArray  # (H, W) True where the map does not say
     cell: float  # [m] side of a cell
     origin: tuple[float, float, float]  # (x, y, yaw) [m, m, rad] of the grid's lower left corner
+    doubtful: int = 0  # free cells whose grey is the one by which map_saver marks unknown cells
 
     def points(self, cells: FloatArray) -> FloatArray:
         """(…, 2) places (column, row) in cells from the lower left corner → world [m]."""
@@ -33,12 +34,39 @@ class Occupancy:
         return self.points(np.stack([np.asarray(columns), np.asarray(rows)], axis=-1) + 0.5)
 
     @property
+    def counts(self) -> tuple[int, int, int]:
+        """Numbers of free, blocked and unknown cells."""
+        blocked, unknown = int(self.blocked.sum()), int(self.unknown.sum())
+        return self.blocked.size - blocked - unknown, blocked, unknown
+
+    def free(self, unknown_is_free: bool) -> BoolArray:
+        """(H, W) where agents may be."""
+        return ~self.blocked if unknown_is_free else ~(self.blocked | self.unknown)
+
+    @property
     def bounds(self) -> tuple[float, float, float, float]:
         """Box xmin, ymin, xmax, ymax [m] around the (possibly turned) grid."""
         high, wide = self.blocked.shape
         corners = self.points(np.array([[0, 0], [wide, 0], [wide, high], [0, high]], float))
         low, top = corners.min(axis=0), corners.max(axis=0)
         return float(low[0]), float(low[1]), float(top[0]), float(top[1])
+
+
+def demand_free(where: str, occupancy: Occupancy, unknown_is_free: bool, cure: str) -> None:
+    """Refuse a map in which agents can be nowhere; ``cure`` opens its unknown cells.
+
+    Raises:
+        MapError: it gives the numbers of blocked and of unknown cells.
+    """
+    free, blocked, unknown = occupancy.counts
+    if free or (unknown and unknown_is_free):
+        return
+    if unknown:
+        raise MapError(
+            f"{where}: the map must have a free cell; none is free, {blocked} are blocked"
+            f" and {unknown} are unknown. {cure} opens unknown cells to agents."
+        )
+    raise MapError(f"{where}: the map must have a free cell; all {blocked} are blocked.")
 
 
 def check_size(where: str, width: int, height: int) -> None:

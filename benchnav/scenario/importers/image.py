@@ -1,61 +1,61 @@
-"""Brightness of a greyscale or colour image, refused early when it is hostile."""
+"""Grey levels and opacity of an image, refused early when it is hostile."""
 
 import warnings
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from benchnav.arrays import AnyArray, BoolArray, FloatArray
+from benchnav.arrays import BoolArray
 from benchnav.errors import MapError
-from benchnav.scenario.importers.grid import check_size
+from benchnav.scenario.importers.grid import MAX_CELLS, check_size
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-_FORMATS = ("PNG", "BMP", "PPM")  # PPM is Pillow's name for PGM too
+Levels = NDArray[np.uint8]
+
+_FORMATS = ("PNG", "PPM", "BMP", "JPEG", "TIFF", "GIF")  # PPM is Pillow's name for PGM too
 
 
-def read_shades(path: Path, average_alpha: bool) -> tuple[FloatArray, BoolArray]:
-    """(H, W) brightness in [0, 1], row 0 at the top, and (H, W) True where fully opaque.
+def read_levels(path: Path) -> tuple[Levels, BoolArray]:
+    """Return the (H, W) grey levels 0 to 255, row 0 at the top, and where pixels are opaque.
 
-    The brightness of a pixel is the mean of its colours; with ``average_alpha``
-    its opacity counts as one more colour, which is what map_server does in its
-    mode `trinary`.
+    A colour counts by its luma (ITU-R 601), whatever its opacity; 16 bits are rounded to 8.
 
     Raises:
-        MapError: not a PNG, PGM or BMP image, cut short, or too large.
+        MapError: the image has another format, is cut short, or is too large.
     """
     from PIL import Image as pillow
 
+    bombs = pillow.DecompressionBombWarning, pillow.DecompressionBombError
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("error")  # Pillow warns of images that unpack to gigabytes
+            warnings.simplefilter("ignore")  # Pillow warns of metadata that no map needs
+            warnings.simplefilter("error", pillow.DecompressionBombWarning)
             with pillow.open(path, formats=_FORMATS) as image:
                 check_size(f"{path}:1", *image.size)
-                channels, top = _channels(image)
+                return _levels(image)
     except MapError:
         raise
+    except bombs:
+        raise MapError(
+            f"{path}:1: a map has at most {MAX_CELLS} cells; the image has many more."
+            " Cut it or scale it down."
+        ) from None
     except Exception as error:  # Pillow's decoders raise a dozen kinds
         raise MapError(
-            f"{path}:1: the image must be a whole PNG, PGM or BMP file; got: {error}."
+            f"{path}:1: the image must be a whole JPEG, TIFF, GIF, PNG, PGM or BMP file;"
+            f" got: {error}."
         ) from None
-    values = np.asarray(channels, np.float64) / top
-    opaque = np.ones(values.shape[:2], bool)
-    if values.shape[2] in {2, 4}:  # grey or RGB, and opacity
-        opaque = values[..., -1] >= 1.0
-        if not average_alpha:
-            values = values[..., :-1]
-    return values.mean(axis=2), opaque
 
 
-def _channels(image: "Image") -> tuple[AnyArray, float]:
-    """(H, W, C) samples and the value of full brightness; colours before opacity."""
-    if image.mode.startswith("I"):  # 16 bits
-        return np.asarray(image, np.int64)[..., None], 65535.0
-    if image.mode == "P":
-        image = image.convert("RGBA" if "transparency" in image.info else "RGB")
-    elif image.mode not in {"L", "LA", "RGB", "RGBA"}:
-        image = image.convert("L" if image.mode == "1" else "RGBA")
-    samples = np.asarray(image)
-    return samples.reshape(*samples.shape[:2], -1), 255.0
+def _levels(image: "Image") -> tuple[Levels, BoolArray]:
+    if image.mode.startswith("I"):  # 16 bits, which Pillow does not convert faithfully
+        samples = np.asarray(image, np.int64)
+        opaque = np.asarray(samples != image.info.get("transparency", -1))
+        return np.clip((samples + 128) // 257, 0, 255).astype(np.uint8), opaque
+    colours = image.convert("RGBA")  # applies the transparent colour of a palette or a PNG
+    opaque = np.asarray(colours.getchannel("A")) == 255
+    return np.array(colours.convert("L")), opaque

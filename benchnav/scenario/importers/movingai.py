@@ -6,21 +6,25 @@ cell in file row ``r`` of H has the centre y = (H − 1 − r) + ½ cells.
 """
 
 import math
+import re
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from benchnav.arrays import FloatArray, IntArray
+from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.errors import MapError
 from benchnav.scenario.document import shown
 from benchnav.scenario.importers.grid import MAX_CELLS, Occupancy, check_size, read_bytes
 
 FREE = ".GS"
 BLOCKED = "@OTW"  # water too: nothing here swims
-MAX_QUERIES = 100_000
 _MAX_BYTES = MAX_CELLS + (1 << 20)
+_LINE_END = re.compile(r"\r\n|\r|\n")
 _HEADER = "the four header lines are `type octile`, `height H`, `width W`, `map`"
+
+Lines = list[tuple[int, str]]  # (number in the file from 1, text without spaces around it)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,10 +35,14 @@ class Queries:
     start: IntArray  # (Q, 2) cell (column, row), row 0 at the bottom
     goal: IntArray  # (Q, 2)
     length: FloatArray  # (Q,) published optimal octile length, in cells
+    left_out: tuple[str, ...] = ()  # what is wrong with each row that cannot be used
 
 
 def read_map(path: Path | str, cell: float = 1.0) -> Occupancy:
-    """The map in ``path`` with its lower left corner at the origin; ``cell`` [m] a cell.
+    """Return the map in ``path``, its lower left corner at the origin; ``cell`` [m] a cell.
+
+    As in the field's own reader, blank lines, spaces around a row and small letters do
+    not matter.
 
     Raises:
         MapError: it is not such a map.
@@ -43,102 +51,163 @@ def read_map(path: Path | str, cell: float = 1.0) -> Occupancy:
     lines = _lines(path, "a MovingAI map")
     width, height = _header(path, lines)
     rows = lines[4:]
-    while rows and not rows[-1].strip():
-        rows.pop()
     if len(rows) != height:
+        at = rows[height][0] if len(rows) > height else lines[-1][0] + 1
         raise MapError(
-            f"{path}:{5 + min(len(rows), height)}: the map must have the {height} rows that "
+            f"{path}:{at}: the map must have the {height} rows that "
             f"line 2 or 3 declares; got {len(rows)}."
         )
-    for number, row in enumerate(rows, 5):
+    for number, row in rows:
         if len(row) != width:
             raise MapError(f"{path}:{number}: a row must have {width} cells; got {len(row)}.")
-    letters = np.frombuffer("".join(rows).encode("latin-1"), np.uint8).reshape(height, width)
-    free = np.isin(letters, np.frombuffer(FREE.encode(), np.uint8))
-    blocked = np.isin(letters, np.frombuffer(BLOCKED.encode(), np.uint8))
+    letters = np.frombuffer("".join(row for _, row in rows).encode("latin-1"), np.uint8)
+    letters = letters.reshape(height, width)
+    free, blocked = _any_case(letters, FREE), _any_case(letters, BLOCKED)
     if not np.all(free | blocked):
-        row, column = np.argwhere(~(free | blocked))[0]
+        row_index, column = np.argwhere(~(free | blocked))[0]
         raise MapError(
-            f"{path}:{row + 5}: column {column + 1} must be one of {' '.join(FREE + BLOCKED)}; "
-            f"got {chr(letters[row, column])!r}."
+            f"{path}:{rows[row_index][0]}: column {column + 1} must be one of "
+            f"{' '.join(FREE + BLOCKED)}; got {chr(letters[row_index, column])!r}."
         )
     upright = np.ascontiguousarray(blocked[::-1])
     return Occupancy(upright, np.zeros_like(upright), cell, (0.0, 0.0, 0.0))
 
 
 def read_scen(path: Path | str, map_path: Path | str, occupancy: Occupancy) -> Queries:
-    """The queries of ``path`` on the map in ``map_path``, which was read as ``occupancy``.
+    """Return the queries of ``path`` on the map in ``map_path``, which was read as ``occupancy``.
+
+    Fields stand apart by spaces or tabs. As in the field's own reader, a file without a
+    version has rows with or without width and height. Rows that cannot be used, or that
+    are about another map, are left out.
 
     Raises:
-        MapError: it is no such file, or belongs to another map, or starts or ends where
-            the map is blocked.
+        MapError: no row can be used; the message is about the first.
     """
     path = Path(path)
     lines = _lines(path, "a MovingAI .scen file")
-    first = lines[0].split()
-    if len(first) != 2 or first[0] != "version" or first[1] not in {"1", "1.0"}:
-        raise MapError(f"{path}:1: the first line must be `version 1`; got {_got(lines[0])}.")
-    rows = [(n, line) for n, line in enumerate(lines[1:], 2) if line.strip()]
-    if not rows:
-        raise MapError(f"{path}:2: the file must hold at least one query; got none.")
-    if len(rows) > MAX_QUERIES:
-        raise MapError(f"{path}:1: at most {MAX_QUERIES} queries are read; got {len(rows)}.")
-    parsed = [_query(f"{path}:{n}", line, Path(map_path).name, occupancy) for n, line in rows]
+    versioned, rows = _version(path, lines)
+    parsed, left_out = [], []
+    for number, line in rows:
+        try:
+            parsed.append(
+                _query(f"{path}:{number}", line, versioned, Path(map_path).name, occupancy)
+            )
+        except MapError as error:
+            left_out.append(str(error))
+    if not parsed:
+        raise MapError(left_out[0])
     bucket, start, goal, length = zip(*parsed, strict=True)
-    return Queries(np.array(bucket), np.array(start), np.array(goal), np.array(length))
+    return Queries(
+        np.array(bucket), np.array(start), np.array(goal), np.array(length), tuple(left_out)
+    )
 
 
-def _lines(path: Path, what: str) -> list[str]:
-    text = read_bytes(path, _MAX_BYTES, what).decode("latin-1")
-    return text.replace("\r\n", "\n").replace("\r", "").split("\n")
+def _lines(path: Path, what: str) -> Lines:
+    """The lines that are not blank."""
+    text = read_bytes(path, _MAX_BYTES, what).removeprefix(b"\xef\xbb\xbf").decode("latin-1")
+    numbered = enumerate(map(str.strip, _LINE_END.split(text)), 1)
+    return [(number, line) for number, line in numbered if line]
 
 
-def _header(path: Path, lines: list[str]) -> tuple[int, int]:
+def _any_case(letters: NDArray[np.uint8], of: str) -> BoolArray:
+    return np.isin(letters, np.frombuffer((of + of.lower()).encode(), np.uint8))
+
+
+def _header(path: Path, lines: Lines) -> tuple[int, int]:
     """(width, height)"""
-    words = [line.split() for line in lines[:4]]
-    words += [[] for _ in range(4 - len(words))]
-    if words[0] != ["type", "octile"]:
-        raise MapError(f"{path}:1: must be `type octile`; got {_got(lines[0])}. {_HEADER}.")
+    end = lines[-1][0] + 1 if lines else 1
+    numbers, texts = zip(*(*lines[:4], *[(end, "")] * 4), strict=True)
+    got = [_got(text) if i < len(lines) else "the end of the file" for i, text in enumerate(texts)]
+    if texts[0].split() != ["type", "octile"]:
+        raise MapError(f"{path}:{numbers[0]}: must be `type octile`; got {got[0]}. {_HEADER}.")
     size: dict[str, int] = {}
-    for number in (1, 2):
-        pair = words[number]
+    for i in (1, 2):
+        pair = texts[i].split()
         known = len(pair) == 2 and pair[0] in {"height", "width"} and pair[0] not in size
         if not known or not _is_count(pair[1]):
-            got = _got(lines[number]) if number < len(lines) else "the end of the file"
-            raise MapError(f"{path}:{number + 1}: must say height or width; got {got}. {_HEADER}.")
+            raise MapError(
+                f"{path}:{numbers[i]}: must say height or width; got {got[i]}. {_HEADER}."
+            )
         size[pair[0]] = int(pair[1])
-    check_size(f"{path}:2", size["width"], size["height"])
-    if words[3] != ["map"]:
-        got = _got(lines[3]) if len(lines) > 3 else "the end of the file"
-        raise MapError(f"{path}:4: must be `map`; got {got}. {_HEADER}.")
+    check_size(f"{path}:{numbers[1]}", size["width"], size["height"])
+    if texts[3] != "map":
+        raise MapError(f"{path}:{numbers[3]}: must be `map`; got {got[3]}. {_HEADER}.")
     return size["width"], size["height"]
 
 
+def _version(path: Path, lines: Lines) -> tuple[bool, Lines]:
+    """Whether the file is of version 1, and its rows."""
+    number, first = lines[0] if lines else (1, "")
+    words = first.split()
+    if first and words[0].lower() != "version":
+        return False, lines
+    try:
+        version = float(words[1]) if len(words) == 2 else math.nan
+    except ValueError:
+        version = math.nan
+    if version not in {0.0, 1.0}:
+        raise MapError(f"{path}:{number}: the first line must be `version 1`; got {_got(first)}.")
+    if len(lines) == 1:
+        raise MapError(f"{path}:{number + 1}: the file must hold at least one query; got none.")
+    return version == 1.0, lines[1:]
+
+
 def _query(
-    where: str, line: str, map_name: str, occupancy: Occupancy
+    where: str, line: str, versioned: bool, map_name: str, occupancy: Occupancy
 ) -> tuple[int, tuple[int, int], tuple[int, int], float]:
-    fields = line.split("\t")
-    if len(fields) != 9:
-        raise MapError(f"{where}: a query must have 9 fields between tabs; got {len(fields)}.")
-    named = fields[1].replace("\\", "/").rsplit("/", 1)[-1]
-    if named != map_name:
-        raise MapError(f"{where}: the query must be about {map_name}; got {_got(named)}.")
-    numbers = [fields[0], *fields[2:8]]
-    if not all(_is_count(n.strip()) for n in numbers):
-        raise MapError(f"{where}: fields 1 and 3 to 8 must be whole numbers ≥ 0; got {_got(line)}.")
-    bucket, width, height, sx, sy, gx, gy = (int(n) for n in numbers)
+    fields = _fields(where, line, versioned)
+    if not _same_map(fields[1], map_name):
+        raise MapError(
+            f"{where}: the query must be about {map_name}; got {_got(fields[1])}."
+            " A map's file must have its published name."
+        )
+    bucket, *size, sx, sy, gx, gy = (
+        _count(where, fields, i) for i in range(len(fields) - 1) if i != 1
+    )
     high, wide = occupancy.blocked.shape
-    if (width, height) != (wide, high):
+    if size and size != [wide, high]:
         raise MapError(
             f"{where}: width and height must be those of the map, {wide} and {high}; "
-            f"got {width} and {height}."
+            f"got {size[0]} and {size[1]}. The file is for a map of that size."
         )
-    length = _length(where, fields[8])
+    length = _length(where, fields[-1])
     start, goal = (sx, high - 1 - sy), (gx, high - 1 - gy)
     for what, (column, row) in (("start", start), ("goal", goal)):
         if column >= wide or not 0 <= row < high or occupancy.blocked[row, column]:
             raise MapError(f"{where}: the {what} must be a free cell of the map; got {_got(line)}.")
     return bucket, start, goal, length
+
+
+def _fields(where: str, line: str, versioned: bool) -> list[str]:
+    """Bucket, map, (width, height,) start x, y, goal x, y, length; a map's name may hold spaces."""
+    tabbed = [field.strip() for field in line.split("\t")]
+    words = tabbed if len(tabbed) in ({9} if versioned else {7, 9}) else line.split()
+    count = 7 if len(words) == 7 and not versioned else 9
+    if len(words) < count:
+        raise MapError(
+            f"{where}: a query must have 9 fields between tabs or spaces; got {len(words)}."
+        )
+    tail = len(words) - count + 2
+    return [words[0], " ".join(words[1:tail]), *words[tail:]]
+
+
+def _same_map(named: str, map_name: str) -> bool:
+    """Whether a row names the map, in whatever folder and case."""
+    base = named.replace("\\", "/").rsplit("/", 1)[-1]
+    return base.lower().removesuffix(".map") == map_name.lower().removesuffix(".map")
+
+
+def _count(where: str, fields: list[str], index: int) -> int:
+    try:
+        number = float(fields[index])
+    except ValueError:
+        number = math.nan
+    if not 0.0 <= number < 1e9 or not number.is_integer():
+        raise MapError(
+            f"{where}: all fields but the map and the length must be whole numbers ≥ 0;"
+            f" field {index + 1} is {_got(fields[index])}."
+        )
+    return int(number)
 
 
 def _length(where: str, text: str) -> float:

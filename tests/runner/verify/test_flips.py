@@ -15,6 +15,7 @@ from benchnav.store import checked_json
 from benchnav.store.episodes import EPISODES, from_table
 from benchnav.store.part import EPISODES_FILE, REHEARSALS_FILE, RESULTS_FILE, SEAL
 from benchnav.store.results import RESULTS
+from benchnav.store.run_folder import RunFolder
 from tests.runner.verify.forge import flipped, numbers_of
 
 # nothing finds a timing that is a little off, nor another traceback; remarks stand in the results
@@ -256,15 +257,15 @@ def test_parts_that_lack_or_are_too_much(forger, findings):
     )  # fmt: skip
     folder = walk.rsplit("/", 1)[0]
     shutil.copytree(folder, forger.run / "parts" / "stray")
-    shutil.copytree(folder, forger.run / "parts" / na)
+    shutil.copytree(folder, RunFolder.open(forger.run).cell(na))
     for suffix in (EPISODES_FILE, RESULTS_FILE, SEAL):
         shutil.copy(walk + suffix, walk.replace("000000-000003", "000002-000005") + suffix)
     Path(rotor + SEAL).unlink()
     kinds, report = findings(forger.run)
     assert {"coverage", "identity"} <= kinds
     said = " | ".join(f"{f.where}: {f.what}" for f in report.findings if f.kind == "coverage")
-    for text in ("stray: is no cell", "is n/a", "1 seeds are there twice: 2", "2 seeds are not of",
-                 "rotor: 3 seeds lack: 0, 1, 2"):  # fmt: skip
+    for text in ("stray: is no cell", "is n/a", "1 seed stored twice: 2", "2 seeds not of",
+                 "rotor: 3 seeds missing: 0, 1, 2"):  # fmt: skip
         assert text in said, said
 
 

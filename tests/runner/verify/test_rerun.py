@@ -82,7 +82,7 @@ def test_a_cell_that_need_not_be_n_a(forger, findings):
 
     forger.manifest(change)
     key = json.loads((forger.run / "manifest.json").read_text())["cells"][1]["key"]
-    shutil.rmtree(forger.run / "parts" / key)
+    shutil.rmtree(RunFolder.open(forger.run).cell(key))
     assert findings(forger.run)[0] == set()  # only the navigator knows what it needs
     kinds, report = findings(forger.run, rerun=True)
     assert kinds == {"rerun"}

@@ -1,0 +1,18 @@
+"""What a metric must be; the registry asks it."""
+
+from typing import Any
+
+from benchnav.metrics.metric import Metric
+
+
+def metric_rule(name: str, plugin: Any) -> str:
+    """Return what the metric ``name`` must be and is not; "" if there is nothing."""
+    if not isinstance(plugin, Metric):
+        return "be a benchnav.metrics.metric.Metric"
+    if ":" not in name and plugin.name != name:
+        return f"carry that name, and not {plugin.name!r}"
+    if plugin.better not in ("higher", "lower", None):
+        return f"be better 'higher', 'lower' or None, and not {plugin.better!r}"
+    if not callable(plugin.function):
+        return f"have a function, and not {plugin.function!r}"
+    return ""

@@ -1,0 +1,117 @@
+"""A scenario file and copies of its maps, in one folder that is complete."""
+
+import itertools
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from benchnav.errors import ScenarioError, UsageError
+from benchnav.scenario.importers import ros_map
+from benchnav.scenario.importers.grid import read_bytes
+from benchnav.scenario.yaml_reader import read_yaml
+
+Mapping = dict[str, Any]
+
+_MOST_BYTES = 1 << 28  # of a map's file
+
+
+def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> list[Path]:
+    """Write a scenario as YAML and copy its maps beside it.
+
+    A map whose name is taken by another file gets a name of its own: no map is ever
+    overwritten, because other scenarios may need it.
+
+    Returns the paths of all files, the scenario first.
+
+    Raises:
+        UsageError: a scenario is there already and ``force`` is not given, or another
+            file is, or it cannot be written.
+        MapError: a map cannot be read any more.
+    """
+    out = Path(out)
+    try:
+        contents = _contents(mapping, out)
+        if out.exists() and not force:
+            raise UsageError(f"{out} must not exist yet; --force overwrites it.")
+        if out.is_file() and not _is_scenario(out):
+            raise UsageError(f"{out} is not a scenario; give the new scenario another name.")
+        out.parent.mkdir(parents=True, exist_ok=True)
+        for path, content in contents.items():
+            if not _holds(path, content):
+                path.write_bytes(content)
+    except OSError as error:
+        raise UsageError(f"{out.parent} must be writable; {error.strerror or error}.") from None
+    return list(contents)
+
+
+def _contents(mapping: Mapping, out: Path) -> dict[Path, bytes]:
+    """What each file must hold, the scenario first."""
+    copies = _Copies(out)
+    walls = [dict(wall) for wall in mapping.get("walls", [])]
+    for wall in walls:
+        shape = wall["shape"]
+        wall["shape"] = {**shape, "file": copies.add_map(Path(shape["file"]), shape["format"])}
+    scenario = {**mapping, "walls": walls}
+    text = yaml.safe_dump(scenario, sort_keys=False, default_flow_style=None, allow_unicode=True)
+    return {out: text.encode(), **dict(reversed(copies.contents.items()))}
+
+
+class _Copies:
+    """The files that must stand beside a scenario file."""
+
+    def __init__(self, out: Path) -> None:
+        self.out = out
+        self.contents: dict[Path, bytes] = {}
+
+    def add_map(self, source: Path, format: str) -> str:
+        """Add a map, with its image if it has one; return its name in the folder."""
+        if format == "ros":
+            document, spec = ros_map.read_header(source)
+            image = ros_map.image_path(document, spec)
+            name = self._add(image, read_bytes(image, _MOST_BYTES, "the image"))
+            if spec.image != name:
+                renamed = {**document.data, "image": name}
+                text = yaml.safe_dump(renamed, sort_keys=False, default_flow_style=None)
+                return self._add(source, text.encode())
+        return self._add(source, read_bytes(source, _MOST_BYTES, "the map"))
+
+    def _add(self, source: Path, content: bytes) -> str:
+        """Add a file under the first name that no other file has."""
+        if self.out.exists() and self.out.samefile(source):
+            raise UsageError(f"{self.out} is the map's own name; give the scenario another one.")
+        name = next(n for n in _names(source, self.out) if self._free(n, content))
+        self.contents[self.out.parent / name] = content
+        return name
+
+    def _free(self, name: str, content: bytes) -> bool:
+        path = self.out.parent / name
+        if path == self.out or self.contents.get(path, content) != content:
+            return False
+        return not path.exists() or _holds(path, content)
+
+
+def _names(source: Path, out: Path) -> Iterator[str]:
+    stem = f"{out.stem}-{source.stem if source.stem != out.stem else 'map'}"
+    yield source.name
+    yield f"{stem}{source.suffix}"
+    for number in itertools.count(2):
+        yield f"{stem}-{number}{source.suffix}"
+
+
+def _is_scenario(path: Path) -> bool:
+    """Whether a file may be overwritten by a scenario: it is no map and nothing else."""
+    try:
+        data: Any = read_yaml(path).data
+    except ScenarioError:
+        return False
+    return isinstance(data, dict) and "teams" in data
+
+
+def _holds(path: Path, content: bytes) -> bool:
+    """Whether a file is there and has just this content."""
+    try:
+        return path.stat().st_size == len(content) and path.read_bytes() == content
+    except OSError:
+        return False

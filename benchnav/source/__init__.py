@@ -1,0 +1,1 @@
+"""The source of what is measured: found and hashed without importing it."""

@@ -1,0 +1,64 @@
+"""The files of a folder that count as source, in bounded work."""
+
+import hashlib
+import os
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+
+MOST_FILES = 5_000  # of a folder
+MOST_BYTES = 4 << 30  # of a file; of a larger one its size and this much count
+_SKIPPED = {"__pycache__", "tests", "test", "node_modules", "site-packages"}
+_NO_SOURCE = (".pyc", ".pyo", ".pyi", ".md", ".rst", ".typed", ".log", ".nbi", ".nbc", "~", ".swp")
+
+
+def files_below(folder: Path) -> Iterator[Path]:
+    """Yield the files below ``folder`` that count, at most `MOST_FILES`, sorted within folders."""
+    yield from islice(_walk(folder), MOST_FILES)
+
+
+def data_of(package: Path) -> Iterator[Path]:
+    """Yield the files of a package folder that are not Python, but for those of its packages."""
+    found = (path for path in _walk(package, within=True) if path.suffix != ".py")
+    yield from islice(found, MOST_FILES)
+
+
+def digest_of(file: Path) -> str:
+    """Return the sha256 of a file."""
+    size = file.stat().st_size
+    with file.open("rb") as opened:
+        if size <= MOST_BYTES:
+            return hashlib.file_digest(opened, "sha256").hexdigest()
+        digest, left = hashlib.sha256(str(size).encode()), MOST_BYTES
+        while left and (piece := opened.read(min(left, 1 << 20))):
+            digest.update(piece)
+            left -= len(piece)
+        return digest.hexdigest()
+
+
+def _walk(top: Path, within: bool = False) -> Iterator[Path]:
+    """Files that count; ``within``: without those of packages below. Links are followed once."""
+    visited: set[str] = set()
+    for folder, folders, names in os.walk(top, followlinks=True):
+        here = Path(folder)
+        folders[:] = sorted(name for name in folders if _counts(here / name, within, visited))
+        for name in sorted(names):
+            path = here / name
+            if not name.startswith(".") and not name.endswith(_NO_SOURCE) and path.is_file():
+                yield path
+
+
+def _counts(folder: Path, within: bool, visited: set[str]) -> bool:
+    name = folder.name
+    if name in _SKIPPED or name.startswith(".") or name.endswith((".egg-info", ".dist-info")):
+        return False
+    if (folder / "pyvenv.cfg").exists() or (folder / "conda-meta").exists():
+        return False
+    if (folder / "manifest.json").exists() and (folder / "parts").is_dir():
+        return False  # a run of this very navigator, maybe
+    if within and (folder / "__init__.py").exists():
+        return False
+    real = os.path.realpath(folder)
+    known = real in visited
+    visited.add(real)
+    return not known
