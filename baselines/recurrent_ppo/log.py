@@ -58,7 +58,7 @@ def read_curve(folder: Path) -> list[dict[str, float]]:
 
 def read_rows(path: Path) -> list[dict[str, float]]:
     """Every whole row of a curve's file."""
-    with path.open(newline="") as file:
+    with path.open(encoding="utf-8", newline="") as file:
         rows = csv.DictReader(file)
         return [
             {name: float(value) for name, value in row.items()}
