@@ -111,26 +111,28 @@ def difference(parts: Sequence[Moments], column: Column) -> Difference:
     return Difference(strata.count.sum(axis=0), value, low, high, np.where(unknown, 1.0, p))
 
 
-def _narrowed(t: FloatArray, skewness: FloatArray) -> FloatArray:
-    """(C,) what a statistic t ≥ 0 is worth where the estimate is skewed against its sign.
+def _widened(worth: FloatArray, skewness: FloatArray) -> FloatArray:
+    """(C,) where a Student statistic of a skewed estimate has the quantile ``worth`` ≥ 0.
 
     If the long tail of the differences lies on the side of 0, large ones may not have been
-    seen. P. Hall, "On the removal of skewness by transformation", JRSS B 54 (1992): his cubic
-    without its constant, and only where it widens the interval (ours).
+    seen. N. J. Johnson, "Modified t tests and confidence intervals for asymmetrical
+    populations", JASA 73 (1978): the term of the Cornish-Fisher expansion that grows with t,
+    only where it widens the interval (ours).
     """
-    return t - skewness * t**2 / 3.0 + skewness**2 * t**3 / 27.0
+    return worth * (1.0 + skewness * worth / 3.0)
 
 
-def _widened(worth: FloatArray, skewness: FloatArray) -> FloatArray:
-    """(C,) the t that `_narrowed` makes ``worth``."""
-    root: FloatArray = np.cbrt(1.0 - skewness * worth)
-    return 3.0 * worth / (1.0 + root + root**2)
+def _narrowed(t: FloatArray, skewness: FloatArray) -> FloatArray:
+    """(C,) the ``worth`` of which `_widened` makes t ≥ 0."""
+    root: FloatArray = np.sqrt(1.0 + 4.0 * skewness * t / 3.0)
+    return 2.0 * t / (1.0 + root)
 
 
 def _third(strata: _Strata) -> FloatArray:
-    """(C,) third cumulant of the mean over scenarios."""
-    weight = strata.share / np.maximum(strata.count, 1)
-    total: FloatArray = (weight**3 * strata.cubes).sum(axis=0)
+    """(C,) third cumulant of the mean over scenarios, without bias (Fisher's k-statistic)."""
+    n = strata.count
+    each = strata.share**3 * strata.cubes / np.maximum(n * (n - 1) * (n - 2), 1)
+    total: FloatArray = each.sum(axis=0)
     return total
 
 

@@ -26,8 +26,9 @@ class Inference:
         """Two-sided p-value of ``null`` being the true difference."""
         t = (self.value - null) / self.error
         against = max(0.0, -math.copysign(1.0, t) * self.skewness)
-        size = abs(t)
-        worth = size - against * size**2 / 3 + against**2 * size**3 / 27
+        worth = abs(t)
+        if against:  # worth + against · worth² / 3 = |t|
+            worth = (-1 + math.sqrt(1 + 4 * against * abs(t) / 3)) / (2 * against / 3)
         return float(2 * stats.t.sf(worth, self.freedom))
 
     def interval(self) -> tuple[float, float]:
@@ -63,7 +64,9 @@ def inference(scenarios: list[list[float]], width: float) -> Inference:
         variance += part
         quarter += part**2 / (freedom + 2)
         most += freedom
-        third += weight**3 * sum((x - middle) ** 3 for x in worlds)
+        if n > 2:
+            cubes = sum((x - middle) ** 3 for x in worlds)
+            third += share**3 * cubes / (n * (n - 1) * (n - 2))
         sizes += weight * sum(abs(x - middle) for x in worlds)
     most -= singles == len(scenarios)
     freedom = min(max(variance**2 / quarter - 2, 1.0), most) if variance else float(most)
