@@ -52,7 +52,7 @@ def test_the_table_comes_in_every_format(call, run, tmp_path, format):
     code, stdout, stderr = call("leaderboard", run, "--format", format)
     assert (code, stderr) == (0, "")
     assert "straight-line" in stdout
-    assert "tiny/open" in stdout
+    assert "tiny/open" in stdout.replace(r"\allowbreak{}", "")
     file = tmp_path / "table"
     code, nothing, talk = call("leaderboard", run, "--format", format, "--out", file)
     assert (code, nothing) == (0, "")

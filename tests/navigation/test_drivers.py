@@ -45,7 +45,7 @@ SEVERAL = """
          " 'neighbors'. Did you mean 'neighbours'?"),
         ("{type: hierarchical, planner: {type: grid.astar, cel: 2}, controller: orca}",
          "The planner 'grid.astar' has no parameter 'cel'. Did you mean 'cell'?"),
-        ("no_such_module:Driver", "No module named 'no_such_module'"),
+        ("no_such_module:Driver", "no module 'no_such_module' is installed"),
     ],
 )  # fmt: skip
 def test_a_wrong_driver_is_named(driver, complaint):
