@@ -176,7 +176,7 @@ def test_the_suite_knows_of_isolated_navigators_what_it_knows_of_others():
 
 def test_what_another_process_cannot_import_is_refused():
     @NAVIGATORS.register("of-this-process")
-    class Local:
+    class Local(NAVIGATORS.load("straight-line")):
         pass
 
     try:
