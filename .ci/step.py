@@ -38,13 +38,14 @@ def main() -> None:
 
 
 def show(text: str) -> None:
-    """Print a line; on a terminal in place of the last one, cut to its width."""
+    """Print a line, cut to the width of a terminal; on one it takes the place of the last."""
+    width = shutil.get_terminal_size().columns - 1
+    line = text.strip()[:width]
     if sys.stdout.isatty():
-        width = shutil.get_terminal_size().columns - 1
         end = "\n" if text.endswith("\n") else ""
-        print(f"\r{text.strip()[:width].ljust(width)}", end=end, flush=True)
+        print(f"\r{line.ljust(width)}", end=end, flush=True)
     else:
-        print(text.strip(), flush=True)
+        print(line, flush=True)
 
 
 if __name__ == "__main__":
