@@ -58,7 +58,7 @@ def survive(
     span = within or time.monotonic() - began
     before = facts(whole)
     out = folder / "run-0"
-    while tally.kills < times or out.exists():
+    while tally.kills < times or out.exists() or not tally.finished:
         left = tally.kills < times
         process = subprocess.Popen(
             _command(suite, out, options), stdout=subprocess.DEVNULL, start_new_session=True
