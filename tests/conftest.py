@@ -3,6 +3,8 @@
 import pytest
 from hypothesis import HealthCheck, settings
 
+from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, SCENARIOS, TRAINERS
+
 # the first example of a test may compile a kernel
 settings.register_profile(
     "benchnav", deadline=None, suppress_health_check=[HealthCheck.too_slow], print_blob=True
@@ -16,3 +18,10 @@ def receipts(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
         yield
+
+
+@pytest.fixture(autouse=True)
+def forgotten(monkeypatch):
+    """What a test registers is forgotten after it."""
+    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, SCENARIOS, TRAINERS):
+        monkeypatch.setattr(registry, "_local", dict(registry._local))

@@ -14,12 +14,6 @@ from benchnav.navigation.navigator import Navigator
 from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS
 
 
-@pytest.fixture(autouse=True)
-def forgotten(monkeypatch):
-    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS):
-        monkeypatch.setattr(registry, "_local", dict(registry._local))
-
-
 class Still(Navigator):
     def act(self, observation):
         return observation.velocity * 0

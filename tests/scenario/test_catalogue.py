@@ -28,8 +28,7 @@ def test_unknown_names():
         catalogue.find("leaders/dynamic@7")
 
 
-def test_plugins(monkeypatch, tmp_path):
-    monkeypatch.setattr(SCENARIOS, "_local", dict(SCENARIOS._local))
+def test_plugins(tmp_path):
     scenario = scenario_from_text(SMALL, "s.yaml")
     path = tmp_path / "mine.yaml"
     path.write_text(SMALL)

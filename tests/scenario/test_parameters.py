@@ -69,10 +69,9 @@ def test_what_cannot_be_chosen(tmp_path, said, message):
         find(f"{_file(tmp_path)}:{said}")
 
 
-def test_a_scenario_without_parameters_takes_none(tmp_path, monkeypatch):
+def test_a_scenario_without_parameters_takes_none(tmp_path):
     with pytest.raises(UsageError, match="has no parameters; got walkers"):
         find(f"{_file(tmp_path, SMALL)}:walkers=3")
-    monkeypatch.setattr(SCENARIOS, "_local", dict(SCENARIOS._local))
     SCENARIOS.register("mine/ready")(scenario_from_text(SMALL, "s.yaml"))
     with pytest.raises(UsageError, match="'mine/ready' is no file"):
         find("mine/ready:walkers=3")
