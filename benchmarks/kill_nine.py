@@ -23,7 +23,7 @@ from pathlib import Path
 
 from benchnav.leaderboard import leaderboard, render
 from benchnav.metrics.measure import all_metrics
-from benchnav.runner.process_tree import tree
+from benchnav.processes.process_tree import tree
 from benchnav.store.part import SEAL
 from benchnav.store.part_writer import TEMPORARY
 from benchnav.store.reading import read_episodes, read_results

@@ -20,6 +20,16 @@ def load_metric(name: str) -> Metric:
     return metric
 
 
+def own_metrics() -> tuple[Metric, ...]:
+    """The metrics that are part of benchnav, by name: no code of anybody else is imported."""
+    return tuple(load_metric(name) for name in METRICS.names() if is_own(name))
+
+
+def is_own(name: str) -> bool:
+    """Whether the metric of this name is part of benchnav, and not of a plugin."""
+    return not METRICS.is_local(name) and METRICS.source(name).value.startswith("benchnav.")
+
+
 def all_metrics() -> tuple[Metric, ...]:
     """Every registered metric, by name."""
     return tuple(load_metric(name) for name in METRICS.names())

@@ -14,8 +14,8 @@ from typing import Any
 
 from benchnav.errors import BenchnavError, named
 from benchnav.plugins import registrations
+from benchnav.processes.process_tree import kill, resident
 from benchnav.runner.limits import Limits
-from benchnav.runner.process_tree import kill, resident
 from benchnav.runner.progress import Progress
 from benchnav.runner.task import Outcome, Task, work
 from benchnav.runner.watch import SIZE, Watch

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from benchnav.errors import RunConflictError, UsageError
+from benchnav.processes.process_tree import tells_memory
 from benchnav.runner.cell import Cell
 from benchnav.runner.entry import sources_of
 from benchnav.runner.generators import draw_salt
 from benchnav.runner.limits import Limits
-from benchnav.runner.process_tree import tells_memory
 from benchnav.runner.shard import Shard
 from benchnav.runner.suite import Suite
 from benchnav.store.manifest import MANIFEST, Manifest

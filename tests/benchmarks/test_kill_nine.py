@@ -3,7 +3,7 @@
 import pytest
 
 from benchmarks.kill_nine import survive
-from benchnav.runner.process_tree import tells_memory
+from benchnav.processes.process_tree import tells_memory
 
 SCENARIO = """
 name: tiny/open

@@ -1,0 +1,210 @@
+"""Starts processes from one in which no code of a plugin ever runs.
+
+The server imports benchnav and its kernels once; each process that it forks begins in that
+state within milliseconds, whatever others did to theirs. What a process started ends with it,
+and all end with the process that asked for them.
+"""
+
+import atexit
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import suppress
+from mmap import mmap
+from tempfile import TemporaryFile
+from typing import Any
+
+from benchnav.errors import BenchnavError
+from benchnav.named_module import current_folder
+from benchnav.processes.channel import Channel, ChannelError
+from benchnav.processes.main_module import main_module, require_main_guard
+from benchnav.processes.process_tree import kill
+
+ONE_THREAD = {  # a process is one core: more threads would only fight those of others
+    "BENCHNAV_THREADS": "1",
+    "NUMBA_NUM_THREADS": "1",
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+}
+_NO_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}  # what forks has one alone
+NOTES = 4096  # bytes that a process and who started it share
+_START = (
+    "import sys, json; sys.path[:] = json.loads(sys.argv[2]);"
+    " from benchnav.processes.server import main; main(int(sys.argv[1]))"
+)
+
+
+class Child:
+    """A process that the server forked: its messages, its notes, and how it ended."""
+
+    def __init__(self, server: "ForkServer", channel: Channel, notes: mmap) -> None:
+        self._server = server
+        self.channel = channel
+        self.notes = memoryview(notes).cast("d")  # written by the process at any time
+        self.pid = 0
+        self.exitcode: int | None = None  # negative: the signal that killed it; None: it lives
+
+    def kill(self) -> None:
+        """End it, and all that it started."""
+        if self.exitcode is None and self.pid:
+            kill(self.pid)
+
+    def join(self, patience: float) -> bool:
+        """Wait until it has ended; False where it lives on after ``patience`` [s]."""
+        return self._server.wait(self, patience)
+
+    def close(self) -> None:
+        """Kill it, and forget it."""
+        self.kill()
+        self.channel.close()
+        self._server.forget(self)
+
+
+class ForkServer:
+    """The side that asks. Raises BenchnavError where the server cannot be reached."""
+
+    def __init__(self) -> None:
+        if not hasattr(os, "fork"):
+            raise BenchnavError(
+                "Worker processes must be forked, which this system cannot do. Use 0 workers."
+            )
+        ours, theirs = socket.socketpair()
+        path = json.dumps([entry or os.getcwd() for entry in sys.path])  # noqa: PTH109
+        self._process = subprocess.Popen(  # noqa: S603 - this Python
+            [sys.executable, "-c", _START, str(theirs.fileno()), path],
+            pass_fds=[theirs.fileno()], stdin=subprocess.DEVNULL, stdout=2,
+            env={**os.environ, **ONE_THREAD, **_NO_THREAD}, start_new_session=True,
+        )  # fmt: skip
+        theirs.close()
+        self._socket, self._channel = ours, Channel(ours)
+        self._children: dict[int, Child] = {}
+        self._starting: list[Child] = []
+        self.owner = os.getpid()
+
+    def fileno(self) -> int:
+        """For `select`: readable where `look` has something to see."""
+        return self._channel.fileno()
+
+    @property
+    def alive(self) -> bool:
+        """False once it ended."""
+        return self._process.poll() is None
+
+    def start(self, target: str, main: bool = True) -> Child:
+        """Start ``target``, "module:function", with (channel, notes) in a new process.
+
+        It has the environment, the folder and the module path of this process as they are
+        now, and with ``main`` also its ``__main__``.
+        """
+        require_main_guard()
+        ours, theirs = socket.socketpair()
+        with TemporaryFile() as file:
+            file.truncate(NOTES)
+            child = Child(self, Channel(ours), mmap(file.fileno(), NOTES))
+            asked = {
+                "target": target,
+                "environment": {**os.environ, **ONE_THREAD},
+                "path": sys.path,
+                "folder": str(current_folder()),
+                "main": main_module() if main else {},
+            }
+            try:
+                socket.send_fds(self._socket, [b"\0"], [theirs.fileno(), file.fileno()])
+                self._channel.send(asked)
+            except (OSError, ChannelError) as error:
+                raise self._lost() from error
+            finally:
+                theirs.close()
+        self._starting.append(child)
+        while not child.pid:
+            self._hear(None)
+        return child
+
+    def look(self) -> None:
+        """Take note of the processes that ended, without waiting."""
+        with suppress(TimeoutError):
+            while True:
+                self._hear(0.0)
+
+    def wait(self, child: Child, patience: float) -> bool:
+        """Whether ``child`` ends within ``patience`` [s]."""
+        with suppress(TimeoutError):
+            while child.exitcode is None:
+                self._hear(patience)
+        return child.exitcode is not None
+
+    def forget(self, child: Child) -> None:
+        """Its end is of no interest any more."""
+        if child.exitcode is not None:
+            self._children.pop(child.pid, None)
+
+    def close(self) -> None:
+        """End it, and everything that it started."""
+        self._channel.close()
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(5.0)
+        self._process.kill()
+        self._process.wait()
+
+    def _hear(self, patience: float | None) -> None:
+        try:
+            message = self._channel.receive(patience)
+        except TimeoutError:
+            raise
+        except (EOFError, OSError, ChannelError) as error:
+            raise self._lost() from error
+        if "started" in message:
+            child = self._starting.pop(0)
+            child.pid = message["started"]
+            self._children[child.pid] = child
+        elif message["ended"] in self._children:
+            self._children.pop(message["ended"]).exitcode = message["status"]
+
+    def _lost(self) -> BenchnavError:
+        for child in self._children.values():
+            child.exitcode = -9
+        self._children.clear()
+        return BenchnavError(
+            "The process that starts workers must live as long as the run. It ended"
+            f" (exit status {self._process.poll()}; stderr says why)."
+        )
+
+
+_servers: list[ForkServer] = []
+
+
+def fork_server() -> ForkServer:
+    """The server of this process, which lives as long as it; a new one where there is none."""
+    if _servers and not (_servers[0].owner == os.getpid() and _servers[0].alive):
+        _servers.clear()
+    if not _servers:
+        _servers.append(ForkServer())
+        atexit.register(_servers[0].close)
+    return _servers[0]
+
+
+def ask(target: str, question: Any, patience: float) -> Any:
+    """What a process of its own answers, which ends after this one answer.
+
+    ``target`` is as in `ForkServer.start`: it receives the question, and sends the answer.
+
+    Raises TimeoutError, and EOFError or ChannelError where it ends or sends no answer.
+    """
+    child = fork_server().start(target)
+    try:
+        child.channel.send(question)
+        return child.channel.receive(patience)
+    finally:
+        child.close()
+
+
+def words(exitcode: int | None) -> str:
+    """How a process ended, in words."""
+    if exitcode is not None and exitcode < 0:
+        known = {int(s): s.name for s in signal.Signals}
+        return f"was killed by {known.get(-exitcode, f'signal {-exitcode}')}"
+    return f"ended with exit status {exitcode}"
