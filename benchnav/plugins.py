@@ -7,6 +7,7 @@ wherever a name is. A kind may name its contract, by which plugins of the wrong 
 found: it is a function of a higher layer, loaded by its name as plugins are.
 """
 
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -44,6 +45,7 @@ class Registry:
     contract: str = ""  # "module:function": (name, plugin) -> what it must be; "" if it is that
     _local: dict[str, tuple[Any, str]] = field(default_factory=dict)
     _found: dict[str, list[EntryPoint]] | None = None
+    _path: list[str] = field(default_factory=list)  # in which they were found
 
     def register(self, name: str) -> Callable[[T], T]:
         """Decorator that registers in this process only.
@@ -134,8 +136,8 @@ class Registry:
                 yield name, str(error)
 
     def _entries(self) -> dict[str, list[EntryPoint]]:
-        if self._found is None:
-            self._found = {}
+        if self._found is None or self._path != sys.path:
+            self._found, self._path = {}, [*sys.path]
             for entry in entry_points(group=self.group):
                 claims = self._found.setdefault(entry.name, [])
                 if all(_source(entry) != _source(other) for other in claims):
@@ -229,7 +231,7 @@ def adopt(registrations: Iterable[Registration]) -> None:
         by_group[group].adopt(name, value)
 
 
-_FOR_WORKERS = (NAVIGATORS, PLANNERS, CONTROLLERS)
+_FOR_WORKERS = (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS)
 
 register_navigator = NAVIGATORS.register
 register_planner = PLANNERS.register

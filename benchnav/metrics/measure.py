@@ -6,6 +6,7 @@ from functools import cache
 from typing import Any
 
 from benchnav.arena.agents import Role
+from benchnav.arrays import BoolArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import PluginError
 from benchnav.metrics.metric import Metric, evaluate
@@ -49,8 +50,17 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
     another shape costs its own value: it is missing (NaN), with the reason.
     """
     _no_metrics_twice(tuple(metric.name for metric in metrics))
+    return [
+        {**common, **valued(metric, episode, members)}
+        for common, members in subjects(episode)
+        for metric in metrics
+    ]
+
+
+def subjects(episode: Episode) -> list[tuple[dict[str, Any], BoolArray]]:
+    """(what rows say of it, members (A,)) of each role that is evaluated in an episode."""
     agents, who, clock = episode.world.agents, episode.identity, episode.world.clock
-    rows: list[dict[str, Any]] = []
+    found: list[tuple[dict[str, Any], BoolArray]] = []
     for role in Role:
         members = agents.evaluated & (agents.role == role)
         if not members.any():
@@ -65,16 +75,18 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
             "rehearsal_decisions": episode.rehearsal_decisions,
             "rehearsal_seconds": episode.timings.rehearsal, "remarks": list(episode.remarks),
         }  # fmt: skip
-        for metric in metrics:
-            value, defined, missing, traceback = math.nan, 0, "", None
-            try:
-                value, defined = evaluate(metric, episode, members)
-            except (Exception, SystemExit) as error:
-                missing, traceback = said(error), trace(error)
-            rows.append(
-                {
-                    **common, "metric": metric.name, "value": value, "defined": defined,
-                    "missing": missing, "traceback": traceback,
-                }
-            )  # fmt: skip
-    return rows
+        found.append((common, members))
+    return found
+
+
+def valued(metric: Metric, episode: Episode, members: BoolArray) -> dict[str, Any]:
+    """The columns of a row that a metric fills."""
+    value, defined, missing, traceback = math.nan, 0, "", None
+    try:
+        value, defined = evaluate(metric, episode, members)
+    except (Exception, SystemExit) as error:
+        missing, traceback = said(error), trace(error)
+    return {
+        "metric": metric.name, "value": value, "defined": defined,
+        "missing": missing, "traceback": traceback,
+    }  # fmt: skip

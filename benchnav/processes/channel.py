@@ -53,7 +53,8 @@ class Channel:
         Raises EOFError where the other side has closed, ChannelError for what is no message.
         """
         try:
-            data = self._end.recv(1 << 16, socket.MSG_DONTWAIT)
+            self._end.settimeout(0.0)
+            data = self._end.recv(1 << 16)
         except BlockingIOError:
             return []
         except OSError:
@@ -79,6 +80,7 @@ class Channel:
             if not select.select([self._end], [], [], patience)[0]:
                 raise TimeoutError
             try:
+                self._end.settimeout(None)
                 data = self._end.recv(1 << 16)
             except OSError:
                 data = b""

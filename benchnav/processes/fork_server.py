@@ -44,7 +44,7 @@ class Child:
     def __init__(self, server: "ForkServer", channel: Channel, notes: mmap) -> None:
         self._server = server
         self.channel = channel
-        self.notes = memoryview(notes).cast("d")  # written by the process at any time
+        self.notes: Any = memoryview(notes).cast("d")  # written by the process at any time
         self.pid = 0
         self.exitcode: int | None = None  # negative: the signal that killed it; None: it lives
 
@@ -126,13 +126,13 @@ class ForkServer:
 
     def look(self) -> None:
         """Take note of the processes that ended, without waiting."""
-        with suppress(TimeoutError):
+        with suppress(TimeoutError, BenchnavError):
             while True:
                 self._hear(0.0)
 
     def wait(self, child: Child, patience: float) -> bool:
         """Whether ``child`` ends within ``patience`` [s]."""
-        with suppress(TimeoutError):
+        with suppress(TimeoutError, BenchnavError):
             while child.exitcode is None:
                 self._hear(patience)
         return child.exitcode is not None
@@ -153,8 +153,6 @@ class ForkServer:
     def _hear(self, patience: float | None) -> None:
         try:
             message = self._channel.receive(patience)
-        except TimeoutError:
-            raise
         except (EOFError, OSError, ChannelError) as error:
             raise self._lost() from error
         if "started" in message:

@@ -139,7 +139,7 @@ def _run(said: dict[str, Any], channel: Channel, shared: mmap) -> None:
 
     from benchnav.processes.main_module import import_main
 
-    random.seed()  # who forgets to seed draws other numbers in each process, as elsewhere
+    random.seed()  # noqa: NPY002 - who forgets to seed draws other numbers in each process, as elsewhere
     if said["main"]:
         import_main(said["main"])
     with memoryview(shared).cast("d") as notes:

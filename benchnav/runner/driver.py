@@ -1,7 +1,8 @@
 """One navigator at work in a batch: what it is told, what it sees, what it answers."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from time import perf_counter
+from typing import Any, get_args
 
 import numpy as np
 
@@ -11,15 +12,20 @@ from benchnav.episode.episode import Status
 from benchnav.errors import MissingExtraError
 from benchnav.navigation.answer import CallFailed, checked, remarks_of, said
 from benchnav.navigation.briefing import Briefing, brief
-from benchnav.navigation.navigator import Navigator
+from benchnav.navigation.navigator import CommandKind, Navigator, Need
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.rehearsal import Rehearsal, copied
 from benchnav.navigation.trace import trace
 from benchnav.navigation.tracks import granted_map
-from benchnav.runner.guard import Guard
 from benchnav.runner.watch import Call, calling
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
+
+PROPERTIES: dict[str, Callable[[Any], Any]] = {  # of a navigator that a run asks for, checked
+    "required": lambda value: frozenset(map(Need, value)),
+    "command": lambda value: _one_of(value, get_args(CommandKind)),
+    "reproducible": bool,
+}
 
 
 class Driver:
@@ -36,18 +42,19 @@ class Driver:
         track: str,
         blame: str = "",
         rehearsals: Sequence[tuple[Rehearsal, ...]] = (),
-        guard: Guard | None = None,
     ) -> None:
         self.navigator = navigator
         self.simulation = simulation
         self.which = which
         self.track = track
         self._blame = blame  # what its reasons start with
-        self._guard = guard  # of the code that runs it, where it shares the process
         worlds = simulation.worlds
         self._rehearsals = rehearsals or [()] * len(worlds)
         self.chosen = _chosen(worlds, which)  # (B, An) agent index, -1: padding
-        self._needs = navigator.required
+        with calling("__init__"):
+            asked = [_asked(navigator, name, blame) for name in PROPERTIES]
+        needs, self._command, self.reproducible = asked
+        self._needs = frozenset(needs)
         self._row = np.arange(len(worlds))[:, None]
         self._goal = np.zeros((*self.chosen.shape, 2))
         for b, world in enumerate(worlds):
@@ -79,14 +86,12 @@ class Driver:
         except (Exception, SystemExit) as error:
             reason, traceback = _raised("reset", error)
             raise CallFailed(self._blame + reason, traceback=traceback) from error
-        seconds = perf_counter() - began
-        self._require_intact(self._blame)
-        return seconds
+        return perf_counter() - began
 
     def mark_twists(self, twist: BoolArray) -> None:
         """Set ``twist`` (B, A) for its agents where it answers twists."""
         world, agent = np.nonzero(self.chosen >= 0)
-        twist[world, self.chosen[world, agent]] = self.navigator.command == "twist"
+        twist[world, self.chosen[world, agent]] = self._command == "twist"
 
     def act(self, command: FloatArray, time: float) -> float:
         """Put its answers for all running worlds into ``command`` (B, A, 2).
@@ -106,7 +111,6 @@ class Driver:
                 answer = self.navigator.act(observation)
                 seconds = perf_counter() - began
                 told = checked(answer, active)
-            self._require_intact()
         except CallFailed as failed:
             who = None if failed.suspects is None else observation.rows[failed.suspects]
             raise CallFailed(self._at(failed.reason, time), who, failed.traceback) from None
@@ -127,11 +131,6 @@ class Driver:
                 return tuple(remarks_of(self.navigator.remarks(row)))
         except (Exception, SystemExit) as error:
             return (_raised("remarks", error)[0],)
-
-    def _require_intact(self, blame: str = "") -> None:
-        replaced = self._guard.replaced() if self._guard is not None else ""
-        if replaced:
-            raise CallFailed(f"{blame}it replaced {replaced}, which is no part of it")
 
     def _at(self, reason: str, time: float) -> str:
         return f"{self._blame}{reason} at t = {time:g} s"
@@ -178,6 +177,22 @@ class Driver:
             goal_tolerance=world.rules.goal_tolerance, decision_budget=clock.decision_budget,
             map=self._maps[b], rng=rng, rehearsals=tuple(map(copied, self._rehearsals[b])),
         )  # fmt: skip
+
+
+def _one_of(value: Any, choices: Sequence[str]) -> str:
+    if value not in choices:
+        raise ValueError(f"it must be {' or '.join(choices)}")
+    return str(value)
+
+
+def _asked(navigator: Navigator, name: str, blame: str) -> Any:
+    """A property of it. Raises CallFailed where it raises, or is not what it must be."""
+    try:
+        return PROPERTIES[name](getattr(navigator, name))
+    except MissingExtraError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise CallFailed(f"{blame}{name} raised {said(error)}", traceback=trace(error)) from error
 
 
 def _raised(call: Call, error: BaseException, time: float = 0.0) -> tuple[str, str]:

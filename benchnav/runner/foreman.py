@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory, mkdtemp
 
 from benchnav.errors import BenchnavError
-from benchnav.plugins import Registration, adopt
+from benchnav.plugins import Registration
 from benchnav.runner.executor import Crew
 from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
@@ -46,12 +46,11 @@ class Foreman:
         self, limits: Limits, path: Sequence[str], registrations: Sequence[Registration] = ()
     ) -> None:
         sys.path += [folder for folder in path if folder not in sys.path]
-        adopt(registrations)
         main = sys.modules["__main__"]  # of who started this process: no worker is to run it
         main.__spec__, main.__file__ = None, None
         self._home = TemporaryDirectory(prefix="benchnav-")
         self._folders: dict[str, Path] = {}  # of scenarios' files, by hash
-        self._crew = Crew(1, Progress(), limits)
+        self._crew = Crew(1, Progress(), limits, registrations)
 
     def introduce(self) -> dict[str, str]:
         """The versions here of what has a say in the numbers."""

@@ -10,16 +10,16 @@ import numpy as np
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import Clock, Rules, World
 from benchnav.episode.episode import Episode, Identity
-from benchnav.errors import BrokenPluginError, NavigatorError
+from benchnav.errors import BrokenPluginError, MissingExtraError, NavigatorError
 from benchnav.isolation.isolated import Isolated
 from benchnav.isolation.program import PROCESS
-from benchnav.navigation.answer import CallFailed
+from benchnav.navigation.answer import CallFailed, said
 from benchnav.navigation.configure import Spec, make, split
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.rehearsal import Rehearsal
 from benchnav.navigation.trace import notes, trace
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner.driver import Driver
+from benchnav.runner.driver import PROPERTIES, Driver
 from benchnav.runner.generators import generator, place
 from benchnav.runner.guard import Guard
 from benchnav.runner.recorder import Recorder
@@ -145,8 +145,10 @@ def _lockstep(
     else:
         told = [grants.get(seed, ()) for seed, _ in batch]
         try:
+            guard = None if assignment.isolated else Guard()  # before anything of it is imported
             drivers = drivers_of(assignment, simulation, told)
             planning = drive(assignment, drivers, recorder, [seed for seed, _ in batch])
+            _require_intact(guard)
         except NavigatorError as error:  # its process does not start, in whatever world
             return _lockstep(assignment, batch, str(error), grants, notes(error))
         except CallFailed as failed:
@@ -154,7 +156,7 @@ def _lockstep(
                 raise
             failure, traceback = failed.reason, failed.traceback
             _charge(simulation, recorder)
-    reproducible = all(driver.navigator.reproducible for driver in drivers)
+    reproducible = all(driver.reproducible for driver in drivers)
     remarks = [drivers[0].remarks(row) if drivers else () for row in range(len(batch))]
     identities = [assignment.identity(seed) for seed, _ in batch]
     episodes = recorder.episodes(identities, planning, failure, reproducible, remarks)
@@ -178,6 +180,12 @@ def drive(
     return planning
 
 
+def _require_intact(guard: Guard | None) -> None:
+    replaced = guard.replaced() if guard is not None else ""
+    if replaced:
+        raise CallFailed(f"it replaced {replaced}, which is no part of it")
+
+
 def _charge(simulation: Simulation, recorder: Recorder) -> None:
     for b in range(simulation.B):
         simulation.fail(b, np.flatnonzero(simulation.world(b).agents.evaluated))
@@ -195,9 +203,8 @@ def drivers_of(
     CallFailed where one cannot be made.
     """
     cell = assignment.cell if assignment.isolated else ()
-    guard = None if cell else Guard()  # before anything of it is imported
     chosen, track = _made(assignment.navigator, "", cell), assignment.track
-    drivers = [Driver(chosen, simulation, 0, track, rehearsals=rehearsals, guard=guard)]
+    drivers = [Driver(chosen, simulation, 0, track, rehearsals=rehearsals)]
     for which, spec in enumerate(assignment.background, start=1):
         blame = f"the scenario's background navigator {split(NAVIGATORS, spec)[0]!r}: "
         drivers.append(Driver(_made(spec, blame), simulation, which, "known", blame))
@@ -210,9 +217,16 @@ def _made(spec: Spec, blame: str, cell: tuple[str, ...] = ()) -> Navigator:
     try:
         with calling("__init__"):
             navigator: Navigator = Isolated(spec, cell) if apart else make(NAVIGATORS, spec)
-            _ = navigator.required  # for which a process of its own is started
+            for name in PROPERTIES:  # for which a process of its own is started
+                getattr(navigator, name)
     except BrokenPluginError as error:
         raise CallFailed(f"{blame}{error}", traceback=notes(error) or trace(error)) from error
+    except (MissingExtraError, NavigatorError):
+        raise
+    except (Exception, SystemExit) as error:
+        with calling("__init__"):
+            reason = f"{blame}__init__ raised {said(error)}"
+        raise CallFailed(reason, traceback=trace(error)) from error
     return navigator
 
 

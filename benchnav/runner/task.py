@@ -1,24 +1,31 @@
 """The unit of work: one cell for a range of seeds."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+import pyarrow as pa
+
+from benchnav.arena.world import World
 from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.isolation import fence
 from benchnav.metrics.measure import all_metrics
 from benchnav.navigation.answer import kind_of
+from benchnav.plugins import Registration
 from benchnav.runner.cell import Cell
 from benchnav.runner.estimate import Load
 from benchnav.runner.latency import latency, peak_memory
 from benchnav.runner.measured import failed_metrics, measured, tracebacks_of
 from benchnav.runner.rehearsal import Performance, perform
 from benchnav.runner.rollout import Assignment, Seeded
+from benchnav.runner.watch import beat
 from benchnav.store.part import Part
-from benchnav.store.part_writer import PartWriter
+from benchnav.store.part_writer import EpisodeFiles, seal
+from benchnav.store.staged import check_rehearsals, staged_episodes
 from benchnav.world.build import build
 
+Tick = Callable[[int], None]
 CHUNK = 64  # seeds of a task: enough for lockstep to pay, few enough to lose to an interruption
 EFFORT = 4_000_000  # agent-decisions of a task, as far as a cell can tell beforehand
 
@@ -34,6 +41,8 @@ class Task:
     charge: str = ""  # a reason for which every episode fails without running
     salt: str = ""  # of the run
     probe: int = -1  # seed in whose world latency is taken; one for each cell
+    fresh: bool = False  # whether it must have a process of its own
+    suspect: bool = False  # whether it must run while no other does
 
     @property
     def assignment(self) -> Assignment:
@@ -44,6 +53,12 @@ class Task:
     def seeds(self) -> range:
         """What it runs."""
         return range(self.first, self.stop)
+
+    @property
+    def company(self) -> str:
+        """Who may share a process: the code of one entry, and of those that drive beside it."""
+        entry = self.cell.entry
+        return repr((entry.label, entry.hash, entry.source_hash, self.cell.scenario.driver_specs))
 
     @property
     def load(self) -> Load:
@@ -84,8 +99,28 @@ def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
         yield run[0], run[-1] + 1
 
 
-def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:
-    """Run a task; its part is on disk when this returns, unless an extra lacks.
+@dataclass(frozen=True)
+class Played:
+    """What a worker says of the episodes that it wrote; all else stands in them."""
+
+    unled: tuple[tuple[int, str], ...] = ()
+    lacks: str = ""
+
+
+@dataclass(frozen=True)
+class Measuring:
+    """How the episodes of a task are measured."""
+
+    plugins: tuple[str, ...] = ()  # names of metrics that are not part of benchnav
+    registrations: tuple[Registration, ...] = ()  # among which some of them may be
+    main: Mapping[str, str] = field(default_factory=dict)  # the script that registered them
+    timeout: float = 300.0  # [s] that one value of theirs may take
+
+
+def work(task: Task, tick: Tick = lambda _: None) -> Outcome:
+    """Play and measure a task in this process, where nothing is guarded.
+
+    Its part is on disk when this returns, unless an extra lacks.
 
     Args:
         task: what to run.
@@ -95,41 +130,85 @@ def work(task: Task, tick: Callable[[int], None] = lambda _: None) -> Outcome:
         UnsolvableError: the scenario cannot be drawn.
         StoreError: the disk refuses.
     """
+    played = play(task)
+    if played.lacks:
+        return Outcome(0, 0, lacks=played.lacks)
+    return measure_part(task, played, lambda episodes: _measured_here(episodes, tick))
+
+
+def play(task: Task) -> Played:
+    """Run the episodes of a task, and leave them for `measure_part`; raises as `work`."""
     try:
-        return _work(task, tick)
+        return _play(task)
     except MissingExtraError as error:
-        return Outcome(0, 0, lacks=str(error))
+        return Played(lacks=str(error))
 
 
-def _work(task: Task, tick: Callable[[int], None]) -> Outcome:
+def _play(task: Task) -> Played:
     cell = task.cell
     if task.assignment.isolated:
         fence.hide()  # before there is anything to hide
-    worlds = [(seed, build(cell.scenario, cell.split, seed)) for seed in task.seeds]
-    metrics = all_metrics()
-    failures: list[tuple[int, str]] = []
+    worlds = [(seed, _built(cell, seed)) for seed in task.seeds]
     unled: list[tuple[int, str]] = []
-    remarks: list[tuple[int, str]] = []
-    missing: list[tuple[str, str]] = []
-    tracebacks: dict[str, str] = {}
-    with PartWriter(Part(task.folder, task.first, task.stop)) as writer:
+    with EpisodeFiles(Part(task.folder, task.first, task.stop)) as files:
         for batch in perform(task.assignment, worlds, task.charge):
-            episodes = _timed(task, batch)
+            beat()
             rehearsals = [e for performance in batch for e in performance.rehearsed.episodes]
-            results = measured(_ticking(episodes, tick), metrics)
-            writer.add(episodes, results, rehearsals)
-            missing += failed_metrics(results)
-            tracebacks |= {kind_of(e.failure): e.traceback for e in episodes if e.traceback}
-            tracebacks |= tracebacks_of(results)
-            failures += [(e.identity.seed, e.failure) for e in episodes if e.failure]
-            remarks += [(e.identity.seed, text) for e in episodes for text in e.remarks]
+            files.add(_timed(task, batch), rehearsals)
             unled += [(p.episode.identity.seed, team) for p in batch for team in p.unled]
-        writer.seal()
-    redraws = sum(world.redraws for _, world in worlds)
-    failed, alone, said = (tuple(sorted(found)) for found in (failures, unled, remarks))
+        files.finish()
+    return Played(tuple(sorted(unled)))
+
+
+def _built(cell: Cell, seed: int) -> World:
+    beat()
+    return build(cell.scenario, cell.split, seed)
+
+
+def measure_part(
+    task: Task, played: Played, measure: Callable[[Iterator[Episode]], pa.Table]
+) -> Outcome:
+    """Measure what a worker left, and seal it.
+
+    Raises CorruptPartError where this is not what the task asked for, StoreError where the
+    disk refuses.
+    """
+    part = Part(task.folder, task.first, task.stop)
+    expected = [task.assignment.identity(seed) for seed in task.seeds]
+    seen: list[Seen] = []
+    results = measure(_seen(staged_episodes(part, expected), seen))
+    check_rehearsals(part, expected, task.assignment.rehearsals)
+    seal(part, results, len(expected))
     return Outcome(
-        len(worlds), redraws, failed, alone, said, tuple(missing), tracebacks=tracebacks
+        len(expected), sum(one.redraws for one in seen),
+        tuple(sorted((one.seed, one.failure) for one in seen if one.failure)),
+        played.unled,
+        tuple(sorted((one.seed, text) for one in seen for text in one.remarks)),
+        tuple(failed_metrics(results)),
+        tracebacks={kind_of(one.failure): one.traceback for one in seen if one.traceback}
+        | tracebacks_of(results),
     )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a summary tells of an episode."""
+
+    seed: int
+    redraws: int
+    failure: str
+    remarks: tuple[str, ...]
+    traceback: str
+
+
+def _seen(episodes: Iterator[Episode], seen: list[Seen]) -> Iterator[Episode]:
+    for e in episodes:
+        seen.append(Seen(e.identity.seed, e.world.redraws, e.failure, e.remarks, e.traceback))
+        yield e
+
+
+def _measured_here(episodes: Iterator[Episode], tick: Tick) -> pa.Table:
+    return measured(_ticking(episodes, tick), all_metrics())
 
 
 def _timed(task: Task, batch: list[Performance]) -> list[Episode]:
@@ -145,7 +224,7 @@ def _timed(task: Task, batch: list[Performance]) -> list[Episode]:
     return timed
 
 
-def _ticking(episodes: Sequence[Episode], tick: Callable[[int], None]) -> Iterator[Episode]:
+def _ticking(episodes: Iterable[Episode], tick: Tick) -> Iterator[Episode]:
     for episode in episodes:
         yield episode
         tick(1)

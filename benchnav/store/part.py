@@ -30,7 +30,7 @@ _STEM = re.compile(r"([0-9]{6,9})-([0-9]{6,9})")
 FILES = (EPISODES_FILE, RESULTS_FILE, REHEARSALS_FILE)
 MOST_SEEDS = 1_000_000  # of a part, whatever its name says
 MOST_BYTES = 8 << 30  # that a file of a part may hold once it is decompressed
-_UNDECODABLE = (
+UNDECODABLE = (
     KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError, RecursionError,
 )  # fmt: skip
 
@@ -89,7 +89,7 @@ class Part:
         table = self._table(suffix)
         try:
             yield from from_table(table)
-        except _UNDECODABLE as error:
+        except UNDECODABLE as error:
             raise self._corrupt(self.path(suffix), f"cannot be decoded ({error})") from error
 
     def _table(self, suffix: str) -> pa.Table:

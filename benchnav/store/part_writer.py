@@ -28,6 +28,71 @@ class _Stream:
     writer: pq.ParquetWriter
 
 
+class EpisodeFiles:
+    """The files of a part's episodes and rehearsals, under temporary names; `seal` comes later.
+
+    Every method raises StoreError where the disk refuses (full, read-only).
+    """
+
+    def __init__(self, part: Part) -> None:
+        self.part = part
+        self._finished = False
+        self._streams: dict[str, _Stream] = {}
+        self._open(EPISODES_FILE)
+
+    def add(self, episodes: Sequence[Episode], rehearsals: Sequence[Episode] = ()) -> None:
+        """Append scored episodes, and the rehearsals of some."""
+        try:
+            if episodes:
+                self._streams[EPISODES_FILE].writer.write_table(to_table(episodes))
+            if rehearsals:
+                if REHEARSALS_FILE not in self._streams:
+                    self._open(REHEARSALS_FILE)
+                self._streams[REHEARSALS_FILE].writer.write_table(to_table(rehearsals))
+        except OSError as error:
+            raise refused(self.part, error) from error
+
+    def finish(self) -> None:
+        """Make them whole and durable."""
+        try:
+            for stream in self._streams.values():
+                stream.writer.close()
+                _sync(stream.file)
+        except OSError as error:
+            raise refused(self.part, error) from error
+        self._finished = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._finished and error is None:
+            return
+        for stream in self._streams.values():
+            with suppress(OSError, pa.ArrowException):  # what made it fail is already on its way up
+                stream.writer.close()
+            with suppress(OSError):
+                stream.file.close()
+        discard(self.part)
+
+    def _open(self, suffix: str) -> None:
+        try:
+            self.part.folder.mkdir(parents=True, exist_ok=True)
+            file = temporary(self.part, suffix).open("wb")
+        except OSError as error:
+            raise refused(self.part, error) from error
+        writer = pq.ParquetWriter(
+            file, EPISODES, compression="zstd", use_dictionary=DICTIONARY,
+            write_statistics=["seed"],
+        )  # fmt: skip
+        self._streams[suffix] = _Stream(file, writer)
+
+
 class PartWriter:
     """Collects batches of episodes of a part; nothing is visible before `seal`.
 
@@ -36,54 +101,23 @@ class PartWriter:
 
     def __init__(self, part: Part) -> None:
         self.part = part
+        self._files = EpisodeFiles(part)
         self._results: list[pa.Table] = []
         self._rows = 0
         self._sealed = False
-        self._streams: dict[str, _Stream] = {}
-        self._open(EPISODES_FILE)
 
     def add(
         self, episodes: Sequence[Episode], results: pa.Table, rehearsals: Sequence[Episode] = ()
     ) -> None:
         """Append scored episodes, the table of `RESULTS` measured on them, and rehearsals."""
-        if not episodes:
-            return
-        try:
-            self._streams[EPISODES_FILE].writer.write_table(to_table(episodes))
-            if rehearsals:
-                if REHEARSALS_FILE not in self._streams:
-                    self._open(REHEARSALS_FILE)
-                self._streams[REHEARSALS_FILE].writer.write_table(to_table(rehearsals))
-        except OSError as error:
-            raise refused(self.part, error) from error
+        self._files.add(episodes, rehearsals)
         self._rows += len(episodes)
         self._results.append(results)
 
     def seal(self) -> None:
         """Make the part visible, complete and durable."""
-        try:
-            for stream in self._streams.values():
-                stream.writer.close()
-                _sync(stream.file)
-            results = self._temporary(RESULTS_FILE)
-            with results.open("wb") as file:
-                pq.write_table(
-                    pa.concat_tables([RESULTS.empty_table(), *self._results]),
-                    file,
-                    compression="zstd",
-                )
-                _sync(file)
-            written = [suffix for suffix in FILES if suffix in {RESULTS_FILE, *self._streams}]
-            sealed = {suffix: _facts(self._temporary(suffix)) for suffix in written}
-            said = {**sealed, "episodes": self._rows}
-            with self._temporary(SEAL).open("wb") as file:
-                file.write(checked_json.dump(said).encode())
-                _sync(file)
-            for suffix in (*written, SEAL):
-                self._temporary(suffix).replace(self.part.path(suffix))
-            _sync_folder(self.part.folder)
-        except OSError as error:
-            raise refused(self.part, error) from error
+        self._files.finish()
+        seal(self.part, pa.concat_tables([RESULTS.empty_table(), *self._results]), self._rows)
         self._sealed = True
 
     def __enter__(self) -> Self:
@@ -95,30 +129,43 @@ class PartWriter:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if self._sealed:
-            return
-        for stream in self._streams.values():
-            with suppress(OSError, pa.ArrowException):  # what made it fail is already on its way up
-                stream.writer.close()
-            with suppress(OSError):
-                stream.file.close()
-        for suffix in (*FILES, SEAL):
-            self._temporary(suffix).unlink(missing_ok=True)
+        self._files.__exit__(kind, error, trace)
+        if not self._sealed:
+            discard(self.part)
 
-    def _open(self, suffix: str) -> None:
-        try:
-            self.part.folder.mkdir(parents=True, exist_ok=True)
-            file = self._temporary(suffix).open("wb")
-        except OSError as error:
-            raise refused(self.part, error) from error
-        writer = pq.ParquetWriter(
-            file, EPISODES, compression="zstd", use_dictionary=DICTIONARY,
-            write_statistics=["seed"],
-        )  # fmt: skip
-        self._streams[suffix] = _Stream(file, writer)
 
-    def _temporary(self, suffix: str) -> Path:
-        return self.part.folder / f"{TEMPORARY}{self.part.stem}{suffix}"
+def seal(part: Part, results: pa.Table, episodes: int) -> None:
+    """Make a part visible whose `EpisodeFiles` are finished, with the values measured on them.
+
+    Raises StoreError where the disk refuses.
+    """
+    try:
+        with temporary(part, RESULTS_FILE).open("wb") as file:
+            pq.write_table(results, file, compression="zstd")
+            _sync(file)
+        written = [suffix for suffix in FILES if temporary(part, suffix).exists()]
+        sealed = {suffix: _facts(temporary(part, suffix)) for suffix in written}
+        with temporary(part, SEAL).open("wb") as file:
+            file.write(checked_json.dump({**sealed, "episodes": episodes}).encode())
+            _sync(file)
+        for suffix in (*written, SEAL):
+            temporary(part, suffix).replace(part.path(suffix))
+        _sync_folder(part.folder)
+    except OSError as error:
+        discard(part)
+        raise refused(part, error) from error
+
+
+def discard(part: Part) -> None:
+    """Remove what was written of a part and is not sealed."""
+    for suffix in (*FILES, SEAL):
+        with suppress(OSError):
+            temporary(part, suffix).unlink(missing_ok=True)
+
+
+def temporary(part: Part, suffix: str) -> Path:
+    """Where a file of a part is until it is sealed."""
+    return part.folder / f"{TEMPORARY}{part.stem}{suffix}"
 
 
 def receive(part: Part, files: Mapping[str, bytes]) -> None:
