@@ -153,6 +153,8 @@ class ForkServer:
     def _hear(self, patience: float | None) -> None:
         try:
             message = self._channel.receive(patience)
+        except TimeoutError:  # an OSError, which nobody lost
+            raise
         except (EOFError, OSError, ChannelError) as error:
             raise self._lost() from error
         if "started" in message:

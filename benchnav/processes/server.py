@@ -34,7 +34,7 @@ def main(file: int) -> None:
     signal.set_wakeup_fd(wakes, warn_on_full_buffer=False)
     load(PRELOADED)()
     server = _Server(socket.socket(fileno=file), woken, wakes)
-    with suppress(EOFError, OSError, ChannelError):
+    with suppress(EOFError, ChannelError, ConnectionError):
         server.serve()
     server.end()
 
