@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, TypeVar
 
 from benchnav.errors import StoreError, UsageError, did_you_mean
 from benchnav.streams import drop
+from benchnav.visible import visible_lines
 
 if TYPE_CHECKING:
     from benchnav.store.spans import Span
@@ -16,18 +17,18 @@ E = TypeVar("E", bound=StrEnum)
 
 
 def say(text: str) -> None:
-    """Talk."""
-    sys.stderr.write(text + "\n")
+    """Talk; what controls a terminal is marked."""
+    sys.stderr.write(visible_lines(text) + "\n")
     sys.stderr.flush()
 
 
 def put(text: str) -> None:
-    """A result. Raises StoreError where it cannot be written.
+    """A result; what controls a terminal is marked. Raises StoreError where it cannot be written.
 
     A reader that leaves early has seen enough: the rest is dropped, and the work goes on.
     """
     try:
-        sys.stdout.write(text + "\n")
+        sys.stdout.write(visible_lines(text) + "\n")
         sys.stdout.flush()
     except OSError as error:
         drop(sys.stdout)

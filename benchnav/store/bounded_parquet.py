@@ -13,6 +13,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
+from benchnav.navigation.answer import short
 from benchnav.store import page_headers
 from benchnav.store.page_headers import Page
 
@@ -54,13 +55,18 @@ def read(content: bytes, schema: pa.Schema, later: Collection[str] = ()) -> pa.T
         schema: its columns, in this order.
         later: columns that it may lack.
 
-    Raises:
-        ValueError: it is not such a file, or decodes to more than `allowed`.
-        pa.ArrowException, OSError: it cannot be decoded.
+    Raises ValueError where it is not such a file, or decodes to more than `allowed`.
     """
     length = int.from_bytes(content[-8:-4], "little")
     if len(content) < 12 or content[-4:] != _MAGIC or length > min(_MOST_FOOTER, len(content)):
         raise ValueError("is no Parquet file, or has a footer that is too large")
+    try:
+        return _decoded(content, schema, later)
+    except (pa.ArrowException, OSError, OverflowError) as error:
+        raise ValueError(f"cannot be decoded ({short(error)})") from error
+
+
+def _decoded(content: bytes, schema: pa.Schema, later: Collection[str]) -> pa.Table:
     file = _opened(content)
     found = file.schema_arrow
     names = set(found.names)

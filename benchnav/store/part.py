@@ -36,6 +36,7 @@ __all__ = [
     "parts_of",
 ]  # fmt: skip
 
+CURE = " Delete "  # with which the advice of an error begins
 _STEM = re.compile(r"([0-9]{6,9})-([0-9]{6,9})")
 MOST_SEEDS = 256  # of a part, whatever its name says; a task has at most 64
 _UNDECODABLE = (
@@ -116,8 +117,10 @@ class Part:
                     path, f"has sha256 {found[:12]}…, sealed was {sealed['sha256'][:12]}…"
                 )
             return bounded_parquet.read(content, schema, later)
-        except (OSError, pa.ArrowException, *_UNDECODABLE) as error:
-            raise self._corrupt(path, f"cannot be read: {short(error)}") from error
+        except ValueError as error:
+            raise self._corrupt(path, short(error)) from error
+        except OSError as error:
+            raise self._corrupt(path, f"cannot be read ({short(error)})") from error
 
     def _seal(self) -> dict[str, Facts]:
         """Return size and sha256 of each of its files, as they were sealed."""
@@ -140,7 +143,7 @@ class Part:
         run = self.folder.parent.parent
         return CorruptPartError(
             f"{path} must be what was written. It {what}."
-            f" Delete {self.path(SEAL)} and run the same suite again with --out {run}"
+            f"{CURE}{self.path(SEAL)} and run the same suite again with --out {run}"
             " to redo only this part."
         )
 

@@ -13,12 +13,12 @@ from benchnav.navigation.answer import short
 from benchnav.scenario.document import shown
 from benchnav.store import bounded_json
 from benchnav.store.manifest import load_manifest
-from benchnav.store.pack import FORMAT, INDEX, MEMBER
+from benchnav.store.pack import FORMAT, INDEX, MEMBER, MOST_MEMBERS
+from benchnav.store.part import CURE
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath, run_path
 from benchnav.store.seal import Facts, require_facts
 
-MOST_MEMBERS = 300_000  # 100,000 parts
 MOST_DIRECTORY = 48 << 20  # bytes; a member takes about 150
 _ZIP = b"PK"  # with which every zip archive begins
 _END, _LOCATOR, _END64 = 22, 20, 76  # [bytes] of the records at the end; of large archives, before
@@ -43,7 +43,8 @@ def opened(path: RunPath) -> Iterator[RunFolder]:
             unpack(path, Path(folder))
             yield RunFolder(Path(folder), load_manifest(Path(folder)), path)
         except StoreError as error:
-            raise type(error)(str(error).replace(folder, str(path))) from error
+            text, _, _ = str(error).partition(CURE)  # which a pack cannot have
+            raise type(error)(text.replace(folder, str(path))) from error
 
 
 def unpack(path: Path, folder: Path) -> None:
@@ -76,8 +77,13 @@ def _refuse_other_files(path: Path) -> None:
     size = int.from_bytes(end[12 - _END : 16 - _END], "little")
     if end[-_END - _LOCATOR :].startswith(b"PK\6\7"):  # a large archive: its size stands before
         size = int.from_bytes(end[40 - _END64 - _END : 48 - _END64 - _END], "little")
-    if not end[-_END:].startswith(b"PK\5\6") or size > MOST_DIRECTORY:
-        raise _corrupt(path, "is cut short, or names more members than a pack can have")
+    if not end[-_END:].startswith(b"PK\5\6"):
+        raise StoreError(
+            f"{path} must be a run folder, or a pack that 'benchnav pack' made. It is cut short, or"
+            " something stands behind its end."
+        )
+    if size > MOST_DIRECTORY:
+        raise _corrupt(path, f"has a directory of {size} bytes, more than {MOST_DIRECTORY}")
 
 
 def _refuse_strange(path: Path, infos: list[ZipInfo]) -> None:
