@@ -21,6 +21,7 @@ FREE = 256 << 20  # [bytes] that any file may decode to
 RATIO = 64  # times its own size that a larger file may decode to, besides
 _MOST_FOOTER = 1 << 20  # [bytes]; a row group takes 9 kB, and a part has one for each batch
 _MOST_PAGES = 50_000  # of a file; a page holds about 1 MB
+_MOST_DICTIONARY = 4 << 20  # [bytes] of texts in lists; our writer has 1 MB
 _MOST_IN_LIST = 1_000  # of the footer: row groups, columns
 _MOST_TEXT = 1 << 20  # [bytes] of a text in the footer
 _WRITER = "parquet-cpp-arrow"
@@ -29,6 +30,7 @@ _ENCODINGS = {
     page_headers.PLAIN, page_headers.RLE, page_headers.PLAIN_DICTIONARY,
     page_headers.RLE_DICTIONARY,
 }  # fmt: skip
+_FEW = 1 << 20  # [bytes] of texts, below which the most that they can be is near enough
 _MAGIC = b"PAR1"
 
 
@@ -43,7 +45,8 @@ class _Leaf:
 
     path: str  # "remarks.list.element"
     width: int  # [bytes] of a value once it is decoded; of a text, of the reference to it
-    text: bool  # of which equal ones may be stored once, and are then read as references
+    text: bool  # of which equal ones may be stored once
+    listed: bool = False  # in lists
     large: bool = False  # a long text, each stored for itself
 
 
@@ -74,7 +77,7 @@ def _decoded(content: bytes, schema: pa.Schema, later: Collection[str]) -> pa.Ta
     _require_columns(found, expected)
     leaves = [leaf for field in expected for leaf in _leaves(field)]
     _require_bound(content, file.metadata, leaves)
-    texts = [leaf.path for leaf in leaves if leaf.text]
+    texts = [leaf.path for leaf in leaves if leaf.text and not leaf.listed]
     table = _opened(content, texts, file.metadata).read(use_threads=False)
     spelled = sum(map(_length, table.columns))
     if spelled > allowed(len(content)):
@@ -111,7 +114,8 @@ def _require_columns(found: pa.Schema, expected: pa.Schema) -> None:
 def _leaves(field: pa.Field) -> Iterator[_Leaf]:
     if pa.types.is_list(field.type) or pa.types.is_large_list(field.type):
         (below,) = _leaves(field.type.value_field.with_name("element"))
-        yield _Leaf(f"{field.name}.list.{below.path}", below.width + _LEVELS, below.text)
+        path = f"{field.name}.list.{below.path}"
+        yield _Leaf(path, below.width + _LEVELS, below.text, listed=True)
     elif pa.types.is_large_string(field.type):
         yield _Leaf(field.name, 8, text=False, large=True)
     elif pa.types.is_string(field.type):
@@ -136,8 +140,11 @@ def _require_bound(content: bytes, metadata: pq.FileMetaData, leaves: list[_Leaf
             column = group.column(c)
             if column.path_in_schema != leaf.path:
                 raise ValueError(f"must store {leaf.path}; it stores {column.path_in_schema[:60]}")
+            longest = 0  # of the texts that values of a list refer to
             for page in page_headers.pages(_chunk(content, column)):
-                size += _size(page, leaf)
+                if leaf.listed and leaf.text and page.kind == page_headers.DICTIONARY:
+                    longest = _longest(page, column.compression)
+                size += _size(page, leaf) + page.values * longest
                 count += 1
                 if size > allowed(len(content)) or count > _MOST_PAGES:
                     raise ValueError(
@@ -166,12 +173,29 @@ def _size(page: Page, leaf: _Leaf) -> int:
     return page.raw + page.values * leaf.width
 
 
+def _longest(page: Page, compression: str) -> int:
+    """Return the bytes of the longest text in a dictionary."""
+    if page.raw > _MOST_DICTIONARY:
+        raise ValueError(f"has a dictionary of {page.raw} bytes, more than {_MOST_DICTIONARY}")
+    body = bytes(page.body)
+    if compression != "UNCOMPRESSED":
+        body = pa.Codec(compression.lower()).decompress(body, page.raw).to_pybytes()
+    at = longest = 0
+    while at < len(body):
+        length = int.from_bytes(body[at : at + 4], "little")
+        longest, at = max(longest, length), at + 4 + length
+    return longest
+
+
 def _length(column: pa.ChunkedArray) -> int:
-    """Return the bytes of the texts in a column once each is written out."""
+    """Return the bytes of the texts in a column once each is written out, or few more."""
     total = 0
     for chunk in column.chunks:
-        values = chunk.flatten() if pa.types.is_list(chunk.type) else chunk
-        if pa.types.is_dictionary(values.type) and len(values.dictionary):
-            lengths = pc.binary_length(values.dictionary).take(values.indices)
+        if not pa.types.is_dictionary(chunk.type) or not len(chunk.dictionary):
+            continue
+        if (most := chunk.dictionary.nbytes * len(chunk)) <= _FEW:
+            total += most
+        else:
+            lengths = pc.binary_length(chunk.dictionary).take(chunk.indices)
             total += pc.sum(pc.cast(lengths, pa.int64())).as_py() or 0
     return total

@@ -155,13 +155,18 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
         None if latency is None else np.array(latency, np.float64), scalar("memory_bytes"),
         scalar("rehearsal_seconds") or 0.0,
     )  # fmt: skip
+    world = world_from_json(scalar("world"))
+    if (len(world.agents), len(world.bodies)) != (agents, bodies):
+        raise ValueError(f"its world must have {agents} agents and {bodies} bodies, and has not")
+    if len({len(array) for array in contacts.values()}) > 1:
+        raise ValueError("its contacts must have one value in each column")
     identity = {name: scalar(name) for name in (*_IDENTITY, "seed")}
     identity["navigator_hash"] = scalar("navigator_hash") or ""
     identity["source_hash"] = scalar("source_hash") or ""
     identity["rehearsal"] = scalar("rehearsal") or 0
     return Episode(
         identity=Identity(**identity),
-        world=world_from_json(scalar("world")),
+        world=world,
         contacts=Contacts(**contacts),
         timings=timings,
         failure=scalar("failure"),

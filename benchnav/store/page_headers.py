@@ -29,6 +29,7 @@ class Page:
     raw: int  # [bytes] once it is decompressed
     values: int  # how many it holds, nulls included
     encoding: int
+    body: memoryview  # as it is stored
 
 
 def pages(chunk: memoryview) -> Iterator[Page]:
@@ -42,7 +43,8 @@ def pages(chunk: memoryview) -> Iterator[Page]:
             fields, at = _structure(chunk, at, _DEEPEST)
             kind, raw, packed = fields[_KIND], fields[_RAW], fields[_PACKED]
             own, count, encoding = _OF_KIND[kind]
-            page = Page(kind, raw, fields[own][count], fields[own][encoding])
+            values, body = fields[own][count], chunk[at : at + packed]
+            page = Page(kind, raw, values, fields[own][encoding], body)
         except (IndexError, KeyError, TypeError) as error:
             raise ValueError("the header of a page cannot be read") from error
         if min(page.raw, packed, page.values) < 0 or at + packed > len(chunk):

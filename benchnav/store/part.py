@@ -36,6 +36,7 @@ __all__ = [
     "parts_of",
 ]  # fmt: skip
 
+MOST_REHEARSALS = 1_000  # of an episode
 CURE = " Delete "  # with which the advice of an error begins
 _STEM = re.compile(r"([0-9]{6,9})-([0-9]{6,9})")
 MOST_SEEDS = 256  # of a part, whatever its name says; a task has at most 64
@@ -82,7 +83,7 @@ class Part:
 
     def episodes(self) -> Iterator[Episode]:
         """Its scored episodes, by seed. Raises CorruptPartError."""
-        yield from self._episodes(EPISODES_FILE)
+        yield from self._episodes(EPISODES_FILE, len(self.seeds))
 
     def rehearsals(self) -> Iterator[Episode]:
         """The rehearsals of its episodes, by seed; none where none were made.
@@ -90,15 +91,17 @@ class Part:
         Raises CorruptPartError.
         """
         if REHEARSALS_FILE in self._seal():
-            yield from self._episodes(REHEARSALS_FILE)
+            yield from self._episodes(REHEARSALS_FILE, len(self.seeds) * MOST_REHEARSALS)
 
     def check(self) -> None:
         """Raise CorruptPartError where a file is missing or has another size than was sealed."""
         for suffix, sealed in self._seal().items():
             self._check_size(suffix, sealed)
 
-    def _episodes(self, suffix: str) -> Iterator[Episode]:
+    def _episodes(self, suffix: str, most: int) -> Iterator[Episode]:
         table = self._table(suffix, EPISODES, EPISODES_LATER)
+        if len(table) > most:
+            raise self._corrupt(self.path(suffix), f"has {len(table)} rows, more than {most}")
         order = pc.sort_indices(table, _by(table)).to_pylist()  # batches may be out of order
         try:
             yield from from_table(table, order)

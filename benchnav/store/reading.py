@@ -84,7 +84,9 @@ def in_every_track(results: pa.Table, manifest: Manifest) -> pa.Table:
         return results
     columns = (pa.array(column, pa.string()) for column in zip(*others, strict=True))
     named = pa.table(dict(zip((*_OF_A_CELL, "other"), columns, strict=True)))
-    rows = results.select(_OF_A_CELL).append_column("row", pa.array(range(len(results)), pa.int64()))
+    rows = results.select(_OF_A_CELL).append_column(
+        "row", pa.array(range(len(results)), pa.int64())
+    )
     found = rows.join(named, _OF_A_CELL, join_type="inner").sort_by("row")
     place = RESULTS.get_field_index("track")
     again = results.take(found["row"]).set_column(place, RESULTS.field("track"), found["other"])

@@ -134,9 +134,7 @@ def _index(path: Path, archive: ZipFile, infos: list[ZipInfo]) -> Mapping[str, F
     return files
 
 
-def _extract(
-    path: Path, archive: ZipFile, info: ZipInfo, facts: Facts, folder: Path
-) -> None:
+def _extract(path: Path, archive: ZipFile, info: ZipInfo, facts: Facts, folder: Path) -> None:
     target = folder / info.filename
     target.parent.mkdir(parents=True, exist_ok=True)
     hashed, size = hashlib.sha256(), 0

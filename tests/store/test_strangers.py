@@ -9,8 +9,8 @@ import pytest
 
 from benchnav.errors import CorruptPartError
 from benchnav.store import bounded_parquet
-from benchnav.store.manifest import MANIFEST, load_manifest
 from benchnav.store.episodes import from_table
+from benchnav.store.manifest import MANIFEST, load_manifest
 from benchnav.store.part import EPISODES_FILE, Part
 from benchnav.store.part_writer import PartWriter
 from benchnav.store.run_folder import RunFolder
