@@ -1,6 +1,6 @@
-"""Packs that somebody changed, and what reading them does; run as a program in a process of its own.
+"""Packs that somebody changed, and what reading them does; a program in a process of its own.
 
-``python hostile.py RUN N SEED`` changes a pack of RUN N times and prints what was not as it must be.
+``python hostile.py RUN N SEED`` changes a pack of RUN N times, and prints what went wrong.
 """
 
 import contextlib
@@ -27,8 +27,9 @@ from benchnav.store.run_folder import RunFolder
 SECONDS = 5.0
 MEMORY = 1 << 30  # [bytes] beyond what a process holds that has read the pack once
 VALUES = [
-    None, True, -1, 0, 1, 3.5, 10**15, 10**18, 10**400, -(10**18), 1e308, float("inf"), float("nan"),
-    "", "x", "x" * 300_000, "\x1b[31m", "\ud800", "=1+1", "../../x", [], [[]], [None], ["a", "b"],
+    None, True, -1, 0, 1, 3.5, 10**15, 10**18, 10**400, -(10**18), 1e308, float("inf"),
+    float("nan"), "", "x",
+    "x" * 300_000, "\x1b[31m", "\ud800", "=1+1", "../../x", [], [[]], [None], ["a", "b"],
     {}, {"a": 1}, [0, 10**12], [["x"] * 3] * 1000, {str(i): i for i in range(1000)},
 ]  # fmt: skip
 TYPES = [pa.string(), pa.int64(), pa.float64(), pa.bool_(), pa.large_string(), pa.binary(),
@@ -152,7 +153,8 @@ def of_text(rng, files):
     content = rng.choice([
         b"[" * 200_000, b'{"a":' * 100_000, b" " * 30_000_000, b"\xef\xbb\xbf" + text, b"", b"null",
         text.replace(b"{", b'{"sha256": 1,', 1), b"[" + b"[]," * 3_000_000 + b"[]]", text + b"}",
-        text.replace(b'"', b'"\xff', 1), b"1" * 5000, text.replace(b":", b":" + b" " * 70_000_000, 1),
+        text.replace(b'"', b'"\xff', 1), b"1" * 5000,
+        text.replace(b":", b":" + b" " * 70_000_000, 1),
     ])  # fmt: skip
     return packed({**files, name: content})
 
@@ -188,7 +190,8 @@ def stored(rng, table):
     encoding = rng.choice([None, None, None, "DELTA_BYTE_ARRAY", "DELTA_BINARY_PACKED"])
     options = {
         "compression": rng.choice(["zstd", "zstd", "snappy", "gzip", "none"]),
-        "row_group_size": rng.choice([1 + len(table) // 40, 1 << 20]), "store_schema": rng.random() < 0.9,
+        "row_group_size": rng.choice([1 + len(table) // 40, 1 << 20]),
+        "store_schema": rng.random() < 0.9,
         "data_page_version": rng.choice(["1.0", "2.0"]), "use_dictionary": rng.random() < 0.7,
     }  # fmt: skip
     texts = [f.name for f in table.schema if pa.types.is_string(f.type)]
@@ -226,7 +229,8 @@ def bomb(rng, files):
 CHANGES = [any_bytes, of_a_file, of_a_file, swapped, of_json, of_json, of_index, of_text,
            of_column, of_column, bomb]  # fmt: skip
 VERBS = [("leaderboard", "--format", "csv"), ("leaderboard", "--recompute", "--metric", "success"),
-         ("verify", "--workers", "0", "--twin", "0"), ("leaderboard", "--curve", "horizon")]  # fmt: skip
+         ("verify", "--workers", "0", "--twin", "0"),
+         ("leaderboard", "--curve", "horizon")]  # fmt: skip
 
 
 def told(arguments):

@@ -73,7 +73,7 @@ def list_of(rows, items):
 def test_small_files_that_decode_to_gigabytes_are_refused(content):
     assert len(content) < 4 << 20
     before = pa.default_memory_pool().max_memory()
-    with pytest.raises(ValueError, match="holds|encoding"):
+    with pytest.raises(ValueError, match=r"holds|encoding"):
         bounded_parquet.read(content, SCHEMA)
     assert pa.default_memory_pool().max_memory() - before < bounded_parquet.allowed(len(content))
 
@@ -157,10 +157,11 @@ def test_results_may_be_undefined(part):
 @pytest.mark.parametrize(
     "text",
     ["[" * 100_000, '{"a":' * 5_000 + "1" + "}" * 5_000, "[" * 500 + "]" * 500, "", "\ufeff{}",
-     '{"a": 1, "a": 2}', '{"a": "\\ud800"}', "[" + "[]," * 1_100_000 + "[]]", "9" * 5000, "{", "nul"],
+     '{"a": 1, "a": 2}', '{"a": "\\ud800"}', "[" + "[]," * 1_100_000 + "[]]", "9" * 5000, "{",
+     "nul"],
 )  # fmt: skip
 def test_hostile_json_is_a_value_error(text):
-    with pytest.raises(ValueError, match="."):
+    with pytest.raises(ValueError, match=r"."):
         bounded_json.load(text)
 
 
@@ -236,10 +237,12 @@ def test_older_manifests_and_labels_that_ran_unguarded_are_read(tools, run):
 def test_a_member_twice_among_many_is_found_in_time_that_grows_with_their_number(tmp_path):
     path = tmp_path / "many.bnrun"
     names = [f"files/{k:064x}" for k in range(30_000)]
-    with ZipFile(path, "w", ZIP_STORED) as archive, pytest.warns(UserWarning, match="Duplicate"):
+    with ZipFile(path, "w", ZIP_STORED) as archive:
         archive.writestr("index.json", '{"format": 1, "files": {}}')
-        for name in (*names, names[-1]):
+        for name in names:
             archive.writestr(name, b"")
+        with pytest.warns(UserWarning, match="Duplicate"):
+            archive.writestr(names[-1], b"")
     began = time.process_time()
     with pytest.raises(StoreError, match="twice"), opened(path):
         pass
