@@ -21,7 +21,7 @@ FREE = 256 << 20  # [bytes] that any file may decode to
 RATIO = 64  # times its own size that a larger file may decode to, besides
 _MOST_FOOTER = 1 << 20  # [bytes]; a row group takes 9 kB, and a part has one for each batch
 _MOST_PAGES = 50_000  # of a file; a page holds about 1 MB
-_MOST_DICTIONARY = 4 << 20  # [bytes] of texts in lists; our writer has 1 MB
+_MOST_DICTIONARY = 4 << 20  # [bytes] of texts that are written out; our writer has 1 MB
 _MOST_IN_LIST = 1_000  # of the footer: row groups, columns
 _MOST_TEXT = 1 << 20  # [bytes] of a text in the footer
 _WRITER = "parquet-cpp-arrow"
@@ -45,9 +45,8 @@ class _Leaf:
 
     path: str  # "remarks.list.element"
     width: int  # [bytes] of a value once it is decoded; of a text, of the reference to it
-    text: bool  # of which equal ones may be stored once
-    listed: bool = False  # in lists
-    large: bool = False  # a long text, each stored for itself
+    text: bool = False  # of which equal ones may be stored once, and are read as references
+    spelled: bool = False  # the same, but each is written out when it is read
 
 
 def read(content: bytes, schema: pa.Schema, later: Collection[str] = ()) -> pa.Table:
@@ -77,7 +76,7 @@ def _decoded(content: bytes, schema: pa.Schema, later: Collection[str]) -> pa.Ta
     _require_columns(found, expected)
     leaves = [leaf for field in expected for leaf in _leaves(field)]
     _require_bound(content, file.metadata, leaves)
-    texts = [leaf.path for leaf in leaves if leaf.text and not leaf.listed]
+    texts = [leaf.path for leaf in leaves if leaf.text]
     table = _opened(content, texts, file.metadata).read(use_threads=False)
     spelled = sum(map(_length, table.columns))
     if spelled > allowed(len(content)):
@@ -115,13 +114,13 @@ def _leaves(field: pa.Field) -> Iterator[_Leaf]:
     if pa.types.is_list(field.type) or pa.types.is_large_list(field.type):
         (below,) = _leaves(field.type.value_field.with_name("element"))
         path = f"{field.name}.list.{below.path}"
-        yield _Leaf(path, below.width + _LEVELS, below.text, listed=True)
+        yield _Leaf(path, below.width + _LEVELS, spelled=below.text)
     elif pa.types.is_large_string(field.type):
-        yield _Leaf(field.name, 8, text=False, large=True)
+        yield _Leaf(field.name, 8, spelled=True)
     elif pa.types.is_string(field.type):
         yield _Leaf(field.name, 4, text=True)
     else:
-        yield _Leaf(field.name, max(1, field.type.bit_width // 8), text=False)
+        yield _Leaf(field.name, max(1, field.type.bit_width // 8))
 
 
 def _require_bound(content: bytes, metadata: pq.FileMetaData, leaves: list[_Leaf]) -> None:
@@ -140,9 +139,9 @@ def _require_bound(content: bytes, metadata: pq.FileMetaData, leaves: list[_Leaf
             column = group.column(c)
             if column.path_in_schema != leaf.path:
                 raise ValueError(f"must store {leaf.path}; it stores {column.path_in_schema[:60]}")
-            longest = 0  # of the texts that values of a list refer to
+            longest = 0  # [bytes] of the texts that are written out
             for page in page_headers.pages(_chunk(content, column)):
-                if leaf.listed and leaf.text and page.kind == page_headers.DICTIONARY:
+                if leaf.spelled and page.kind == page_headers.DICTIONARY:
                     longest = _longest(page, column.compression)
                 size += _size(page, leaf) + page.values * longest
                 count += 1
@@ -168,8 +167,6 @@ def _size(page: Page, leaf: _Leaf) -> int:
     """Return how much decoding a page takes at most: its bytes, and its values."""
     if page.encoding not in _ENCODINGS:
         raise ValueError(f"has a page in the encoding {page.encoding}, which no part has")
-    if leaf.large and page.kind == page_headers.DICTIONARY:
-        raise ValueError(f"has a dictionary of {leaf.path}, which no part has")
     return page.raw + page.values * leaf.width
 
 
