@@ -18,3 +18,5 @@ IntArray = npt.NDArray[np.int64]
 ByteArray = npt.NDArray[np.int8]
 BoolArray = npt.NDArray[np.bool_]
 AnyArray = npt.NDArray[Any]
+
+LARGEST = 1e100  # of a measured value: sums of squares of such values stay finite

@@ -4,27 +4,31 @@ import sys
 from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from benchnav.errors import StoreError, UsageError, did_you_mean
 from benchnav.streams import drop
+from benchnav.visible import visible_lines
+
+if TYPE_CHECKING:
+    from benchnav.store.spans import Span
 
 E = TypeVar("E", bound=StrEnum)
 
 
 def say(text: str) -> None:
-    """Talk."""
-    sys.stderr.write(text + "\n")
+    """Talk; what controls a terminal is marked."""
+    sys.stderr.write(visible_lines(text) + "\n")
     sys.stderr.flush()
 
 
 def put(text: str) -> None:
-    """A result. Raises StoreError where it cannot be written.
+    """A result; what controls a terminal is marked. Raises StoreError where it cannot be written.
 
     A reader that leaves early has seen enough: the rest is dropped, and the work goes on.
     """
     try:
-        sys.stdout.write(text + "\n")
+        sys.stdout.write(visible_lines(text) + "\n")
         sys.stdout.flush()
     except OSError as error:
         drop(sys.stdout)
@@ -46,13 +50,11 @@ def columns(rows: Sequence[Sequence[str]]) -> str:
     )
 
 
-def spans(seeds: Sequence[int]) -> str:
-    """Sorted seeds in few words: ``seeds 0–4, 7``."""
-    from benchnav.store.spans import spans as runs_of
-
-    runs = runs_of(seeds)
-    shown = ", ".join("–".join(map(str, sorted({a, b - 1}))) for a, b in runs[:4])
-    return f"seed{'s' if len(seeds) > 1 else ''} {shown}{', …' if len(runs) > 4 else ''}"
+def spans(seeds: Sequence["Span"]) -> str:
+    """Spans of seeds in few words: ``seeds 0–4, 7``."""
+    shown = ", ".join("–".join(map(str, sorted({a, b - 1}))) for a, b in seeds[:4])
+    several = len(seeds) > 1 or seeds[0][1] - seeds[0][0] > 1
+    return f"seed{'s' if several else ''} {shown}{', …' if len(seeds) > 4 else ''}"
 
 
 def write(path: Path, text: str) -> None:

@@ -29,11 +29,13 @@ def reading(runs: Sequence[Path]) -> Iterator["list[RunFolder]"]:
 
 def warn_if_unfinished(folder: "RunFolder") -> None:
     """Say what a run lacks."""
+    from benchnav.store.spans import count
+
     missing = dict(folder.missing())
     if not missing:
         return
-    total = sum(len(seeds) for _, seeds in folder.wanted())
-    stored = total - sum(map(len, missing.values()))
+    total = sum(count(seeds) for _, seeds in folder.wanted())
+    stored = total - sum(map(count, missing.values()))
     advice = f": run the same suite with --out {folder.path} to finish it."
     end = "." if folder.packed else advice
     say(f"{folder.shown} holds {stored} of {counted(total, 'episode')}{end}")

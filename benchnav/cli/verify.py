@@ -8,6 +8,7 @@ import typer
 
 from benchnav.cli.console import columns, put, say
 from benchnav.plural import counted
+from benchnav.visible import visible
 
 if TYPE_CHECKING:
     from benchnav.runner.verify.finding import Report
@@ -99,12 +100,12 @@ def as_text(run: Path, report: "Report", seconds: float) -> str:
     lines = [f"{run}: {verdict}, in {seconds:.1f} s"]
     if count:
         few = report.few(SHOWN)
-        lines += ["", columns([(f.kind, f.where, f.what) for f in few])]
+        lines += ["", columns([(f.kind, visible(f.where), visible(f.what)) for f in few])]
         if count > len(few):
             lines.append(f"… and {count - len(few)} more (--json has all)")
         lines.append("")
-    lines += [f"  checked      {text}" for text in report.checked]
-    lines += [f"  not checked  {text}" for text in report.unchecked]
-    lines += [f"  source       {text}" for text in report.sources]
-    lines += [f"  note         {text}" for text in report.versions]
+    lines += [f"  checked      {visible(text)}" for text in report.checked]
+    lines += [f"  not checked  {visible(text)}" for text in report.unchecked]
+    lines += [f"  source       {visible(text)}" for text in report.sources]
+    lines += [f"  note         {visible(text)}" for text in report.versions]
     return "\n".join(lines)

@@ -1,14 +1,11 @@
 """Names come from plugins and files: nothing in them may act in what is printed."""
 
 import re
-import unicodedata
 from html import escape
 
+from benchnav.visible import visible
 
-def visible(text: str) -> str:
-    """Line breaks become spaces, control and formatting characters a replacement mark."""
-    spaced = re.sub(r"\s+", " ", text)
-    return "".join("\ufffd" if unicodedata.category(c).startswith("C") else c for c in spaced)
+_FORMULA = tuple("=+-@＝＋－＠")  # also in full width
 
 
 def markdown(text: str) -> str:
@@ -26,5 +23,6 @@ def html(text: str) -> str:
 
 
 def spreadsheet(text: str) -> str:
-    """Text that a spreadsheet does not take for a formula."""
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
+    """Text on one line that a spreadsheet does not take for a formula."""
+    shown = visible(text)
+    return f"'{shown}" if shown.lstrip().startswith(_FORMULA) else shown

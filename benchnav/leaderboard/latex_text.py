@@ -6,7 +6,7 @@ The result is ASCII, so that it does not matter which engine reads it in which e
 import re
 import unicodedata
 
-from benchnav.leaderboard.escape import visible
+from benchnav.visible import visible
 
 _ASCII = {
     "\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_",

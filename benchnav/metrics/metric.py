@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal
 
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import LARGEST, BoolArray, FloatArray
 from benchnav.episode.episode import Episode
 
 
@@ -30,10 +30,17 @@ class Metric:
 
 
 def evaluate(metric: Metric, episode: Episode, members: BoolArray) -> tuple[float, int]:
-    """Mean over the members (A,) where it is defined, and how many those are."""
+    """Mean over the members (A,) where it is defined, and how many those are.
+
+    Raises ValueError where the mean is larger than `LARGEST`.
+    """
     if metric.scope == "group":
         value = float(metric.function(episode, members))
-        return value, int(value == value)
-    values = metric.function(episode)[members]  # type: ignore[index]
-    defined = values[values == values]
-    return (float(defined.mean()) if len(defined) else float("nan")), len(defined)
+        defined = int(value == value)
+    else:
+        values = metric.function(episode)[members]  # type: ignore[index]
+        known = values[values == values]
+        value, defined = (float(known.mean()) if len(known) else float("nan")), len(known)
+    if abs(value) > LARGEST:
+        raise ValueError(f"a metric must be from {-LARGEST:g} to {LARGEST:g}; got {value:g}")
+    return value, defined

@@ -8,7 +8,6 @@ no folder of this machine appears and the same fault reads the same everywhere.
 import linecache
 import os
 import sysconfig
-import unicodedata
 from collections.abc import Iterator
 from pathlib import Path, PurePath
 from traceback import walk_tb
@@ -16,6 +15,7 @@ from types import FrameType
 from typing import Any
 
 from benchnav.errors import BenchnavError
+from benchnav.visible import visible, visible_lines
 
 MOST = 8000  # characters of a traceback
 MESSAGE = 1000  # characters of a message in a traceback
@@ -38,7 +38,7 @@ def plain(value: object) -> str:
         text = str.__getitem__(str(value), slice(RAW))
     except (Exception, SystemExit):
         return f"(a {class_name(value)} that cannot be read)"
-    clean = "".join(c if c in "\n\t" or _is_visible(c) else "\ufffd" for c in text)
+    clean = visible_lines(text).encode("utf-8", "replace").decode()
     home = os.path.expanduser("~")  # noqa: PTH111 - Path.home() raises where there is none
     return clean.replace(home, "~") if len(home) > 1 else clean
 
@@ -46,7 +46,7 @@ def plain(value: object) -> str:
 def class_name(value: object) -> str:
     """The name of the class of ``value``, whatever its metaclass says."""
     name: str = type.__dict__["__name__"].__get__(type(value))
-    return "".join(c for c in name[:100] if _is_visible(c))
+    return visible(name[:100])
 
 
 def location(error: BaseException) -> str:
@@ -155,7 +155,3 @@ def _shown(frame: FrameType) -> str:
 def _of(error: BaseException, name: str) -> Any:
     """An attribute that every exception has, whatever its class puts in its place."""
     return BaseException.__dict__[name].__get__(error)
-
-
-def _is_visible(character: str) -> bool:
-    return not unicodedata.category(character).startswith("C")

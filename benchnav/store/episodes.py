@@ -115,15 +115,19 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
     return pa.Table.from_arrays(arrays, schema=EPISODES)
 
 
-def from_table(table: pa.Table) -> Iterator[Episode]:
-    """The episodes of a table of `EPISODES`, in its order; columns of `LATER` may lack."""
+def from_table(table: pa.Table, order: Sequence[int] | None = None) -> Iterator[Episode]:
+    """The episodes of a table of `EPISODES`, in its order or another; columns of `LATER` may lack.
+
+    One is made at a time: ``order`` names rows, so that no second table is.
+    """
     for name in LATER:
         if name not in table.column_names:
             field = EPISODES.field(name)
             table = table.append_column(field, pa.nulls(len(table), field.type))
-    for batch in table.to_batches():
-        for row in range(batch.num_rows):
-            yield _episode(batch, row)
+    batches = table.to_batches()
+    rows = [(batch, row) for batch in batches for row in range(batch.num_rows)]
+    for place in range(len(rows)) if order is None else order:
+        yield _episode(*rows[place])
 
 
 def _episode(batch: pa.RecordBatch, row: int) -> Episode:
@@ -151,13 +155,18 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
         None if latency is None else np.array(latency, np.float64), scalar("memory_bytes"),
         scalar("rehearsal_seconds") or 0.0,
     )  # fmt: skip
+    world = world_from_json(scalar("world"))
+    if (len(world.agents), len(world.bodies)) != (agents, bodies):
+        raise ValueError(f"its world must have {agents} agents and {bodies} bodies, and has not")
+    if len({len(array) for array in contacts.values()}) > 1:
+        raise ValueError("its contacts must have one value in each column")
     identity = {name: scalar(name) for name in (*_IDENTITY, "seed")}
     identity["navigator_hash"] = scalar("navigator_hash") or ""
     identity["source_hash"] = scalar("source_hash") or ""
     identity["rehearsal"] = scalar("rehearsal") or 0
     return Episode(
         identity=Identity(**identity),
-        world=world_from_json(scalar("world")),
+        world=world,
         contacts=Contacts(**contacts),
         timings=timings,
         failure=scalar("failure"),

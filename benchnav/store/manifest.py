@@ -3,23 +3,24 @@
 import hashlib
 import json
 import platform
-import re
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import asdict, dataclass, field, fields, replace
+from collections.abc import Collection, Mapping
+from dataclasses import asdict, dataclass, field, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any, Literal
 
-from benchnav.errors import CorruptPartError, NoRunError, StoreError
-from benchnav.store import checked_json
+from benchnav.errors import CorruptPartError, NoRunError, ScenarioError, StoreError
+from benchnav.navigation.answer import short
+from benchnav.scenario.document import Document, Place, shown
+from benchnav.scenario.validation import validate
+from benchnav.store import bounded_json, checked_json
+from benchnav.store.manifest_schema import ManifestSchema
 from benchnav.store.run_path import RunPath, run_path
 
 SCHEMA = 4  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source
 MANIFEST = "manifest.json"
-_KEY = re.compile(r"[A-Za-z0-9@_-][A-Za-z0-9@._-]{0,250}")  # of a cell: the name of its folder
-_SOURCE = re.compile(r"[0-9a-f]{16}")
-_MOST_SEED = 10**15
-_OF_A_CELL = ("key", "scenario", "track", "navigator", "reason")
+MOST_BYTES = 64 << 20  # of a manifest
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
 
 Mode = Literal["in-process", "isolated"]  # of a navigator; what a manifest says of it
@@ -88,9 +89,6 @@ class Manifest:
         return checked_json.dump({**asdict(self), "suite_hash": self.suite_hash})
 
 
-_SAID = {part.name for part in fields(Manifest)} | {"suite_hash"}
-
-
 def versions() -> dict[str, str]:
     """Installed packages that have a say in the numbers, and their versions."""
     found = {"python": platform.python_version()}
@@ -108,7 +106,7 @@ def load_manifest(run: RunPath) -> Manifest:
     Raises:
         NoRunError: the folder is no run.
         StoreError: a newer benchnav wrote it.
-        CorruptPartError: its manifest is damaged, or names a cell that no folder may be called.
+        CorruptPartError: its manifest is damaged, or holds what no run writes.
     """
     run = run_path(run)
     path = run / MANIFEST
@@ -119,53 +117,39 @@ def load_manifest(run: RunPath) -> Manifest:
             f" {what or 'It has none'}. 'benchnav run SUITE --out {run}' makes one."
         )
     try:
-        said = checked_json.load(path.read_text(encoding="utf-8"), _SAID)
-        schema = said["schema"]
-        if isinstance(schema, int) and schema > SCHEMA:
-            raise StoreError(
-                f"{path}: schema must be at most {SCHEMA}. Got {schema} instead:"
-                f" benchnav {said['versions'].get('benchnav')} wrote it; install that one."
-            )
+        fields = checked_json.load(bounded_json.read_text(path, MOST_BYTES))
+        _refuse_newer(path, fields)
+        validate(ManifestSchema, Document(str(path), fields, Place(1)))
         manifest = Manifest(
-            said["suite"], tuple(said["cells"]), said.get("salt", ""), said.get("limits", {}),
-            said.get("shard", ""), said.get("sources", {}), schema, said["versions"],
-            said["platform"], said["created"],
+            fields["suite"], tuple(fields["cells"]), fields.get("salt", ""),
+            fields.get("limits", {}), fields.get("shard", ""), fields.get("sources", {}),
+            fields["schema"], fields["versions"], fields["platform"], fields["created"],
         )  # fmt: skip
-        whole = manifest.suite_hash == said["suite_hash"]
-        _refuse_strange_cells(manifest.cells)
-        _refuse_strange_sources(manifest.sources)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+        whole = manifest.suite_hash == fields["suite_hash"]
+    except (OSError, ValueError, RecursionError) as error:
         raise CorruptPartError(
-            f"{path} must be what was written. It cannot be read: {error}."
+            f"{path} must be what was written. It cannot be read: {short(error)}."
         ) from error
+    except ScenarioError as error:
+        complaint = str(error).partition("\n")[0].removeprefix(f"{path}:1: ")
+        raise CorruptPartError(f"{path} must be what was written. {complaint}") from None
     if not whole:
         raise CorruptPartError(f"{path} must be what was written. Its suite was changed.")
     return manifest
 
 
+def _refuse_newer(path: Path, fields: Mapping[str, Any]) -> None:
+    """Raise StoreError where a newer benchnav wrote the manifest."""
+    schema, made = fields.get("schema"), fields.get("versions")
+    if type(schema) is not int or schema <= SCHEMA:
+        return
+    version = made.get("benchnav") if isinstance(made, dict) else None
+    raise StoreError(
+        f"{path}: schema must be at most {SCHEMA}. Got {shown(schema)} instead:"
+        f" benchnav {shown(version)} wrote it; install that one."
+    )
+
+
 def _without_files(entry: Mapping[str, Any]) -> dict[str, Any]:
     kept = {key: value for key, value in entry.items() if key != "fingerprint"}
     return {**kept, "leader": _without_files(kept["leader"])} if "leader" in kept else kept
-
-
-def _refuse_strange_sources(sources: Mapping[str, Any]) -> None:
-    """Raise ValueError: hashes become part of paths, and places are looked for."""
-    for label, source in sources.items():
-        if not _SOURCE.fullmatch(source["hash"]):
-            raise ValueError(f"sources[{label!r}].hash must be a hash; got {source['hash']!r}")
-        if not all(isinstance(place, str) for place in source["places"]):
-            raise ValueError(f"sources[{label!r}].places must be a list of texts")
-
-
-def _refuse_strange_cells(cells: Sequence[Mapping[str, Any]]) -> None:
-    """Raise ValueError: keys become paths, and what a stranger wrote must not lead elsewhere."""
-    for i, cell in enumerate(cells):
-        if not _KEY.fullmatch(cell["key"]):
-            raise ValueError(f"cells[{i}].key must be the name of a folder; got {cell['key']!r}")
-        strange = [name for name in _OF_A_CELL if not isinstance(cell.get(name, ""), str)]
-        if strange:
-            raise ValueError(f"cells[{i}].{strange[0]} must be text")
-        for span in cell.get("seeds", ()):
-            first, stop = map(int, span)
-            if not 0 <= first < stop <= _MOST_SEED:
-                raise ValueError(f"cells[{i}].seeds must be spans; got {span}")

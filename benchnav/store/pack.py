@@ -22,6 +22,7 @@ from benchnav.store.scenario_files import FOLDER, sha256_of
 SUFFIX = ".bnrun"
 INDEX = "index.json"
 FORMAT = 1  # of the archive
+MOST_MEMBERS = 100_000  # about 33,000 parts
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the first that zip knows: a pack does not tell when it was made
 _SUFFIXES = "|".join(re.escape(suffix) for suffix in (*FILES, SEAL))
 MEMBER = re.compile(
@@ -75,13 +76,19 @@ def pack(run: RunFolder, out: Path) -> None:
     """Write the pack of a run to ``out``.
 
     Raises:
-        UsageError: ``out`` is there already, or a scenario's file is named by its whole path.
+        UsageError: ``out`` is there already, a scenario's file is named by its whole path, or
+            there are too many files.
         StoreError: a file of the run lacks, or the disk refuses.
     """
     if out.exists():
         raise UsageError(f"{out} must be a new file. It is there already.")
     _refuse_whole_paths(run)
     found = content(run)
+    if len(found) > MOST_MEMBERS:
+        raise UsageError(
+            f"A pack must have at most {MOST_MEMBERS} files. {run.path} has {len(found)}: run its"
+            " scenarios as several suites."
+        )
     index = json.dumps({"format": FORMAT, "files": found}, indent=1, sort_keys=True)
     temporary = out.with_name(f".writing-{out.name}")
     try:

@@ -7,29 +7,39 @@ killed run left there.
 
 import hashlib
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pyarrow as pa
 import pyarrow.compute as pc
-import pyarrow.parquet as pq
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError
-from benchnav.store import checked_json
-from benchnav.store.episodes import from_table
-from benchnav.store.results import completed
+from benchnav.navigation.answer import short
+from benchnav.store import bounded_json, bounded_parquet, results
+from benchnav.store.episodes import EPISODES, from_table
+from benchnav.store.episodes import LATER as EPISODES_LATER
+from benchnav.store.seal import (
+    EPISODES_FILE,
+    FILES,
+    MOST_SEAL,
+    REHEARSALS_FILE,
+    RESULTS_FILE,
+    SEAL,
+    Facts,
+    read_seal,
+)
 
-SEAL = ".seal.json"
-EPISODES_FILE = ".episodes.parquet"
-RESULTS_FILE = ".results.parquet"
-REHEARSALS_FILE = ".rehearsals.parquet"  # only where there were rehearsals
+__all__ = [
+    "EPISODES_FILE", "FILES", "MOST_SEEDS", "REHEARSALS_FILE", "RESULTS_FILE", "SEAL", "Part",
+    "parts_of",
+]  # fmt: skip
+
+MOST_REHEARSALS = 1_000  # of an episode
+CURE = " Delete "  # with which the advice of an error begins
 _STEM = re.compile(r"([0-9]{6,9})-([0-9]{6,9})")
-FILES = (EPISODES_FILE, RESULTS_FILE, REHEARSALS_FILE)
-MOST_SEEDS = 1_000_000  # of a part, whatever its name says
-MOST_BYTES = 8 << 30  # that a file of a part may hold once it is decompressed
+MOST_SEEDS = 256  # of a part, whatever its name says; a task has at most 64
 UNDECODABLE = (
     KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError, RecursionError,
 )  # fmt: skip
@@ -63,12 +73,17 @@ class Part:
         return self.path(SEAL).exists()
 
     def results(self) -> pa.Table:
-        """Its measured values. Raises CorruptPartError."""
-        return completed(self._table(RESULTS_FILE))
+        """Its measured values, sorted by seed. Raises CorruptPartError."""
+        table = results.completed(self._table(RESULTS_FILE, results.RESULTS, results.LATER))
+        try:
+            results.require_possible(table)
+        except ValueError as error:
+            raise self._corrupt(self.path(RESULTS_FILE), str(error)) from error
+        return table.take(pc.sort_indices(table, _by(table)))
 
     def episodes(self) -> Iterator[Episode]:
         """Its scored episodes, by seed. Raises CorruptPartError."""
-        yield from self._episodes(EPISODES_FILE)
+        yield from self._episodes(EPISODES_FILE, len(self.seeds))
 
     def rehearsals(self) -> Iterator[Episode]:
         """The rehearsals of its episodes, by seed; none where none were made.
@@ -76,68 +91,49 @@ class Part:
         Raises CorruptPartError.
         """
         if REHEARSALS_FILE in self._seal():
-            yield from self._episodes(REHEARSALS_FILE)
+            yield from self._episodes(REHEARSALS_FILE, len(self.seeds) * MOST_REHEARSALS)
 
     def check(self) -> None:
         """Raise CorruptPartError where a file is missing or has another size than was sealed."""
-        for suffix in (EPISODES_FILE, RESULTS_FILE):
-            self._check_size(suffix, self._sealed(suffix))
-        if REHEARSALS_FILE in self._seal():
-            self._check_size(REHEARSALS_FILE, self._sealed(REHEARSALS_FILE))
+        for suffix, sealed in self._seal().items():
+            self._check_size(suffix, sealed)
 
-    def _episodes(self, suffix: str) -> Iterator[Episode]:
-        table = self._table(suffix)
+    def _episodes(self, suffix: str, most: int) -> Iterator[Episode]:
+        table = self._table(suffix, EPISODES, EPISODES_LATER)
+        if len(table) > most:
+            raise self._corrupt(self.path(suffix), f"has {len(table)} rows, more than {most}")
+        order = pc.sort_indices(table, _by(table)).to_pylist()  # batches may be out of order
         try:
-            yield from from_table(table)
+            yield from from_table(table, order)
         except UNDECODABLE as error:
-            raise self._corrupt(self.path(suffix), f"cannot be decoded ({error})") from error
+            raise self._corrupt(self.path(suffix), f"cannot be decoded ({short(error)})") from error
 
-    def _table(self, suffix: str) -> pa.Table:
-        path, sealed = self.path(suffix), self._sealed(suffix)
+    def _table(self, suffix: str, schema: pa.Schema, later: Collection[str]) -> pa.Table:
+        """Return the table in one of its files; what is decoded are the bytes that were hashed."""
+        path, sealed = self.path(suffix), self._seal()[suffix]
         self._check_size(suffix, sealed)
-        with path.open("rb") as file:
-            found = hashlib.file_digest(file, "sha256").hexdigest()
-        if found != sealed["sha256"]:
-            raise self._corrupt(
-                path, f"has sha256 {found[:12]}…, sealed was {sealed['sha256'][:12]}…"
-            )
         try:
-            self._refuse_bomb(path)
-            table = pq.read_table(path, partitioning=None)
-            keys = [
-                (key, "ascending") for key in ("seed", "rehearsal") if key in table.column_names
-            ]
-            return table.take(pc.sort_indices(table, keys))  # stable: batches may be out of order
-        except (OSError, pa.ArrowException) as error:
-            raise self._corrupt(path, f"is no Parquet file ({error})") from error
+            content = path.read_bytes()
+            found = hashlib.sha256(content).hexdigest()
+            if found != sealed["sha256"]:
+                raise self._corrupt(
+                    path, f"has sha256 {found[:12]}…, sealed was {sealed['sha256'][:12]}…"
+                )
+            return bounded_parquet.read(content, schema, later)
+        except ValueError as error:
+            raise self._corrupt(path, short(error)) from error
+        except OSError as error:
+            raise self._corrupt(path, f"cannot be read ({short(error)})") from error
 
-    def _refuse_bomb(self, path: Path) -> None:
-        """A small file may decompress to more than memory holds."""
-        found = pq.read_metadata(path)
-        for group in map(found.row_group, range(found.num_row_groups)):
-            columns = [group.column(c) for c in range(group.num_columns)]
-            size = sum(max(c.total_uncompressed_size, 8 * c.num_values) for c in columns)
-            if size > MOST_BYTES:
-                raise self._corrupt(path, f"holds {size} bytes, more than {MOST_BYTES}")
-
-    def _sealed(self, suffix: str) -> dict[str, Any]:
-        try:
-            sealed = self._seal()[suffix]
-            return {"bytes": int(sealed["bytes"]), "sha256": str(sealed["sha256"])}
-        except (ValueError, KeyError, TypeError) as error:
-            raise self._corrupt(self.path(SEAL), f"cannot be read ({error})") from error
-
-    def _seal(self) -> dict[str, Any]:
+    def _seal(self) -> dict[str, Facts]:
+        """Return size and sha256 of each of its files, as they were sealed."""
         seal = self.path(SEAL)
         try:
-            said = checked_json.load(seal.read_text(encoding="utf-8"), (*FILES, "episodes"))
-        except (OSError, ValueError, RecursionError) as error:
-            raise self._corrupt(seal, f"cannot be read ({error})") from error
-        if said.get("episodes") != len(self.seeds):
-            raise self._corrupt(seal, f"is of {said.get('episodes')} episodes")
-        return said
+            return read_seal(bounded_json.read_text(seal, MOST_SEAL), len(self.seeds))
+        except (OSError, ValueError) as error:
+            raise self._corrupt(seal, f"cannot be read ({short(error)})") from error
 
-    def _check_size(self, suffix: str, sealed: dict[str, Any]) -> None:
+    def _check_size(self, suffix: str, sealed: Facts) -> None:
         path = self.path(suffix)
         if not path.exists():
             raise self._corrupt(path, "is missing")
@@ -150,9 +146,14 @@ class Part:
         run = self.folder.parent.parent
         return CorruptPartError(
             f"{path} must be what was written. It {what}."
-            f" Delete {self.path(SEAL)} and run the same suite again with --out {run}"
+            f"{CURE}{self.path(SEAL)} and run the same suite again with --out {run}"
             " to redo only this part."
         )
+
+
+def _by(table: pa.Table) -> list[tuple[str, str]]:
+    """By what the rows of a table of a part are sorted."""
+    return [(key, "ascending") for key in ("seed", "rehearsal") if key in table.column_names]
 
 
 def parts_of(folder: Path) -> list[Part]:

@@ -16,8 +16,16 @@ from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError, StoreError
 from benchnav.store import checked_json
 from benchnav.store.episodes import DICTIONARY, EPISODES, to_table
-from benchnav.store.part import EPISODES_FILE, FILES, REHEARSALS_FILE, RESULTS_FILE, SEAL, Part
+from benchnav.store.part import Part
 from benchnav.store.results import RESULTS
+from benchnav.store.seal import (
+    EPISODES_FILE,
+    FILES,
+    REHEARSALS_FILE,
+    RESULTS_FILE,
+    SEAL,
+    read_seal,
+)
 
 TEMPORARY = ".writing-"  # names of files that are not finished start with this
 
@@ -195,14 +203,14 @@ def receive(part: Part, files: Mapping[str, bytes]) -> None:
 
 def _refuse_unsealed(part: Part, files: Mapping[str, bytes]) -> None:
     try:
-        said = checked_json.load(files[SEAL].decode(), (*FILES, "episodes"))
-        sealed = {suffix: said[suffix]["sha256"] for suffix in FILES if suffix in said}
-    except (KeyError, TypeError, ValueError) as error:
+        seal = read_seal(files[SEAL].decode(), len(part.seeds))
+        sealed = {suffix: facts["sha256"] for suffix, facts in seal.items()}
+    except (KeyError, ValueError) as error:
         raise CorruptPartError(f"{part.path(SEAL)} must come sealed. It cannot be read.") from error
     found = {
         suffix: hashlib.sha256(files[suffix]).hexdigest() for suffix in files if suffix != SEAL
     }
-    if sealed != found or said.get("episodes") != len(part.seeds):
+    if sealed != found:
         raise CorruptPartError(f"{part.path(SEAL)} must fit what it came with. It does not.")
 
 

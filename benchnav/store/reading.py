@@ -4,13 +4,17 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 import pyarrow as pa
-import pyarrow.compute as pc
 
 from benchnav.episode.episode import Episode
+from benchnav.errors import CorruptPartError
+from benchnav.store.bounded_parquet import allowed
 from benchnav.store.manifest import Manifest
+from benchnav.store.part import RESULTS_FILE
 from benchnav.store.results import RESULTS
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath
+
+_OF_A_CELL = ["scenario", "track", "navigator"]
 
 
 def read_episodes(run: RunPath) -> Iterator[Episode]:
@@ -55,24 +59,35 @@ def read_results(run: RunPath) -> pa.Table:
     Raises as `read_episodes` does.
     """
     folder = RunFolder.open(run)
-    tables = [part.results() for part in folder.parts()]
-    return in_every_track(pa.concat_tables([RESULTS.empty_table(), *tables]), folder.manifest)
+    tables = [RESULTS.empty_table()]
+    decoded = stored = 0
+    for part in folder.parts():
+        tables.append(part.results())
+        decoded += tables[-1].nbytes
+        stored += part.path(RESULTS_FILE).stat().st_size
+        if decoded > allowed(stored):
+            raise CorruptPartError(
+                f"The results of {folder.shown} must decode to at most {allowed(stored)} bytes, as"
+                f" their files have {stored}. They decode to more."
+            )
+    return in_every_track(pa.concat_tables(tables), folder.manifest)
 
 
 def in_every_track(results: pa.Table, manifest: Manifest) -> pa.Table:
     """The rows of `RESULTS`, and once more for each other track that their cell stands for."""
-    found = [results]
-    for cell in manifest.cells:
-        for track in cell.get("also", ()):
-            of_cell = pc.and_(
-                pc.equal(results["scenario"], cell["scenario"]),
-                pc.and_(
-                    pc.equal(results["track"], cell["track"]),
-                    pc.equal(results["navigator"], cell["navigator"]),
-                ),
-            )
-            rows = results.filter(of_cell)
-            place = RESULTS.get_field_index("track")
-            tracks = pa.repeat(pa.scalar(track, pa.string()), len(rows))
-            found.append(rows.set_column(place, RESULTS.field("track"), tracks))
-    return pa.concat_tables(found)
+    others = [
+        (*(cell[name] for name in _OF_A_CELL), track)
+        for cell in manifest.cells
+        for track in cell.get("also", ())
+    ]
+    if not others:
+        return results
+    columns = (pa.array(column, pa.string()) for column in zip(*others, strict=True))
+    named = pa.table(dict(zip((*_OF_A_CELL, "other"), columns, strict=True)))
+    rows = results.select(_OF_A_CELL).append_column(
+        "row", pa.array(range(len(results)), pa.int64())
+    )
+    found = rows.join(named, _OF_A_CELL, join_type="inner").sort_by("row")
+    place = RESULTS.get_field_index("track")
+    again = results.take(found["row"]).set_column(place, RESULTS.field("track"), found["other"])
+    return pa.concat_tables([results, again])

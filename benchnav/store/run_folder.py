@@ -16,6 +16,7 @@ from benchnav.store.manifest import MANIFEST, Manifest, load_manifest
 from benchnav.store.part import FILES, Part, parts_of
 from benchnav.store.part_writer import TEMPORARY
 from benchnav.store.run_path import RunPath, run_path
+from benchnav.store.spans import Span, without
 
 _SHORT = 10  # digits of a source hash in the name of a folder
 _SUFFIX = re.compile(rf"\.[0-9a-f]{{{_SHORT}}}$")
@@ -141,26 +142,32 @@ class RunFolder:
 
     def done(self, key: str) -> set[int]:
         """The seeds of a cell that are stored. Raises CorruptPartError where a part is damaged."""
-        seeds: set[int] = set()
-        for part in parts_of(self.cell(key)):
-            part.check()
-            seeds.update(part.seeds)
-        return seeds
+        return {seed for span in self.held(key) for seed in range(*span)}
 
-    def wanted(self) -> Iterator[tuple[str, set[int]]]:
-        """(key, seeds) of the cells that can be run."""
+    def held(self, key: str) -> list[Span]:
+        """The spans of seeds of a cell that are stored, part by part.
+
+        Raises CorruptPartError where a part is damaged.
+        """
+        parts = parts_of(self.cell(key))
+        for part in parts:
+            part.check()
+        return [(part.first, part.stop) for part in parts]
+
+    def wanted(self) -> Iterator[tuple[str, list[Span]]]:
+        """(key, spans of seeds) of the cells that can be run."""
+        whole = [self.manifest.suite["seeds"]]
         for cell in self.manifest.cells:
             if not cell["reason"]:
-                spans = cell.get("seeds", [self.manifest.suite["seeds"]])
-                yield cell["key"], {seed for span in spans for seed in range(*span)}
+                yield cell["key"], [(first, stop) for first, stop in cell.get("seeds", whole)]
 
-    def missing(self) -> Iterator[tuple[str, list[int]]]:
-        """(key, seeds) of the cells that can be run and are not stored whole.
+    def missing(self) -> Iterator[tuple[str, list[Span]]]:
+        """(key, spans of seeds) of the cells that can be run and are not stored whole.
 
         Raises CorruptPartError where a part is damaged.
         """
         for key, seeds in self.wanted():
-            if lacking := sorted(seeds - self.done(key)):
+            if lacking := without(seeds, self.held(key)):
                 yield key, lacking
 
     @contextmanager

@@ -5,10 +5,10 @@ from dataclasses import replace
 from typing import Any
 
 import pyarrow as pa
-import pyarrow.parquet as pq
 
 from benchnav.episode.episode import Episode, Identity
 from benchnav.errors import CorruptPartError
+from benchnav.store import bounded_parquet
 from benchnav.store.episodes import EPISODES, from_table
 from benchnav.store.part import EPISODES_FILE, REHEARSALS_FILE, UNDECODABLE, Part
 from benchnav.store.part_writer import temporary
@@ -49,11 +49,8 @@ def check_rehearsals(part: Part, expected: Sequence[Identity], most: int) -> Non
 
 def _episodes(part: Part, suffix: str) -> Iterator[Episode]:
     try:
-        with pq.ParquetFile(temporary(part, suffix)) as file:
-            if not file.schema_arrow.equals(EPISODES):
-                raise _strange(part, "has other columns")
-            for group in range(file.num_row_groups):
-                yield from from_table(file.read_row_group(group))
+        table = bounded_parquet.read(temporary(part, suffix).read_bytes(), EPISODES)
+        yield from from_table(table, range(len(table)))
     except (OSError, pa.ArrowException, *UNDECODABLE) as error:
         raise _strange(part, f"cannot be read ({error})") from error
 

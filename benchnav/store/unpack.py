@@ -1,24 +1,28 @@
 """Runs from folders and from packs. A pack comes from a stranger: nothing in it is believed."""
 
 import hashlib
-import json
 import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 from benchnav.errors import CorruptPartError, NoRunError, StoreError
+from benchnav.navigation.answer import short
+from benchnav.scenario.document import shown
+from benchnav.store import bounded_json
 from benchnav.store.manifest import load_manifest
-from benchnav.store.pack import FORMAT, INDEX, MEMBER
+from benchnav.store.pack import FORMAT, INDEX, MEMBER, MOST_MEMBERS
+from benchnav.store.part import CURE
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath, run_path
+from benchnav.store.seal import Facts, require_facts
 
-MOST_MEMBERS = 1_000_000
+MOST_DIRECTORY = 48 << 20  # bytes; a member takes about 150
 _ZIP = b"PK"  # with which every zip archive begins
-MOST_INDEX = 256 << 20  # bytes
+_END, _LOCATOR, _END64 = 22, 20, 76  # [bytes] of the records at the end; of large archives, before
+MOST_INDEX = 64 << 20  # bytes; a member takes about 170
 
 
 @contextmanager
@@ -39,7 +43,8 @@ def opened(path: RunPath) -> Iterator[RunFolder]:
             unpack(path, Path(folder))
             yield RunFolder(Path(folder), load_manifest(Path(folder)), path)
         except StoreError as error:
-            raise type(error)(str(error).replace(folder, str(path))) from error
+            text, _, _ = str(error).partition(CURE)  # which a pack cannot have
+            raise type(error)(text.replace(folder, str(path))) from error
 
 
 def unpack(path: Path, folder: Path) -> None:
@@ -60,11 +65,25 @@ def unpack(path: Path, folder: Path) -> None:
 
 
 def _refuse_other_files(path: Path) -> None:
+    """Before the directory of the archive is read, which may be large."""
     with path.open("rb") as file:
-        if not file.read(len(_ZIP)).startswith(_ZIP):
-            raise NoRunError(
-                f"{path} must be a run folder, or a pack that 'benchnav pack' made. It is neither."
-            )
+        begin = file.read(len(_ZIP))
+        file.seek(max(0, path.stat().st_size - _END64 - _END))
+        end = file.read()
+    if begin != _ZIP:
+        raise NoRunError(
+            f"{path} must be a run folder, or a pack that 'benchnav pack' made. It is neither."
+        )
+    size = int.from_bytes(end[12 - _END : 16 - _END], "little")
+    if end[-_END - _LOCATOR :].startswith(b"PK\6\7"):  # a large archive: its size stands before
+        size = int.from_bytes(end[40 - _END64 - _END : 48 - _END64 - _END], "little")
+    if not end[-_END:].startswith(b"PK\5\6"):
+        raise StoreError(
+            f"{path} must be a run folder, or a pack that 'benchnav pack' made. It is cut short, or"
+            " something stands behind its end."
+        )
+    if size > MOST_DIRECTORY:
+        raise _corrupt(path, f"has a directory of {size} bytes, more than {MOST_DIRECTORY}")
 
 
 def _refuse_strange(path: Path, infos: list[ZipInfo]) -> None:
@@ -73,7 +92,7 @@ def _refuse_strange(path: Path, infos: list[ZipInfo]) -> None:
         raise NoRunError(f"{path} must be a pack that 'benchnav pack' made. It has no {INDEX}.")
     if len(infos) > MOST_MEMBERS:
         raise _corrupt(path, f"has {len(infos)} members, more than {MOST_MEMBERS}")
-    names = [info.filename for info in infos]
+    seen: set[str] = set()
     for info in infos:
         kind = stat.S_IFMT(info.external_attr >> 16)
         if info.filename != INDEX and MEMBER.fullmatch(info.filename) is None:
@@ -82,36 +101,40 @@ def _refuse_strange(path: Path, infos: list[ZipInfo]) -> None:
             raise _corrupt(path, f"has a member {info.filename!r} that is not a plain file")
         if info.compress_type != ZIP_STORED or info.file_size != info.compress_size:
             raise _corrupt(path, f"has a member {info.filename!r} that is compressed")
-    if len(set(names)) < len(names):
-        twice = next(name for name in names if names.count(name) > 1)
-        raise _corrupt(path, f"has {twice!r} twice")
+        if info.filename in seen:
+            raise _corrupt(path, f"has {info.filename!r} twice")
+        seen.add(info.filename)
     if sum(info.file_size for info in infos) > path.stat().st_size:
         raise _corrupt(path, "has members that are larger than itself")
 
 
-def _index(path: Path, archive: ZipFile, infos: list[ZipInfo]) -> Mapping[str, Any]:
+def _index(path: Path, archive: ZipFile, infos: list[ZipInfo]) -> Mapping[str, Facts]:
+    """Return size and sha256 of every other member; they are what is there, and of those sizes."""
     if infos[0].file_size > MOST_INDEX:
         raise _corrupt(path, f"has an {INDEX} of {infos[0].file_size} bytes")
     try:
-        said = json.loads(archive.read(infos[0]))
-        if said["format"] != FORMAT:
+        index = bounded_json.load(archive.read(infos[0]).decode())
+        if not isinstance(index, dict) or "format" not in index:
+            raise ValueError(f"it must have the key format; got {shown(index)}")
+        if type(index["format"]) is not int or index["format"] != FORMAT:
             raise StoreError(
-                f"{path}: the format must be {FORMAT}. Got {said['format']!r} instead: another"
-                " version of benchnav made it."
+                f"{path}: the format must be {FORMAT}. Got {shown(index['format'])!r} instead:"
+                " another version of benchnav made it."
             )
-        files: Mapping[str, Any] = said["files"]
-        whole = set(files) == {info.filename for info in infos[1:]}
-        whole &= all(files[info.filename]["bytes"] == info.file_size for info in infos[1:])
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        raise _corrupt(path, f"has an {INDEX} that cannot be read ({error})") from error
-    if not whole:
+        if set(index) != {"format", "files"}:
+            raise ValueError(f"it must have the keys format and files; got {shown(list(index))}")
+        if not isinstance(index["files"], dict):
+            raise ValueError(f"its files must be an object; got {shown(index['files'])}")
+        files = {name: require_facts(shown(name), f) for name, f in index["files"].items()}
+    except ValueError as error:
+        raise _corrupt(path, f"has an {INDEX} that cannot be read ({short(error)})") from error
+    sizes = {info.filename: info.file_size for info in infos[1:]}
+    if {name: facts["bytes"] for name, facts in files.items()} != sizes:
         raise _corrupt(path, f"has other members, or of other sizes, than its {INDEX} says")
     return files
 
 
-def _extract(
-    path: Path, archive: ZipFile, info: ZipInfo, facts: Mapping[str, Any], folder: Path
-) -> None:
+def _extract(path: Path, archive: ZipFile, info: ZipInfo, facts: Facts, folder: Path) -> None:
     target = folder / info.filename
     target.parent.mkdir(parents=True, exist_ok=True)
     hashed, size = hashlib.sha256(), 0

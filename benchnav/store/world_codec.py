@@ -16,9 +16,12 @@ import numpy as np
 
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
+from benchnav.scenario.document import shown
 
 _DTYPES = ("<f8", "<i8", "|i1", "|b1")
-_PLAIN = (bool, int, float, str)  # JSON has these itself
+_PLAIN = {bool: (bool,), int: (int,), float: (int, float), str: (str,)}  # JSON has these itself
+MOST_TEXT = 64 << 20  # characters of a world; one of a million triangles takes 50 MB
+_MOST_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of values
 
 
 def world_to_json(world: World) -> str:
@@ -32,7 +35,12 @@ def world_from_json(text: str) -> World:
     Raises:
         KeyError, TypeError, ValueError: the text is not an encoded world.
     """
+    if len(text) > MOST_TEXT or text.count("[") + text.count("{") > _MOST_CONTAINERS:
+        raise ValueError(f"a world must have at most {MOST_TEXT} characters; it has {len(text)}")
     world: World = decode(World, json.loads(text))
+    agents = world.agents
+    if any(len(getattr(agents, f.name)) != len(agents) for f in fields(agents)):
+        raise ValueError("a world must have as many of each array of its agents")
     return world
 
 
@@ -74,6 +82,8 @@ def decode(kind: Any, value: Any) -> Any:
     if isinstance(kind, type) and issubclass(kind, Enum):
         return kind(value)
     if kind in _PLAIN:
+        if type(value) not in _PLAIN[kind]:
+            raise TypeError(f"a value must be of type {kind.__name__}; got {shown(value)}")
         return value
     raise TypeError(f"a world must not hold values of type {kind}")
 

@@ -92,6 +92,9 @@ def make_results(episodes):
             "split": e.identity.split, "seed": e.identity.seed, "role": "leader",
             "metric": "success", "value": 0.5, "agents": 2, "defined": 2, "failure": e.failure,
             "horizon": 10.0, "dt": 0.1, "navigator_hash": e.identity.navigator_hash,
+            "rehearsal": e.rehearsals, "rehearsal_decisions": e.rehearsal_decisions,
+            "rehearsal_seconds": e.timings.rehearsal, "missing": "",
+            "remarks": list(e.remarks),
         }
         for e in episodes
     ]  # fmt: skip
@@ -99,8 +102,17 @@ def make_results(episodes):
 
 
 def make_manifest(**changes):
-    suite = {"name": "tiny", "version": 1, "seeds": [0, 20], **changes}
-    cells = ({"key": "cell", "reason": ""}, {"key": "na", "reason": "needs a map"})
+    suite = {
+        "name": "tiny", "version": 1, "split": "test", "seeds": [0, 20], "scenarios": [],
+        "tracks": ["known"], "navigators": [], **changes,
+    }  # fmt: skip
+    cells = tuple(
+        {
+            "key": key, "scenario": "a/b@1", "track": "known", "navigator": navigator,
+            "reason": reason,
+        }
+        for key, navigator, reason in (("cell", "orca", ""), ("na", "grid", "needs a map"))
+    )  # fmt: skip
     return Manifest(suite, cells)
 
 

@@ -1,7 +1,7 @@
 """Which parts a run must have, and which it has."""
 
-from collections import Counter
 from collections.abc import Iterator
+from itertools import islice
 
 from benchnav.plural import counted
 from benchnav.runner.cell import Cell
@@ -9,6 +9,9 @@ from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.restored import Restored
 from benchnav.store.part import Part, parts_of
 from benchnav.store.run_folder import RunFolder
+from benchnav.store.spans import count, twice, union, without
+
+_SHOWN = 10  # seeds of each kind
 
 
 def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[Cell, Part]]:
@@ -34,13 +37,13 @@ def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[C
 
 
 def _check_seeds(parts: list[Part], seeds: range, where: str, report: Report) -> None:
-    held = Counter(seed for part in parts for seed in part.seeds)
-    missing = [seed for seed in seeds if seed not in held]
-    twice = [seed for seed, count in sorted(held.items()) if count > 1]
-    strange = sorted(held.keys() - set(seeds))
+    held = [(part.first, part.stop) for part in parts]
+    whole = [(seeds.start, seeds.stop)]
     for text, found in (
-        ("missing", missing), ("stored twice", twice), ("not of the suite", strange)
+        ("missing", without(whole, held)), ("stored twice", twice(held)),
+        ("not of the suite", without(union(held), whole)),
     ):  # fmt: skip
         if found:
-            few = ", ".join(map(str, found[:10])) + (", …" if len(found) > 10 else "")
-            report.find("coverage", where, f"{counted(len(found), 'seed')} {text}: {few}")
+            some = islice((seed for span in found for seed in range(*span)), _SHOWN)
+            few = ", ".join(map(str, some)) + (", …" if count(found) > _SHOWN else "")
+            report.find("coverage", where, f"{counted(count(found), 'seed')} {text}: {few}")

@@ -1,0 +1,111 @@
+"""The headers of the pages of a Parquet column: what decoding it really takes.
+
+The footer of a file and the header of a page both say how large a page is once it is decompressed.
+The decoder believes the header, so a bound must be taken from there.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+DATA, DICTIONARY, DATA_V2 = 0, 2, 3  # kinds of pages
+PLAIN, PLAIN_DICTIONARY, RLE, RLE_DICTIONARY = 0, 2, 3, 8  # encodings
+_KIND, _RAW, _PACKED = 1, 2, 3  # fields of a header
+_OF_KIND = {DATA: (5, 1, 2), DICTIONARY: (7, 1, 2), DATA_V2: (8, 1, 4)}
+"""Kind of page → field with its own header, and fields of the count and the encoding in that."""
+_DEEPEST = 4  # structures within each other: page, data page, statistics
+_LONGEST = 10  # bytes of an integer
+_MOST_FIELDS = 64  # of a structure; the decoder reads larger names as other ones
+_TRUE, _FALSE, _BYTE, _INT16, _INT32, _INT64, _DOUBLE, _TEXT = range(1, 9)  # kinds of fields
+_STRUCTURE = 12
+_KINDS = {*range(_TRUE, _TEXT + 1), _STRUCTURE}
+
+
+@dataclass(frozen=True)
+class Page:
+    """What the header of a page says, and the decoder believes."""
+
+    kind: int
+    raw: int  # [bytes] once it is decompressed
+    values: int  # how many it holds, nulls included
+    encoding: int
+    body: memoryview  # as it is stored
+
+
+def pages(chunk: memoryview) -> Iterator[Page]:
+    """Yield the pages of a column of one row group, whose bytes are ``chunk``.
+
+    Raises ValueError where these are no pages.
+    """
+    at = 0
+    while at < len(chunk):
+        try:
+            fields, at = _structure(chunk, at, _DEEPEST)
+            kind, raw, packed = fields[_KIND], fields[_RAW], fields[_PACKED]
+            own, count, encoding = _OF_KIND[kind]
+            values, body = fields[own][count], chunk[at : at + packed]
+            page = Page(kind, raw, values, fields[own][encoding], body)
+        except (IndexError, KeyError, TypeError) as error:
+            raise ValueError("the header of a page cannot be read") from error
+        if min(page.raw, packed, page.values) < 0 or at + packed > len(chunk):
+            raise ValueError("the header of a page has sizes that cannot be")
+        at += packed
+        yield page
+
+
+def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], int]:
+    """Return the fields of a structure in Thrift's compact protocol, and where it ends.
+
+    Only structures and integers of 32 bits are kept, as the decoder takes a field of another type
+    for one that it does not know.
+    """
+    if not deep:
+        raise ValueError("the header of a page is nested too deep")
+    fields: dict[int, Any] = {}
+    name = 0
+    while head := data[at]:
+        kind, delta = head & 15, head >> 4
+        at += 1
+        if delta:
+            name += delta
+        else:
+            name, at = _integer(data, at)
+        if not 0 < name < _MOST_FIELDS or kind not in _KINDS:
+            raise ValueError("the header of a page holds what no page has")
+        if kind == _INT32:
+            fields[name], at = _integer(data, at)
+        elif kind == _STRUCTURE:
+            fields[name], at = _structure(data, at, deep - 1)
+        else:
+            at = _after(data, at, kind)
+    return fields, at + 1
+
+
+def _after(data: memoryview, at: int, kind: int) -> int:
+    """Where a value ends that is not kept."""
+    if kind in (_TRUE, _FALSE):
+        return at
+    if kind == _BYTE:
+        return at + 1
+    if kind == _DOUBLE:
+        return at + 8
+    value, at = _unsigned(data, at)
+    return at + value if kind == _TEXT else at
+
+
+def _integer(data: memoryview, at: int) -> tuple[int, int]:
+    value, at = _unsigned(data, at)
+    return (value >> 1) ^ -(value & 1), at
+
+
+def _unsigned(data: memoryview, at: int) -> tuple[int, int]:
+    byte = data[at]
+    if byte < 128:
+        return byte, at + 1
+    value = byte & 127
+    for k in range(1, _LONGEST):
+        byte = data[at + k]
+        value |= (byte & 127) << 7 * k
+        if byte < 128:
+            return value, at + k + 1
+    raise ValueError("the header of a page holds a number that is too long")
