@@ -8,6 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from typing import Any, Literal
 
 from benchnav.errors import CorruptPartError, NoRunError, StoreError
@@ -39,6 +40,8 @@ class Manifest:
     shard: str = ""  # "2/4" where it executes that share alone; its cells then say their seeds
     # label → {hash: of the code that made the episodes, places: module:attribute of its parts}
     sources: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    # labels that ran in the runner's own process, where nothing guards other entries from them
+    unguarded: tuple[str, ...] = ()
     schema: int = SCHEMA
     versions: Mapping[str, str] = field(default_factory=lambda: versions())
     platform: str = field(default_factory=platform.platform)
@@ -119,7 +122,18 @@ def load_manifest(run: RunPath) -> Manifest:
             f" {what or 'It has none'}. 'benchnav run SUITE --out {run}' makes one."
         )
     try:
-        said = checked_json.load(path.read_text(encoding="utf-8"), _SAID)
+        text = path.read_text(encoding="utf-8")
+    except (OSError, ValueError) as error:
+        raise CorruptPartError(
+            f"{path} must be what was written. It cannot be read: {error}."
+        ) from error
+    return parse_manifest(text, path)
+
+
+def parse_manifest(text: str, path: Path) -> Manifest:
+    """The manifest that stands in ``path`` as ``text``. Raises as `load_manifest` does."""
+    try:
+        said = checked_json.load(text, _SAID)
         schema = said["schema"]
         if isinstance(schema, int) and schema > SCHEMA:
             raise StoreError(
@@ -128,13 +142,14 @@ def load_manifest(run: RunPath) -> Manifest:
             )
         manifest = Manifest(
             said["suite"], tuple(said["cells"]), said.get("salt", ""), said.get("limits", {}),
-            said.get("shard", ""), said.get("sources", {}), schema, said["versions"],
+            said.get("shard", ""), said.get("sources", {}), tuple(said.get("unguarded", ())),
+            schema, said["versions"],
             said["platform"], said["created"],
         )  # fmt: skip
         whole = manifest.suite_hash == said["suite_hash"]
         _refuse_strange_cells(manifest.cells)
         _refuse_strange_sources(manifest.sources)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise CorruptPartError(
             f"{path} must be what was written. It cannot be read: {error}."
         ) from error

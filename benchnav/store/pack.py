@@ -9,7 +9,7 @@ import json
 import os
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from zipfile import ZIP_STORED, ZipFile, ZipInfo
 
@@ -67,7 +67,12 @@ def content(run: RunFolder) -> dict[str, dict[str, int | str]]:
 
 def content_digest(run: RunFolder) -> str:
     """sha256 of all that a run holds: the same for a folder and for the pack made of it."""
-    lines = [f"{facts['sha256']} {name}\n" for name, facts in content(run).items()]
+    return digest_of({name: str(facts["sha256"]) for name, facts in content(run).items()})
+
+
+def digest_of(sums: Mapping[str, str]) -> str:
+    """The same of members by name, with the sha256 of each."""
+    lines = [f"{sums[name]} {name}\n" for name in sorted(sums)]
     return hashlib.sha256("".join(lines).encode()).hexdigest()
 
 
@@ -81,6 +86,8 @@ def pack(run: RunFolder, out: Path) -> None:
     if out.exists():
         raise UsageError(f"{out} must be a new file. It is there already.")
     _refuse_whole_paths(run)
+    for part in run.parts():
+        part.check_rows()
     found = content(run)
     index = json.dumps({"format": FORMAT, "files": found}, indent=1, sort_keys=True)
     temporary = out.with_name(f".writing-{out.name}")

@@ -7,8 +7,8 @@ killed run left there.
 
 import hashlib
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,7 @@ from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError
 from benchnav.store import checked_json
 from benchnav.store.episodes import from_table
+from benchnav.store.membership import Membership
 from benchnav.store.results import completed
 
 SEAL = ".seal.json"
@@ -42,6 +43,7 @@ class Part:
     folder: Path
     first: int
     stop: int
+    membership: Membership | None = field(default=None, compare=False, repr=False)
 
     @property
     def stem(self) -> str:
@@ -85,6 +87,13 @@ class Part:
         if REHEARSALS_FILE in self._seal():
             self._check_size(REHEARSALS_FILE, self._sealed(REHEARSALS_FILE))
 
+    def check_rows(self) -> None:
+        """Raise CorruptPartError where a file is not what was sealed, or a row is not of the part."""
+        self.results()
+        self._table(EPISODES_FILE)
+        if REHEARSALS_FILE in self._seal():
+            self._table(REHEARSALS_FILE)
+
     def _episodes(self, suffix: str) -> Iterator[Episode]:
         table = self._table(suffix)
         try:
@@ -95,15 +104,16 @@ class Part:
     def _table(self, suffix: str) -> pa.Table:
         path, sealed = self.path(suffix), self._sealed(suffix)
         self._check_size(suffix, sealed)
-        with path.open("rb") as file:
-            found = hashlib.file_digest(file, "sha256").hexdigest()
+        content = path.read_bytes()  # what is decoded are the bytes that are hashed
+        found = hashlib.sha256(content).hexdigest()
         if found != sealed["sha256"]:
             raise self._corrupt(
                 path, f"has sha256 {found[:12]}…, sealed was {sealed['sha256'][:12]}…"
             )
         try:
-            self._refuse_bomb(path)
-            table = pq.read_table(path, partitioning=None)
+            self._refuse_bomb(content, path)
+            table = pq.read_table(pa.BufferReader(content), partitioning=None)
+            self._refuse_foreign(suffix, table)
             keys = [
                 (key, "ascending") for key in ("seed", "rehearsal") if key in table.column_names
             ]
@@ -111,9 +121,18 @@ class Part:
         except (OSError, pa.ArrowException) as error:
             raise self._corrupt(path, f"is no Parquet file ({error})") from error
 
-    def _refuse_bomb(self, path: Path) -> None:
+    def _refuse_foreign(self, suffix: str, table: pa.Table) -> None:
+        """Raise CorruptPartError where a row is of another cell, or of a seed that is not here."""
+        if self.membership is None:
+            return
+        try:
+            self.membership.require_rows(table, self.seeds, scored=suffix != REHEARSALS_FILE)
+        except ValueError as error:
+            raise self._corrupt(self.path(suffix), str(error)) from error
+
+    def _refuse_bomb(self, content: bytes, path: Path) -> None:
         """A small file may decompress to more than memory holds."""
-        found = pq.read_metadata(path)
+        found = pq.read_metadata(pa.BufferReader(content))
         for group in map(found.row_group, range(found.num_row_groups)):
             columns = [group.column(c) for c in range(group.num_columns)]
             size = sum(max(c.total_uncompressed_size, 8 * c.num_values) for c in columns)
@@ -130,12 +149,20 @@ class Part:
     def _seal(self) -> dict[str, Any]:
         seal = self.path(SEAL)
         try:
-            said = checked_json.load(seal.read_text(encoding="utf-8"), (*FILES, "episodes"))
+            text = seal.read_text(encoding="utf-8")
+            self._refuse_another_seal(text)
+            said = checked_json.load(text, (*FILES, "episodes"))
         except (OSError, ValueError, RecursionError) as error:
             raise self._corrupt(seal, f"cannot be read ({error})") from error
         if said.get("episodes") != len(self.seeds):
             raise self._corrupt(seal, f"is of {said.get('episodes')} episodes")
         return said
+
+    def _refuse_another_seal(self, text: str) -> None:
+        """Raise ValueError where the part was exchanged since its run was pinned."""
+        pinned = self.membership.seals if self.membership else {}
+        if pinned and pinned.get(self.path(SEAL).name) != hashlib.sha256(text.encode()).hexdigest():
+            raise ValueError("it was changed while the run was read")
 
     def _check_size(self, suffix: str, sealed: dict[str, Any]) -> None:
         path = self.path(suffix)
@@ -157,6 +184,11 @@ class Part:
 
 def parts_of(folder: Path) -> list[Part]:
     """The sealed parts in the folder of one cell, by seed."""
-    stems = (_STEM.fullmatch(seal.name.removesuffix(SEAL)) for seal in folder.glob(f"*{SEAL}"))
+    return named_parts(folder, (seal.name for seal in folder.glob(f"*{SEAL}")))
+
+
+def named_parts(folder: Path, seals: Iterable[str]) -> list[Part]:
+    """The parts that have these seals, by seed."""
+    stems = (_STEM.fullmatch(name.removesuffix(SEAL)) for name in seals)
     found = sorted(Part(folder, int(stem[1]), int(stem[2])) for stem in stems if stem)
     return [part for part in found if 0 < len(part.seeds) <= MOST_SEEDS]

@@ -25,7 +25,7 @@ def packed(tools, run, tmp_path):
     """A run of one part and one scenario's file, and its pack."""
     source = tmp_path / "a.map"
     source.write_bytes(b"map")
-    scenarios = [{"scenario": "a/b@1", "files": {"a.map": sha256_of(source)}}]
+    scenarios = [{"scenario": "a/b@1", "hash": "f" * 64, "files": {"a.map": sha256_of(source)}}]
     folder = RunFolder.start(run, tools.manifest(scenarios=scenarios))
     keep_files(run, {"a.map": source})
     episodes = [tools.episode(np.random.default_rng(0), seed) for seed in range(3)]
@@ -64,7 +64,7 @@ def test_a_file_that_lacks_or_has_a_whole_path_is_refused(packed, run, tools, tm
         kept.unlink()
     with pytest.raises(StoreError, match="must be a file of a run"):
         pack(RunFolder.open(run), tmp_path / "other.bnrun")
-    scenarios = [{"scenario": "a/b@1", "files": {"/etc/passwd": "0" * 64}}]
+    scenarios = [{"scenario": "a/b@1", "hash": "f" * 64, "files": {"/etc/passwd": "0" * 64}}]
     folder = RunFolder.start(tmp_path / "whole", tools.manifest(scenarios=scenarios))
     with pytest.raises(UsageError, match="must name its files relative"):
         pack(folder, tmp_path / "other.bnrun")

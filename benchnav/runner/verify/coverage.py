@@ -7,19 +7,20 @@ from benchnav.plural import counted
 from benchnav.runner.cell import Cell
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.restored import Restored
-from benchnav.store.part import Part, parts_of
+from benchnav.store.part import Part
 from benchnav.store.run_folder import RunFolder
 
 
 def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[Cell, Part]]:
     """Every part with the cell that it is of; the report says what lacks or is too much."""
-    reasons = {str(c["key"]): str(c.get("reason", "")) for c in run.manifest.cells}
+    stored = {str(c["key"]): c for c in run.manifest.cells}
     for cell in suite.cells:
         where = f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
-        parts = parts_of(run.cell(cell.key))
-        if reasons.get(cell.key):
+        parts = run.parts_in(stored.get(cell.key, {"key": cell.key}))
+        reason = str(stored.get(cell.key, {}).get("reason", ""))
+        if reason:
             if parts:
-                report.find("coverage", where, f"is n/a ({reasons[cell.key]}), and has episodes")
+                report.find("coverage", where, f"is n/a ({reason}), and has episodes")
             report.counts["n/a cells"] += 1
             continue
         _check_seeds(parts, suite.seeds, where, report)
