@@ -14,6 +14,7 @@ from benchnav.store.manifest import Manifest
 from benchnav.store.navigator_hash import hash_of_entry
 
 _HASHED = 3  # schema from which on every row holds the hash of its navigator
+_NUMBERS = ("seed", "rehearsal", "rehearsals")
 _SHOWN = 80  # characters of a value in a message
 
 
@@ -38,15 +39,12 @@ class Membership:
         else:
             allowed |= {"rehearsal": range(1, self.granted + 1)}
         for name, values in allowed.items():
-            if name in table.column_names:
-                _require(table, name, values)
+            _require(table, name, values)
         if scored and "metric" not in table.column_names:
             _require_each_once(table, seeds)
 
 
-def membership(
-    manifest: Manifest, cell: Mapping[str, Any], seals: Mapping[str, str]
-) -> Membership:
+def membership(manifest: Manifest, cell: Mapping[str, Any], seals: Mapping[str, str]) -> Membership:
     """Return what the rows of a cell must say. Raises ValueError where the manifest is not whole.
 
     ``seals`` maps the names of the seals of its parts to their sha256; empty: any may stand.
@@ -56,7 +54,7 @@ def membership(
     entry = _one(suite.get("navigators", ()), "label", label)
     scenario = _one(suite.get("scenarios", ()), "scenario", identity)
     own = hash_of_entry(entry)
-    values = {
+    values: dict[str, Container[Any]] = {
         "navigator": {label},
         "scenario": {identity},
         "scenario_hash": {scenario.get("hash")},
@@ -71,14 +69,20 @@ def membership(
 def _one(entries: Any, key: str, name: str) -> Mapping[str, Any]:
     found = [entry for entry in entries if entry.get(key) == name]
     if len(found) != 1:
-        raise ValueError(f"the suite must name the {key} {name[:_SHOWN]!r} once, not {len(found)} ×")
+        raise ValueError(
+            f"the suite must name the {key} {name[:_SHOWN]!r} once, not {len(found)} ×"
+        )
     entry: Mapping[str, Any] = found[0]
     return entry
 
 
 def _require(table: pa.Table, name: str, allowed: Container[Any]) -> None:
+    missing = 0 if name in _NUMBERS else ""  # stands for null, and for columns of later versions
+    if name not in table.column_names:
+        if missing not in allowed:
+            raise ValueError(f"must have a column {name}")
+        return
     column = table.column(name)
-    missing = 0 if pa.types.is_integer(column.type) else ""  # stands for null in older parts
     for value in column.unique().to_pylist():
         if (missing if value is None else value) not in allowed:
             row = column.to_pylist().index(value)
@@ -92,8 +96,10 @@ def _require_each_once(table: pa.Table, seeds: range) -> None:
     held = table.column("seed").to_pylist()
     for row, seed in enumerate(sorted(held)):
         if seed != seeds.start + row:
-            raise ValueError(f"must hold each of its seeds once; seed {seed} is in row"
-                             f" {held.index(seed)} and another is missing")
+            raise ValueError(
+                f"must hold each of its seeds once; seed {seed} is in row"
+                f" {held.index(seed)} and another is missing"
+            )
     if len(held) != len(seeds):
         raise ValueError(f"must hold {len(seeds)} episodes; it holds {len(held)}")
 

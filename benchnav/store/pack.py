@@ -15,7 +15,7 @@ from zipfile import ZIP_STORED, ZipFile, ZipInfo
 
 from benchnav.errors import StoreError, UsageError
 from benchnav.store.manifest import MANIFEST
-from benchnav.store.part import FILES, SEAL
+from benchnav.store.part import FILES, SEAL, parts_of
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.scenario_files import FOLDER, sha256_of
 
@@ -36,7 +36,8 @@ def members(run: RunFolder) -> Iterator[str]:
     yield MANIFEST
     named = suite_files(run)
     yield from sorted(f"{FOLDER}/{sha}" for sha in named)
-    for part in run.parts():
+    cells = [cell["key"] for cell in run.manifest.cells if not cell["reason"]]
+    for part in (part for key in cells for part in parts_of(run.cell(key))):
         for suffix in (*FILES, SEAL):
             if part.path(suffix).exists():
                 yield f"parts/{part.folder.name}/{part.stem}{suffix}"

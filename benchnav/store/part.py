@@ -17,7 +17,7 @@ import pyarrow.compute as pc
 import pyarrow.parquet as pq
 
 from benchnav.episode.episode import Episode
-from benchnav.errors import CorruptPartError
+from benchnav.errors import CorruptPartError, ForeignRowError
 from benchnav.store import checked_json
 from benchnav.store.episodes import from_table
 from benchnav.store.membership import Membership
@@ -88,7 +88,7 @@ class Part:
             self._check_size(REHEARSALS_FILE, self._sealed(REHEARSALS_FILE))
 
     def check_rows(self) -> None:
-        """Raise CorruptPartError where a file is not what was sealed, or a row is not of the part."""
+        """Raise CorruptPartError where a file is not as sealed, or a row is not of the part."""
         self.results()
         self._table(EPISODES_FILE)
         if REHEARSALS_FILE in self._seal():
@@ -128,7 +128,7 @@ class Part:
         try:
             self.membership.require_rows(table, self.seeds, scored=suffix != REHEARSALS_FILE)
         except ValueError as error:
-            raise self._corrupt(self.path(suffix), str(error)) from error
+            raise ForeignRowError(str(self._corrupt(self.path(suffix), str(error)))) from error
 
     def _refuse_bomb(self, content: bytes, path: Path) -> None:
         """A small file may decompress to more than memory holds."""

@@ -3,11 +3,12 @@
 from collections import Counter
 from collections.abc import Iterator
 
+from benchnav.errors import CorruptPartError
 from benchnav.plural import counted
 from benchnav.runner.cell import Cell
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.restored import Restored
-from benchnav.store.part import Part
+from benchnav.store.part import Part, parts_of
 from benchnav.store.run_folder import RunFolder
 
 
@@ -16,12 +17,17 @@ def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[C
     stored = {str(c["key"]): c for c in run.manifest.cells}
     for cell in suite.cells:
         where = f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
-        parts = run.parts_in(stored.get(cell.key, {"key": cell.key}))
-        reason = str(stored.get(cell.key, {}).get("reason", ""))
+        said = stored.get(cell.key, {"key": cell.key})
+        reason = str(said.get("reason", ""))
         if reason:
-            if parts:
+            if parts_of(run.cell(cell.key)):
                 report.find("coverage", where, f"is n/a ({reason}), and has episodes")
             report.counts["n/a cells"] += 1
+            continue
+        try:
+            parts = run.parts_in(said)
+        except CorruptPartError as error:
+            report.find("manifest", where, str(error))
             continue
         _check_seeds(parts, suite.seeds, where, report)
         for part in parts:

@@ -7,6 +7,7 @@ from itertools import zip_longest
 from benchnav.plural import counted
 
 KINDS = {  # what a finding is about → what must hold there
+    "changed": "nothing writes the run while it is verified",
     "manifest": "the suite, its cells and hashes fit each other",
     "scenario": "a scenario is what its hash says, and its files are there",
     "coverage": "every cell has every seed once, and nothing else is there",
@@ -45,6 +46,8 @@ class Report:
     unknown: set[str] = field(default_factory=set)  # metrics that are not installed here
     versions: list[str] = field(default_factory=list)  # of packages that differ from the run's
     sources: list[str] = field(default_factory=list)  # a sentence for each navigator
+    caveats: list[str] = field(default_factory=list)  # where the run is not what is installed
+    content: str = ""  # digest of what was verified
 
     @property
     def clean(self) -> bool:

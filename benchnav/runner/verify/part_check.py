@@ -9,7 +9,7 @@ from typing import Any
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.errors import BenchnavError, CorruptPartError
+from benchnav.errors import BenchnavError, CorruptPartError, ForeignRowError
 from benchnav.runner.cell import Cell
 from benchnav.runner.generators import phases
 from benchnav.runner.rollout import Assignment, batches
@@ -67,7 +67,8 @@ def check_part(task: PartCheck) -> tuple[Report, list[Pair], list[Pair]]:
         rehearsed = list(task.part.rehearsals())
         rows = task.part.results().to_pylist()
     except CorruptPartError as error:
-        report.find("seal", task.shown, str(error).split(" Delete ")[0])
+        kind = "identity" if isinstance(error, ForeignRowError) else "seal"
+        report.find(kind, task.shown, str(error).split(" Delete ")[0])
         return report, [], []
     seeds = [e.identity.seed for e in scored]
     if seeds != list(task.part.seeds):

@@ -11,6 +11,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from benchnav.errors import BenchnavError, StoreError
+from benchnav.runner.caveat import caveats_of
 from benchnav.runner.progress import Progress
 from benchnav.runner.verify.coverage import covered
 from benchnav.runner.verify.examine import Examination, examine
@@ -22,6 +23,7 @@ from benchnav.runner.verify.rerun import check_reasons
 from benchnav.runner.verify.restored import restore
 from benchnav.runner.verify.sampled import sampled
 from benchnav.store.manifest import versions
+from benchnav.store.pinned import changed_since, pinned, pinned_digest
 from benchnav.store.run_folder import RunFolder
 from benchnav.threads import core_count
 
@@ -47,7 +49,7 @@ def verify(
     """Re-simulate a run and check everything in it.
 
     Args:
-        run: the run; it is only read.
+        run: the run; it is only read, as it is when this begins.
         wanted: what to do beyond that.
         workers: processes; None: as many as there are cores; 0: in this process.
         progress: is told of every finished episode.
@@ -64,8 +66,10 @@ def verify(
     if wanted.referee:
         require_referee()
     told = progress if progress is not None else Progress()
-    report = Report()
+    run = pinned(run)
+    report = Report(content=pinned_digest(run))
     _note_versions(run, report)
+    report.caveats += [caveat.text for caveat in caveats_of(run.manifest)]
     with TemporaryDirectory(prefix="benchnav-verify-") as root:
         tasks = _tasks(run, Path(root), wanted, report)
         episodes = sum(len(task.check.part.seeds) for task in tasks)
@@ -76,6 +80,14 @@ def verify(
                 told.advance(len(task.check.part.seeds))
         finally:
             told.end()
+    changed = changed_since(run)
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        report.find(
+            "changed", str(run.shown),
+            f"{changed[0]}{more} changed while the run was verified: verify it again once nothing"
+            " writes it",
+        )  # fmt: skip
     report.sort()
     return report
 
