@@ -76,7 +76,7 @@ def _of_scenario(identity: str, found: str) -> Iterator[Caveat]:
 
 
 def _of_navigator(entry: Mapping[str, Any]) -> Iterator[Caveat]:
-    label, kind = str(entry["label"]), str(entry["says"]["type"])
+    label, kind = str(entry["label"]), str(entry["says"].get("type"))
     if label in NAVIGATORS.names() and kind != label:
         yield Caveat(
             f"The label {_short(label)} stands for the navigator {_short(kind)}, not for the one of"

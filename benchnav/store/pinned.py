@@ -25,11 +25,13 @@ def pinned(run: RunFolder) -> RunFolder:
     path = run.path / MANIFEST
     try:
         content = path.read_bytes()
-        manifest = parse_manifest(content.decode("utf-8"), path)
-    except (OSError, ValueError) as error:
-        raise CorruptPartError(f"{path} must stay readable. It does not: {error}.") from error
-    run = replace(run, manifest=manifest)
-    return replace(run, sums={**_sums(run), MANIFEST: hashlib.sha256(content).hexdigest()})
+        run = replace(run, manifest=parse_manifest(content.decode("utf-8"), path))
+        sums = {**_sums(run), MANIFEST: hashlib.sha256(content).hexdigest()}
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise CorruptPartError(
+            f"{path} must be what was written. It cannot be read: {error}."
+        ) from error
+    return replace(run, sums=sums)
 
 
 def pinned_digest(run: RunFolder) -> str:

@@ -44,8 +44,10 @@ class Report:
     counts: Counter[str] = field(default_factory=Counter)
     notes: Counter[str] = field(default_factory=Counter)  # what was not checked, and how often
     unknown: set[str] = field(default_factory=set)  # metrics that are not installed here
+    unmeasured: set[str] = field(default_factory=set)  # metrics that are here, and not in a part
     versions: list[str] = field(default_factory=list)  # of packages that differ from the run's
     sources: list[str] = field(default_factory=list)  # a sentence for each navigator
+    claims: str = ""  # what the manifest says that nothing follows from
     caveats: list[str] = field(default_factory=list)  # where the run is not what is installed
     content: str = ""  # digest of what was verified
 
@@ -64,6 +66,7 @@ class Report:
         self.counts += other.counts
         self.notes += other.notes
         self.unknown |= other.unknown
+        self.unmeasured |= other.unmeasured
 
     def sort(self) -> None:
         """Findings by kind, causes before what follows from them."""
@@ -110,9 +113,14 @@ class Report:
             f"timings, which nobody can verify: {c['values of timings']} values follow from the"
             " stored seconds, and that is all there is to say"
         ]
+        if self.claims:
+            lines.append(f"what its author says of the run: {self.claims}")
         if not c["rerun"]:
             lines.append("whether the navigators gave these commands (--rerun asks them)")
         if c["n/a cells"] and not c["rerun n/a"]:
             lines.append(f"why cells are n/a ({c['n/a cells']}), which navigators say (--rerun)")
+        if self.unmeasured:
+            names = ", ".join(sorted(self.unmeasured))
+            lines.append(f"metrics that are installed here and not measured in the run: {names}")
         lines += [f"{n} × {text}" for text, n in sorted(self.notes.items())]
         return lines

@@ -10,6 +10,7 @@ from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import BenchnavError, CorruptPartError, ForeignRowError
+from benchnav.plugins import METRICS
 from benchnav.runner.cell import Cell
 from benchnav.runner.generators import phases
 from benchnav.runner.rollout import Assignment, batches
@@ -178,7 +179,10 @@ def _check_values(
     by_seed: dict[int, list[dict[str, Any]]] = {}
     for row in rows:
         by_seed.setdefault(row["seed"], []).append(row)
-    metrics = expected_metrics({row["metric"] for row in rows}, task.version)
+    stored = {row["metric"] for row in rows}
+    metrics = expected_metrics(stored, task.version)
+    if pairs:
+        report.unmeasured |= set(METRICS.names()) - stored
     for pair in pairs:
         seed = pair.stored.identity.seed
         again = replace(pair.again, identity=task.assignment.identity(seed))

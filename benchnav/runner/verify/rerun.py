@@ -131,6 +131,10 @@ def check_reasons(run: RunFolder, cells: Sequence[Cell], report: Report) -> None
             where = f"{cell.scenario.identity}, {label}"
             says = "uses" if entry.uses_map else "does not use"
             report.find("rerun", where, f"the navigator says that it {says} the map")
+        if entry.training != cell.entry.training:
+            where = f"{cell.scenario.identity}, {label}"
+            what = f"training is {cell.entry.training}, but the navigator says {entry.training}"
+            report.find("rerun", where, what)
         right = replace(cell, entry=entry).reason
         report.counts["rerun n/a"] += bool(stored)
         if right != stored:

@@ -12,6 +12,7 @@ from tempfile import TemporaryDirectory
 
 from benchnav.errors import BenchnavError, StoreError
 from benchnav.runner.caveat import caveats_of
+from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
 from benchnav.runner.verify.coverage import covered
 from benchnav.runner.verify.examine import Examination, examine
@@ -22,7 +23,7 @@ from benchnav.runner.verify.referee import require_referee
 from benchnav.runner.verify.rerun import check_reasons
 from benchnav.runner.verify.restored import restore
 from benchnav.runner.verify.sampled import sampled
-from benchnav.store.manifest import versions
+from benchnav.store.manifest import Manifest, versions
 from benchnav.store.pinned import changed_since, pinned, pinned_digest
 from benchnav.store.run_folder import RunFolder
 from benchnav.threads import core_count
@@ -69,7 +70,6 @@ def verify(
     run = pinned(run)
     report = Report(content=pinned_digest(run))
     _note_versions(run, report)
-    report.caveats += [caveat.text for caveat in caveats_of(run.manifest)]
     with TemporaryDirectory(prefix="benchnav-verify-") as root:
         tasks = _tasks(run, Path(root), wanted, report)
         episodes = sum(len(task.check.part.seeds) for task in tasks)
@@ -96,6 +96,8 @@ def _tasks(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[E
     suite = restore(run, root, report)
     if suite is None:
         return []
+    report.caveats += [caveat.text for caveat in caveats_of(run.manifest)]
+    report.claims = _claims(run.manifest) if report.clean else ""
     entries = {cell.entry.label: cell.entry for cell in suite.cells}
     report.sources += [compare_source(e, run.packed is not None) for e in entries.values()]
     if wanted.rerun:
@@ -112,6 +114,18 @@ def _tasks(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[E
         Examination(check, tuple(seeds), wanted.referee, wanted.rerun, packed)
         for check, seeds in zip(checks, chosen, strict=True)
     ]
+
+
+def _claims(manifest: Manifest) -> str:
+    """What stands in the manifest that nothing else of the run follows from."""
+    suite = manifest.suite
+    shard = f", shard {manifest.shard}" if manifest.shard else ""
+    return (
+        f"suite {suite['name']} at version {suite['version']}{shard}, limits"
+        f" {Limits.of(manifest.limits)}, titles and descriptions of scenarios, made on"
+        f" {manifest.created} by benchnav {manifest.versions.get('benchnav')} on"
+        f" {manifest.platform}"
+    )
 
 
 def _note_versions(run: RunFolder, report: Report) -> None:
