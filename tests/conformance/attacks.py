@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import pyarrow as pa
@@ -22,16 +23,18 @@ from benchnav.metrics.measure import all_metrics
 from benchnav.runner.measured import measured
 from benchnav.runner.run import run_suite
 from benchnav.runner.suite import load_suite
+from benchnav.runner.verify.examine import examine
 from benchnav.runner.verify.finding import Report
-from benchnav.runner.verify.verify import Wanted, verify
+from benchnav.runner.verify.verify import Wanted, tasks_of
 from benchnav.store import checked_json
 from benchnav.store.digest import digest
 from benchnav.store.episodes import EPISODES, from_table, to_table
 from benchnav.store.manifest import MANIFEST
 from benchnav.store.part import EPISODES_FILE, REHEARSALS_FILE, RESULTS_FILE, SEAL
+from benchnav.store.pinned import pinned
 from benchnav.store.results import RESULTS
 from benchnav.store.run_folder import RunFolder
-from tests.conformance.refit import refit_manifest, refit_seal
+from tests.conformance.refit import refit_manifest, refit_seal, write_manifest
 
 SCENARIO = """
 name: attacked/{name}
@@ -84,6 +87,55 @@ ADDED = {
     "suite.navigators[].training": {"decisions": 5, "seconds": 1.0},
 }  # fmt: skip
 """Keys of a manifest that an honest run need not have, and what an attacker may add."""
+
+BY_DESIGN = {
+    "episodes.decision_seconds, episodes.planning_seconds, episodes.latency_seconds, *.batch": (
+        "timings of the author's machine; that values follow from them is checked"
+    ),
+    "*.memory_bytes": "memory of the author's machine; likewise",
+    "episodes.traceback, rehearsals.traceback": "its lines are those of the author's libraries",
+    "manifest.suite.name, manifest.suite.version": (
+        "what the author calls the suite; a name that ships is compared with the installed suite"
+    ),
+    "*.says.title, *.says.description": "texts for people; nothing follows from them",
+    "manifest.suite.navigators[].says.*": (
+        "a parameter that changes no command there; any other is found by --rerun, or named as a"
+        " navigator that was not run again"
+    ),
+    "manifest.suite.navigators[].source, manifest.suite.navigators[].fingerprint,"
+    " manifest.suite.navigators[].mode": (
+        "--rerun names the navigator as another one than the installed, and does not run it"
+    ),
+    "manifest.suite.navigators[].leader, manifest.suite.navigators[].leader.*": (
+        "likewise; its label and its use of the map change nothing"
+    ),
+    "manifest.sources, manifest.sources.*": "verification names a source that is not installed",
+    "manifest.limits, manifest.limits.*": (
+        "limits depend on the author's machine; verification shows them"
+    ),
+    "manifest.shard": "a key that is left out stands for no shard; another value is found",
+    "manifest.unguarded": (
+        "an author may leave out that a navigator ran unguarded; only --rerun tells what it does"
+    ),
+    "manifest.versions.*, manifest.platform, manifest.created": (
+        "the author's machine and time; verification shows them"
+    ),
+}
+"""What verification does not find → why. docs/verification.md holds it word for word."""
+
+
+def by_design() -> str:
+    """Return the list as it stands in the documents."""
+    lines = []
+    for names, reason in BY_DESIGN.items():
+        lines.append(f"- {', '.join(f'`{name}`' for name in names.split(', '))}: {reason}.")
+    return "\n".join(lines)
+
+
+def is_by_design(name: str) -> list[str]:
+    """Return the patterns of `BY_DESIGN` that cover what was not found."""
+    patterns = [pattern for names in BY_DESIGN for pattern in names.split(", ")]
+    return [p for p in patterns if re.fullmatch(re.escape(p).replace(r"\*", ".*"), name)]
 
 
 @dataclass
@@ -142,11 +194,19 @@ def _answer(run: Path, honest: dict[bool, list[str]]) -> str:
 
 
 def _noticed(run: Path, again: bool) -> list[str] | None:
-    """What stands beside the verdict; None where the run is not verified, or not read at all."""
-    try:
-        report: Report = verify(RunFolder.open(run), Wanted(0, rerun=again), workers=0)
-    except BenchnavError:
-        return None
+    """What stands beside the verdict; None where the run is not verified, or not read at all.
+
+    As `verify` does it, part by part, but no further than to the first finding.
+    """
+    report, wanted = Report(), Wanted(0, rerun=again)
+    with TemporaryDirectory() as root:
+        try:
+            tasks = tasks_of(pinned(RunFolder.open(run)), Path(root), wanted, report)
+            for task in tasks:
+                if report.clean:
+                    report.add(examine(task))
+        except BenchnavError:
+            return None
     lines = [*report.checked, *report.unchecked, *report.sources, *report.versions]
     return [*lines, *report.caveats] if report.clean else None
 
@@ -337,10 +397,12 @@ def _change_key(run: Path, path: tuple[Any, ...], name: str, variant: int) -> bo
         place[path[-1]] = options[variant - 1]
     wanted = json.loads(json.dumps(place.get(path[-1])))
     refit_manifest(run, content, attacked=name)
+    place = content
     for key in path[:-1]:
-        content = content.get(key, {}) if isinstance(key, str) else content[key]
-    if content.get(path[-1]) != wanted:  # refitting made it what it was
-        content[path[-1]] = wanted
+        place = place.get(key, {}) if isinstance(key, str) else place[key]
+    if place.get(path[-1]) != wanted:  # refitting made it what it was
+        place[path[-1]] = wanted
+        write_manifest(run, content)
     return True
 
 

@@ -34,7 +34,7 @@ def refit_seal(stem: str) -> None:
 def refit_manifest(run: Path, content: dict, attacked: str) -> None:
     """Write a changed manifest, with the hashes, cells, folders and rows that follow from it."""
     before = RunFolder.open(run)
-    _write(run, content)
+    write_manifest(run, content)
     if not attacked.startswith(("suite.", "sources")):
         return
     try:
@@ -49,7 +49,7 @@ def refit_manifest(run: Path, content: dict, attacked: str) -> None:
             "key": cell.key, "scenario": cell.scenario.identity, "track": cell.track,
             "navigator": cell.entry.label,
         }  # fmt: skip
-    _write(run, content)
+    write_manifest(run, content)
     after = RunFolder.open(run)
     for old, cell in zip(folders, cells, strict=True):
         new = after.cell(cell.key)
@@ -58,7 +58,8 @@ def refit_manifest(run: Path, content: dict, attacked: str) -> None:
             _relabel(new, cell)
 
 
-def _write(run: Path, content: dict) -> None:
+def write_manifest(run: Path, content: dict) -> None:
+    """Write a manifest with checksums that fit."""
     content.pop("sha256", None)
     text = json.dumps(content.get("suite"), sort_keys=True, separators=(",", ":"))
     content["suite_hash"] = hashlib.sha256(text.encode()).hexdigest()
@@ -77,7 +78,7 @@ def _cells(run: Path, content: dict) -> list[Cell]:
             said["hash"] = finding.what.split("has the hash ")[1].split(",")[0]
         if restored is not None and not wrong:
             return list(restored.cells)
-        _write(run, content)
+        write_manifest(run, content)
     raise ValueError("the suite cannot be restored")
 
 

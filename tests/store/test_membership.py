@@ -24,7 +24,9 @@ OWN = (
     "source_hash", "rehearsal",
 )  # fmt: skip
 READERS = {
-    EPISODES_FILE: read_episodes, REHEARSALS_FILE: read_rehearsals, RESULTS_FILE: read_results
+    EPISODES_FILE: read_episodes,
+    REHEARSALS_FILE: read_rehearsals,
+    RESULTS_FILE: read_results,
 }
 
 

@@ -59,19 +59,13 @@ def verify(
         StoreError: an older benchnav made the run, which did not keep what this needs.
         MissingExtraError: the referee is wanted, and python-fcl or trimesh is not installed.
     """
-    if run.manifest.schema < VERIFIABLE:
-        raise StoreError(
-            f"A run must be of schema {VERIFIABLE} or later to be verified. {run.shown} is of"
-            f" schema {run.manifest.schema}: benchnav kept too little then. Run the suite again."
-        )
     if wanted.referee:
         require_referee()
     told = progress if progress is not None else Progress()
     run = pinned(run)
     report = Report(content=pinned_digest(run))
-    _note_versions(run, report)
     with TemporaryDirectory(prefix="benchnav-verify-") as root:
-        tasks = _tasks(run, Path(root), wanted, report)
+        tasks = tasks_of(run, Path(root), wanted, report)
         episodes = sum(len(task.check.part.seeds) for task in tasks)
         told.begin(episodes, 0)
         try:
@@ -92,7 +86,14 @@ def verify(
     return report
 
 
-def _tasks(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[Examination]:
+def tasks_of(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[Examination]:
+    """Return what is to be examined of a pinned run; what its manifest shows goes to the report."""
+    if run.manifest.schema < VERIFIABLE:
+        raise StoreError(
+            f"A run must be of schema {VERIFIABLE} or later to be verified. {run.shown} is of"
+            f" schema {run.manifest.schema}: benchnav kept too little then. Run the suite again."
+        )
+    _note_versions(run, report)
     suite = restore(run, root, report)
     if suite is None:
         return []
