@@ -68,7 +68,6 @@ def test_what_ran_unguarded_is_named_and_never_marked(call, runs):
 
 
 def test_what_is_exchanged_while_a_run_is_verified_gets_no_receipt(call, runs):
-    (stem,) = Forger(runs[0]).stems()
     honest = {
         path: path.read_bytes() for path in (runs[0] / "parts").rglob("*.*") if path.is_file()
     }
