@@ -19,6 +19,7 @@ BenchnavError
     ├── NoRunError           there is no run where one was named (exit status 2)
     ├── RunConflictError     the folder holds another suite's run, or another process writes it
     └── CorruptPartError     a part is cut short, changed or missing
+        └── ForeignRowError  a part holds rows of another cell or seed
 
 Grammar of every message: what must be what; what came instead; the nearest right
 thing; where.
@@ -105,6 +106,10 @@ class RunConflictError(StoreError):
 
 class CorruptPartError(StoreError):
     """A part of a run cannot be trusted."""
+
+
+class ForeignRowError(CorruptPartError):
+    """A part holds rows of another cell, or of a seed that is not its own."""
 
 
 def named(name: str, text: str) -> BenchnavError:

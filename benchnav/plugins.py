@@ -11,8 +11,9 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import cache
 from importlib import import_module
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import Distribution, EntryPoint, entry_points
 from typing import Any, TypeVar
 
 from benchnav.errors import (
@@ -201,9 +202,14 @@ def _said(error: BaseException) -> str:
 
 
 def _source(entry: EntryPoint) -> Source:
-    dist = entry.dist
-    owner = f"{dist.name} {dist.version}" if dist is not None else "an unknown distribution"
+    owner = _owner(entry.dist) if entry.dist is not None else "an unknown distribution"
     return Source(entry.name, owner, entry.value)
+
+
+@cache
+def _owner(dist: Distribution) -> str:
+    """Name and version; both parse the metadata anew, which takes a millisecond."""
+    return f"{dist.name} {dist.version}"
 
 
 _CLASSES = "benchnav.navigation.contract"

@@ -2,15 +2,18 @@
 
 import re
 from collections.abc import Collection, Iterator, Sequence
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from benchnav.errors import StoreError, UsageError, did_you_mean
+from benchnav.leaderboard.caveats import metric_caveats, table_caveats
 from benchnav.leaderboard.columns import choose, choose_columns
 from benchnav.leaderboard.curve import HORIZON, Point, Setting, horizon_curves, parameter_curves
 from benchnav.leaderboard.duel import Duel, duel
 from benchnav.leaderboard.label import require_one_navigator_per_label
+from benchnav.leaderboard.marks import labels_of, marked
 from benchnav.leaderboard.record import NotApplicable
 from benchnav.leaderboard.render import render
 from benchnav.leaderboard.table import leaderboard
@@ -19,7 +22,7 @@ from benchnav.metrics.metric import Metric
 from benchnav.metrics.success import SUCCESS
 from benchnav.scenario.parameters import joined_parameters, split_parameters
 from benchnav.store.manifest import IN_PROCESS
-from benchnav.store.reading import read_episodes_in_every_track, read_results
+from benchnav.store.reading import episodes_in_every_track, results_of
 from benchnav.store.run_folder import RunFolder
 
 TIDY = ("csv", "json")  # hold every metric unless told otherwise
@@ -31,22 +34,30 @@ def table(
     format: str,
     metric: Sequence[str] | None,
     recompute: bool,
-    verified: Collection[str] = (),
+    verified: Sequence[bool] = (),
     columns: Sequence[str] | None = None,
 ) -> str:
-    """The leaderboard; only what is shown is computed. ``verified`` are labels to be marked."""
+    """The leaderboard; only what is shown is computed. ``verified`` says it of each run."""
     metrics = _metrics()
-    results = _results(folders, metrics, recompute)
+    tables = _tables(folders, metrics, recompute)
+    caveats = [*table_caveats(folders, tables), *metric_caveats(tables, metrics)]
+    results = _joined(folders, tables)
     held = _held(results, metrics)
     if columns is not None:
         metric = [name for name in choose_columns(held, columns) if name in held]
     shown = choose(held, ["all"] if metric is None and format in TIDY else metric)
     results = results.filter(pc.is_in(results["metric"], pa.array(shown)))
     missing = dict.fromkeys(gap for folder in folders for gap in _not_applicable(folder))
-    learned = {label: cost for folder in folders for label, cost in _training(folder)}
-    mapless = {label for folder in folders for label in _mapless(folder)}
-    modes = {label: mode for folder in folders for label, mode in _modes(folder)}
-    made = leaderboard(results, metrics, list(missing), learned, verified, mapless, modes)
+    said = dict[str, dict[str, Any]]()  # by label; only of those of which a run holds rows
+    for folder, rows in zip(folders, tables, strict=True):
+        said |= _said(folder, labels_of(rows))
+    made = leaderboard(
+        results, metrics, list(missing),
+        {label: entry["training"] for label, entry in said.items() if "training" in entry},
+        marked(folders, tables, verified),
+        {label for label, entry in said.items() if not entry["uses_map"]},
+        {label: entry["mode"] for label, entry in said.items()}, caveats,
+    )  # fmt: skip
     if columns is not None:
         return render(made, format, columns=columns)
     return render(made, format, shown if metric or format in TIDY else None)
@@ -76,10 +87,10 @@ def curve(
     """Success against horizon from the stored episodes; a metric against a parameter."""
     metrics = _metrics()
     if axis == HORIZON:
-        _results(folders, {}, recompute=False)  # refuses what must not be merged
+        _tables(folders, {}, recompute=False)  # refuses what must not be merged
         if metric != SUCCESS.name:
             raise UsageError(f"Against horizon there is success alone. Got {metric!r} instead.")
-        return horizon_curves(e for f in folders for e in read_episodes_in_every_track(f.path))
+        return horizon_curves(e for f in folders for e in episodes_in_every_track(f))
     settings = _settings(folders, axis)
     results = _results(folders, metrics, recompute)
     choose(_held(results, metrics), [metric])
@@ -134,15 +145,21 @@ def _metrics() -> dict[str, Metric]:
     return {metric.name: metric for metric in all_metrics()}
 
 
-def _results(folders: Sequence[RunFolder], metrics: dict[str, Metric], recompute: bool) -> pa.Table:
-    """Measured values of all runs, in which a label must stand for one navigator."""
-    stored = {str(f.shown): read_results(f.path) for f in folders}
-    require_one_navigator_per_label(stored)
-    tables = list(stored.values())
-    if recompute:
-        from benchnav.runner.measured import measure_again
+def _tables(
+    folders: Sequence[RunFolder], metrics: dict[str, Metric], recompute: bool
+) -> list[pa.Table]:
+    """Measured values of each run; a label must stand for one navigator in all of them."""
+    stored = [results_of(folder) for folder in folders]
+    named = zip(folders, stored, strict=True)
+    require_one_navigator_per_label({str(f.shown): results for f, results in named})
+    if not recompute:
+        return stored
+    from benchnav.runner.measured import measured_of
 
-        tables = [measure_again(f.path, list(metrics.values())) for f in folders]
+    return [measured_of(folder, list(metrics.values())) for folder in folders]
+
+
+def _joined(folders: Sequence[RunFolder], tables: Sequence[pa.Table]) -> pa.Table:
     joined = pa.concat_tables(tables, promote_options="default")
     if not len(joined):
         raise StoreError(
@@ -151,30 +168,28 @@ def _results(folders: Sequence[RunFolder], metrics: dict[str, Metric], recompute
     return joined
 
 
+def _results(folders: Sequence[RunFolder], metrics: dict[str, Metric], recompute: bool) -> pa.Table:
+    return _joined(folders, _tables(folders, metrics, recompute))
+
+
 def _held(results: pa.Table, metrics: dict[str, Metric]) -> list[str]:
     """The metrics of some results, in the order of their definitions."""
     held = set(results["metric"].unique().to_pylist())
     return [*(name for name in metrics if name in held), *sorted(held - set(metrics))]
 
 
-def _training(folder: RunFolder) -> Iterator[tuple[str, tuple[float, float]]]:
-    """(label, (decisions, seconds)) of the navigators that learned."""
+def _said(folder: RunFolder, labels: Collection[str]) -> dict[str, dict[str, Any]]:
+    """What a run says of its navigators: training (decisions, seconds), map and mode."""
+    found: dict[str, dict[str, Any]] = {}
     for entry in folder.manifest.suite.get("navigators", ()):
+        if entry["label"] not in labels:
+            continue
+        found[entry["label"]] = said = {
+            "mode": entry.get("mode", IN_PROCESS), "uses_map": entry.get("uses_map") is not False,
+        }  # fmt: skip
         if "training" in entry:
-            yield entry["label"], (entry["training"]["decisions"], entry["training"]["seconds"])
-
-
-def _mapless(folder: RunFolder) -> Iterator[str]:
-    """Labels of navigators that use no map."""
-    for entry in folder.manifest.suite.get("navigators", ()):
-        if entry.get("uses_map") is False:
-            yield entry["label"]
-
-
-def _modes(folder: RunFolder) -> Iterator[tuple[str, str]]:
-    """(label, mode) of every navigator."""
-    for entry in folder.manifest.suite.get("navigators", ()):
-        yield entry["label"], entry.get("mode", IN_PROCESS)
+            said["training"] = entry["training"]["decisions"], entry["training"]["seconds"]
+    return found
 
 
 def _not_applicable(folder: RunFolder) -> Iterator[NotApplicable]:

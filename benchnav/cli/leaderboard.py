@@ -79,8 +79,8 @@ def leaderboard(
         _refuse_for_curves(metric, columns, format if is_picture(out) else None)
     with reading(runs) as folders:
         if curve is None:
-            marked = vouched(folders, verify)
-            text = board.table(folders, wanted, metric or None, recompute, marked, named)
+            folders, checked = vouched(folders, verify)
+            text = board.table(folders, wanted, metric or None, recompute, checked, named)
         else:
             points = board.curve(folders, curve, (metric or ["success"])[0], recompute)
             if is_picture(out):

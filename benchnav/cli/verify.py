@@ -64,17 +64,17 @@ def verify(
 
 
 def keep(folder: "RunFolder", report: "Report") -> None:
-    """Remember on this machine that the run is verified, or is not."""
+    """Remember on this machine that the content that was verified is, or is not."""
     from benchnav.errors import StoreError
-    from benchnav.store.pack import content_digest
+    from benchnav.store.pack import content
     from benchnav.store.receipt import drop_receipt, keep_receipt
 
     try:
-        digest = content_digest(folder)
         if report.clean:
-            keep_receipt(digest, report.unknown)
+            content(folder)  # refuses links and what no run holds
+            keep_receipt(report.content, report.unknown)
         else:
-            drop_receipt(digest)
+            drop_receipt(report.content)
     except (OSError, StoreError, KeyError, TypeError, AttributeError) as error:
         say(f"No receipt is kept, so that leaderboards will not know: {error}")
 
@@ -88,7 +88,7 @@ def as_json(run: Path, report: "Report", seconds: float) -> str:
         "run": str(run), "verified": report.clean, "seconds": round(seconds, 3),
         "findings": [asdict(finding) for finding in report.findings],
         "checked": dict(sorted(report.counts.items())), "not_checked": report.unchecked,
-        "versions": report.versions, "sources": report.sources,
+        "versions": report.versions, "sources": report.sources, "caveats": report.caveats,
     }  # fmt: skip
     return dumps(said, indent=1)
 
@@ -107,5 +107,5 @@ def as_text(run: Path, report: "Report", seconds: float) -> str:
     lines += [f"  checked      {visible(text)}" for text in report.checked]
     lines += [f"  not checked  {visible(text)}" for text in report.unchecked]
     lines += [f"  source       {visible(text)}" for text in report.sources]
-    lines += [f"  note         {visible(text)}" for text in report.versions]
+    lines += [f"  note         {visible(text)}" for text in (*report.versions, *report.caveats)]
     return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""Which entries of a leaderboard were verified on this machine."""
+"""Which runs of a leaderboard were verified on this machine."""
 
 from collections.abc import Sequence
 
@@ -8,29 +8,27 @@ from benchnav.plural import counted
 from benchnav.store.run_folder import RunFolder
 
 
-def vouched(folders: Sequence[RunFolder], now: bool) -> set[str]:
-    """The labels all of whose runs, of those given, were verified here.
+def vouched(folders: Sequence[RunFolder], now: bool) -> tuple[list[RunFolder], list[bool]]:
+    """The runs, and of each whether exactly what is read of it was verified here.
 
     What a run says of itself is not asked: a receipt that verifying left on this machine
-    is, or with ``now`` the run itself.
+    is, or with ``now`` the run itself. Where there may be receipts, the runs are pinned.
     """
-    labels: dict[str, bool] = {}
-    for folder in folders:
-        good = _verified(folder, now)
-        for entry in folder.manifest.suite.get("navigators", ()):
-            label = str(entry["label"])
-            labels[label] = labels.get(label, True) and good
-    return {label for label, good in labels.items() if good}
+    from benchnav.store.pinned import pinned
+    from benchnav.store.receipt import any_receipts
+
+    if not now and not any_receipts():
+        return list(folders), [False] * len(folders)
+    runs = [pinned(folder) for folder in folders]
+    return runs, [_verified(run, now) for run in runs]
 
 
 def _verified(folder: RunFolder, now: bool) -> bool:
-    from benchnav.store.pack import content_digest
-    from benchnav.store.receipt import any_receipts, has_receipt
+    from benchnav.store.pinned import pinned_digest
+    from benchnav.store.receipt import has_receipt
 
-    if not now and not any_receipts():
-        return False
     try:
-        return has_receipt(content_digest(folder)) or (now and _verify(folder))
+        return has_receipt(pinned_digest(folder)) or (now and _verify(folder))
     except StoreError as error:
         say(f"{folder.shown} is not verified: {error}")
         return False

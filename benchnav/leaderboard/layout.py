@@ -62,7 +62,8 @@ def sections(
 def legend(board: Leaderboard) -> tuple[str, ...]:
     """What is said below all tables."""
     priced = any(r.track == PRICE for r in board.records)
-    return (*LEGEND, PRICE_LEGEND) if priced else LEGEND
+    caveats = tuple(f"Caveat: {text}" for text in board.caveats)
+    return (*LEGEND, *((PRICE_LEGEND,) if priced else ()), *caveats)
 
 
 def failures_and_remarks(leaders: Sequence[Record]) -> list[str]:

@@ -60,6 +60,7 @@ class Record:
     failure: str = ""  # in how many worlds the navigator failed, and why; "" if it did not
     remark: str = ""  # what the navigator tells of its episodes, and of how many; "" if nothing
     verified: bool = False  # its runs were verified here, and it is no timing
+    caveat: str = ""  # where its runs are not what their names say here; "" if they are
 
 
 @dataclass(frozen=True)
@@ -68,6 +69,7 @@ class Leaderboard:
 
     records: tuple[Record, ...]
     metrics: tuple[str, ...]  # every metric that occurs, in the order of the definitions
+    caveats: tuple[str, ...] = ()  # what must be known of the runs, for below all tables
 
     @property
     def navigators(self) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
+from benchnav.leaderboard.caveats import with_caveats
 from benchnav.leaderboard.estimate import (
     Estimate,
     Sample,
@@ -34,6 +35,7 @@ from benchnav.leaderboard.record import (
 from benchnav.leaderboard.remark import failures, remarks, with_texts
 from benchnav.leaderboard.standing import Standing, standings
 from benchnav.metrics.metric import Metric
+from benchnav.runner.caveat import Caveat
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -49,6 +51,7 @@ def leaderboard(
     verified: Collection[str] = (),
     mapless: Collection[str] = (),
     modes: Mapping[str, str] = {},
+    caveats: Sequence[Caveat] = (),
 ) -> Leaderboard:
     """Every navigator × scenario × track × role × metric, with interval and rank.
 
@@ -59,7 +62,8 @@ def leaderboard(
     were not run. ``training`` maps labels to the decisions and seconds of their training;
     ``verified`` are the labels whose runs were verified here, ``mapless`` those of navigators that
     use no map. Where there are the tracks known and unknown, the paired difference between them
-    is a record too, in the place of a track. ``modes`` maps labels to the mode in which they ran.
+    is a record too, in the place of a track. ``modes`` maps labels to the mode in which they ran;
+    ``caveats`` stand beside the records that they are about.
     Raises UsageError where one label stands for two navigators, or has two
     values in one world.
     """
@@ -78,11 +82,13 @@ def leaderboard(
     records = [with_texts(record, *texts) for record in records]
     records = [replace(r, verified=_is_verified(r, verified, metrics)) for r in records]
     records = [replace(record, mode=modes.get(record.navigator, "")) for record in records]
+    records = [with_caveats(record, caveats) for record in records]
     order = {name: place for place, name in enumerate(metrics)}
     names = sorted(
         {r.metric for r in records}, key=lambda name: (order.get(name, len(order)), name)
     )
-    return Leaderboard(tuple(sorted(records, key=_place(names))), tuple(names))
+    texts_below = tuple(dict.fromkeys(caveat.text for caveat in caveats))
+    return Leaderboard(tuple(sorted(records, key=_place(names))), tuple(names), texts_below)
 
 
 def _with_training(record: Record, training: Mapping[str, tuple[float, float]]) -> Record:

@@ -1,7 +1,5 @@
 """The navigators of a suite: who they are, as they say themselves."""
 
-import hashlib
-import json
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
@@ -17,6 +15,7 @@ from benchnav.plugins import NAVIGATORS
 from benchnav.source.digest import FoundSource, find_source
 from benchnav.source.parts import places_of
 from benchnav.store.manifest import IN_PROCESS, ISOLATED, Mode
+from benchnav.store.navigator_hash import navigator_hash
 
 
 @dataclass(frozen=True)
@@ -45,11 +44,8 @@ class Entry:
 
         Code counts in `source_hash`, which changes without a new version.
         """
-        files = [self.fingerprint] if self.fingerprint else []
-        led = [self.leader.hash] if self.leader else []
-        mode = [] if self.mode == IN_PROCESS else [self.mode]
-        said = json.dumps([dict(self.spec), self.source, *files, *led, *mode], sort_keys=True)
-        return hashlib.sha256(said.encode()).hexdigest()[:16]
+        led = self.leader.hash if self.leader else ""
+        return navigator_hash(self.spec, self.source, self.fingerprint, led, self.mode)
 
 
 @dataclass(frozen=True)

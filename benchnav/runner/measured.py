@@ -9,9 +9,9 @@ from benchnav.episode.episode import Episode
 from benchnav.metrics.measure import measure
 from benchnav.metrics.metric import Metric
 from benchnav.navigation.answer import kind_of
-from benchnav.store.manifest import load_manifest
-from benchnav.store.reading import in_every_track, read_episodes
+from benchnav.store.reading import episodes_of, in_every_track
 from benchnav.store.results import RESULTS
+from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath
 
 
@@ -41,5 +41,9 @@ def measure_again(run: RunPath, metrics: Sequence[Metric]) -> pa.Table:
 
     Raises what `benchnav.store.reading.read_episodes` raises.
     """
-    again = measured(read_episodes(run), metrics)
-    return in_every_track(again, load_manifest(run))
+    return measured_of(RunFolder.open(run), metrics)
+
+
+def measured_of(run: RunFolder, metrics: Sequence[Metric]) -> pa.Table:
+    """The same, of a run that is open already."""
+    return in_every_track(measured(episodes_of(run), metrics), run.manifest)

@@ -40,6 +40,8 @@ class Manifest:
     shard: str = ""  # "2/4" where it executes that share alone; its cells then say their seeds
     # label → {hash: of the code that made the episodes, places: module:attribute of its parts}
     sources: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    # labels that ran in the runner's own process, where nothing guards other entries from them
+    unguarded: tuple[str, ...] = ()
     schema: int = SCHEMA
     versions: Mapping[str, str] = field(default_factory=lambda: versions())
     platform: str = field(default_factory=platform.platform)
@@ -117,13 +119,25 @@ def load_manifest(run: RunPath) -> Manifest:
             f" {what or 'It has none'}. 'benchnav run SUITE --out {run}' makes one."
         )
     try:
-        fields = checked_json.load(bounded_json.read_text(path, MOST_BYTES))
+        text = bounded_json.read_text(path, MOST_BYTES)
+    except (OSError, ValueError) as error:
+        raise CorruptPartError(
+            f"{path} must be what was written. It cannot be read: {short(error)}."
+        ) from error
+    return parse_manifest(text, path)
+
+
+def parse_manifest(text: str, path: Path) -> Manifest:
+    """The manifest that stands in ``path`` as ``text``. Raises as `load_manifest` does."""
+    try:
+        fields = checked_json.load(text)
         _refuse_newer(path, fields)
         validate(ManifestSchema, Document(str(path), fields, Place(1)))
         manifest = Manifest(
             fields["suite"], tuple(fields["cells"]), fields.get("salt", ""),
             fields.get("limits", {}), fields.get("shard", ""), fields.get("sources", {}),
-            fields["schema"], fields["versions"], fields["platform"], fields["created"],
+            tuple(fields.get("unguarded", ())), fields["schema"], fields["versions"],
+            fields["platform"], fields["created"],
         )  # fmt: skip
         whole = manifest.suite_hash == fields["suite_hash"]
     except (OSError, ValueError, RecursionError) as error:

@@ -60,7 +60,8 @@ def merge(given: Sequence[RunPath], into: RunPath) -> Merged:
         for folder in folders:
             _copy_files(folder.path, out)
             for cell in folder.manifest.cells:
-                for part in parts_of(folder.cell(cell["key"])):
+                for part in folder.parts_in(cell):
+                    part.check_rows()
                     _copy(part, cell["key"], merged)
     return merged
 
@@ -101,7 +102,10 @@ def _joined(manifests: Sequence[Manifest]) -> Manifest:
         said: Mapping[str, Any] = {k: v for k, v in cell.items() if k != "seeds"}
         cells.append({**said, "reason": ""} if cell["key"] in could else said)
     sources = {label: source for m in manifests for label, source in m.sources.items()}
-    return replace(manifests[0], cells=tuple(cells), shard="", sources=sources)
+    unguarded = dict.fromkeys(label for m in manifests for label in m.unguarded)
+    return replace(
+        manifests[0], cells=tuple(cells), shard="", sources=sources, unguarded=tuple(unguarded)
+    )
 
 
 def _copy_files(run: Path, out: Path) -> None:

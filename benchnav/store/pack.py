@@ -9,13 +9,13 @@ import json
 import os
 import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from zipfile import ZIP_STORED, ZipFile, ZipInfo
 
 from benchnav.errors import StoreError, UsageError
 from benchnav.store.manifest import MANIFEST
-from benchnav.store.part import FILES, SEAL
+from benchnav.store.part import FILES, SEAL, parts_of
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.scenario_files import FOLDER, sha256_of
 
@@ -37,7 +37,8 @@ def members(run: RunFolder) -> Iterator[str]:
     yield MANIFEST
     named = suite_files(run)
     yield from sorted(f"{FOLDER}/{sha}" for sha in named)
-    for part in run.parts():
+    cells = [cell["key"] for cell in run.manifest.cells if not cell["reason"]]
+    for part in (part for key in cells for part in parts_of(run.cell(key))):
         for suffix in (*FILES, SEAL):
             if part.path(suffix).exists():
                 yield f"parts/{part.folder.name}/{part.stem}{suffix}"
@@ -68,7 +69,12 @@ def content(run: RunFolder) -> dict[str, dict[str, int | str]]:
 
 def content_digest(run: RunFolder) -> str:
     """sha256 of all that a run holds: the same for a folder and for the pack made of it."""
-    lines = [f"{facts['sha256']} {name}\n" for name, facts in content(run).items()]
+    return digest_of({name: str(facts["sha256"]) for name, facts in content(run).items()})
+
+
+def digest_of(sums: Mapping[str, str]) -> str:
+    """The same of members by name, with the sha256 of each."""
+    lines = [f"{sums[name]} {name}\n" for name in sorted(sums)]
     return hashlib.sha256("".join(lines).encode()).hexdigest()
 
 
@@ -83,6 +89,8 @@ def pack(run: RunFolder, out: Path) -> None:
     if out.exists():
         raise UsageError(f"{out} must be a new file. It is there already.")
     _refuse_whole_paths(run)
+    for part in run.parts():
+        part.check_rows()
     found = content(run)
     if len(found) > MOST_MEMBERS:
         raise UsageError(

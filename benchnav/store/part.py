@@ -7,19 +7,20 @@ killed run left there.
 
 import hashlib
 import re
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from benchnav.episode.episode import Episode
-from benchnav.errors import CorruptPartError
+from benchnav.errors import CorruptPartError, ForeignRowError
 from benchnav.navigation.answer import short
 from benchnav.store import bounded_json, bounded_parquet, results
 from benchnav.store.episodes import EPISODES, from_table
 from benchnav.store.episodes import LATER as EPISODES_LATER
+from benchnav.store.membership import Membership
 from benchnav.store.seal import (
     EPISODES_FILE,
     FILES,
@@ -52,6 +53,7 @@ class Part:
     folder: Path
     first: int
     stop: int
+    membership: Membership | None = field(default=None, compare=False, repr=False)
 
     @property
     def stem(self) -> str:
@@ -98,6 +100,13 @@ class Part:
         for suffix, sealed in self._seal().items():
             self._check_size(suffix, sealed)
 
+    def check_rows(self) -> None:
+        """Raise CorruptPartError where a file is not as sealed, or a row is not of the part."""
+        self.results()
+        for suffix in (EPISODES_FILE, REHEARSALS_FILE):
+            if suffix in self._seal():
+                self._table(suffix, EPISODES, EPISODES_LATER)
+
     def _episodes(self, suffix: str, most: int) -> Iterator[Episode]:
         table = self._table(suffix, EPISODES, EPISODES_LATER)
         if len(table) > most:
@@ -119,19 +128,38 @@ class Part:
                 raise self._corrupt(
                     path, f"has sha256 {found[:12]}…, sealed was {sealed['sha256'][:12]}…"
                 )
-            return bounded_parquet.read(content, schema, later)
+            table = bounded_parquet.read(content, schema, later)
         except ValueError as error:
             raise self._corrupt(path, short(error)) from error
         except OSError as error:
             raise self._corrupt(path, f"cannot be read ({short(error)})") from error
+        self._refuse_foreign(suffix, table)
+        return table
+
+    def _refuse_foreign(self, suffix: str, table: pa.Table) -> None:
+        """Raise CorruptPartError where a row is of another cell, or of a seed that is not here."""
+        if self.membership is None:
+            return
+        try:
+            self.membership.require_rows(table, self.seeds, scored=suffix != REHEARSALS_FILE)
+        except ValueError as error:
+            raise ForeignRowError(str(self._corrupt(self.path(suffix), str(error)))) from error
 
     def _seal(self) -> dict[str, Facts]:
         """Return size and sha256 of each of its files, as they were sealed."""
         seal = self.path(SEAL)
         try:
-            return read_seal(bounded_json.read_text(seal, MOST_SEAL), len(self.seeds))
+            text = bounded_json.read_text(seal, MOST_SEAL)
+            self._refuse_another_seal(text)
+            return read_seal(text, len(self.seeds))
         except (OSError, ValueError) as error:
             raise self._corrupt(seal, f"cannot be read ({short(error)})") from error
+
+    def _refuse_another_seal(self, text: str) -> None:
+        """Raise ValueError where the part was exchanged since its run was pinned."""
+        pinned = self.membership.seals if self.membership else {}
+        if pinned and pinned.get(self.path(SEAL).name) != hashlib.sha256(text.encode()).hexdigest():
+            raise ValueError("it was changed while the run was read")
 
     def _check_size(self, suffix: str, sealed: Facts) -> None:
         path = self.path(suffix)
@@ -158,6 +186,11 @@ def _by(table: pa.Table) -> list[tuple[str, str]]:
 
 def parts_of(folder: Path) -> list[Part]:
     """The sealed parts in the folder of one cell, by seed."""
-    stems = (_STEM.fullmatch(seal.name.removesuffix(SEAL)) for seal in folder.glob(f"*{SEAL}"))
+    return named_parts(folder, (seal.name for seal in folder.glob(f"*{SEAL}")))
+
+
+def named_parts(folder: Path, seals: Iterable[str]) -> list[Part]:
+    """The parts that have these seals, by seed."""
+    stems = (_STEM.fullmatch(name.removesuffix(SEAL)) for name in seals)
     found = sorted(Part(folder, int(stem[1]), int(stem[2])) for stem in stems if stem)
     return [part for part in found if 0 < len(part.seeds) <= MOST_SEEDS]

@@ -21,10 +21,14 @@ def read_episodes(run: RunPath) -> Iterator[Episode]:
     """Every scored episode of a run: cell by cell, by seed.
 
     Raises UsageError where ``run`` is no path, StoreError where the folder is no run,
-    CorruptPartError for a damaged part.
+    CorruptPartError for a damaged part, or one that holds rows of another cell.
     """
-    parts = RunFolder.open(run).parts()
-    return (episode for part in parts for episode in part.episodes())
+    return episodes_of(RunFolder.open(run))
+
+
+def episodes_of(run: RunFolder) -> Iterator[Episode]:
+    """The same, of a run that is open already."""
+    return (episode for part in run.parts() for episode in part.episodes())
 
 
 def read_episodes_in_every_track(run: RunPath) -> Iterator[Episode]:
@@ -32,13 +36,14 @@ def read_episodes_in_every_track(run: RunPath) -> Iterator[Episode]:
 
     Raises as `read_episodes` does.
     """
-    return _in_every_track(RunFolder.open(run))
+    return episodes_in_every_track(RunFolder.open(run))
 
 
-def _in_every_track(run: RunFolder) -> Iterator[Episode]:
+def episodes_in_every_track(run: RunFolder) -> Iterator[Episode]:
+    """The same, of a run that is open already."""
     cells = run.manifest.cells
     also = {(c["scenario"], c["track"], c["navigator"]): c.get("also", ()) for c in cells}
-    for episode in read_episodes(run.path):
+    for episode in episodes_of(run):
         said = episode.identity
         for track in (*also.get((said.scenario, said.track, said.navigator), ()), said.track):
             yield replace(episode, identity=replace(said, track=track))
@@ -58,19 +63,23 @@ def read_results(run: RunPath) -> pa.Table:
 
     Raises as `read_episodes` does.
     """
-    folder = RunFolder.open(run)
+    return results_of(RunFolder.open(run))
+
+
+def results_of(run: RunFolder) -> pa.Table:
+    """The same, of a run that is open already."""
     tables = [RESULTS.empty_table()]
     decoded = stored = 0
-    for part in folder.parts():
+    for part in run.parts():
         tables.append(part.results())
         decoded += tables[-1].nbytes
         stored += part.path(RESULTS_FILE).stat().st_size
         if decoded > allowed(stored):
             raise CorruptPartError(
-                f"The results of {folder.shown} must decode to at most {allowed(stored)} bytes, as"
+                f"The results of {run.shown} must decode to at most {allowed(stored)} bytes, as"
                 f" their files have {stored}. They decode to more."
             )
-    return in_every_track(pa.concat_tables(tables), folder.manifest)
+    return in_every_track(pa.concat_tables(tables), run.manifest)
 
 
 def in_every_track(results: pa.Table, manifest: Manifest) -> pa.Table:

@@ -9,11 +9,13 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
-from benchnav.errors import RunConflictError, StoreError
+from benchnav.errors import CorruptPartError, RunConflictError, StoreError
 from benchnav.store.lock import LOCKS, locked
 from benchnav.store.manifest import MANIFEST, Manifest, load_manifest
-from benchnav.store.part import FILES, Part, parts_of
+from benchnav.store.membership import membership
+from benchnav.store.part import FILES, SEAL, Part, named_parts, parts_of
 from benchnav.store.part_writer import TEMPORARY
 from benchnav.store.run_path import RunPath, run_path
 from benchnav.store.spans import Span, without
@@ -29,6 +31,7 @@ class RunFolder:
     path: Path
     manifest: Manifest
     packed: Path | None = None  # the file that it was unpacked from
+    sums: Mapping[str, str] | None = None  # of a pinned run: sha256 of every member, by name
 
     @property
     def shown(self) -> Path:
@@ -138,7 +141,30 @@ class RunFolder:
         """Every sealed part, in the order of the manifest's cells, then of seeds."""
         for cell in self.manifest.cells:
             if not cell["reason"]:
-                yield from parts_of(self.cell(cell["key"]))
+                yield from self.parts_in(cell)
+
+    def parts_in(self, cell: Mapping[str, Any]) -> list[Part]:
+        """The parts of one cell of the manifest, by seed, whose rows must be of that cell.
+
+        Of a pinned run those that were there then. Raises CorruptPartError where the manifest
+        does not say of what the rows must be.
+        """
+        folder = self.cell(cell["key"])
+        parts, seals = parts_of(folder), dict[str, str]()
+        if self.sums is not None:
+            start = f"parts/{folder.name}/"
+            names = [name for name in self.sums if name.startswith(start) and name.endswith(SEAL)]
+            seals = {name.removeprefix(start): self.sums[name] for name in names}
+            parts = named_parts(folder, seals)
+        if not parts:
+            return []
+        try:
+            of = membership(self.manifest, cell, seals)
+        except (KeyError, TypeError, ValueError, AttributeError) as error:
+            raise CorruptPartError(
+                f"{self.shown / MANIFEST} must say of what a cell's rows are. It does not: {error}."
+            ) from error
+        return [replace(part, membership=of) for part in parts]
 
     def done(self, key: str) -> set[int]:
         """The seeds of a cell that are stored. Raises CorruptPartError where a part is damaged."""

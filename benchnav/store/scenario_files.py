@@ -57,10 +57,11 @@ def stage_files(run: Path, files: Mapping[str, str], root: Path) -> Path:
                 f"{run / FOLDER} must hold the file {name!r} of a scenario, called"
                 f" {sha[:64]!r}. It lacks."
             )
-        if sha256_of(source) != sha:
+        content = source.read_bytes()
+        if hashlib.sha256(content).hexdigest() != sha:
             raise CorruptPartError(f"{source} must be what was written. It was changed.")
         target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_bytes(source.read_bytes())
+        target.write_bytes(content)
     return folder
 
 

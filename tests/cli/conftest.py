@@ -1,5 +1,7 @@
 """The command, called in this process."""
 
+import shutil
+
 import pytest
 
 from benchnav.cli.main import status
@@ -39,3 +41,26 @@ def suite(tmp_path):
         "tracks: [known, unknown]\n"
     )
     return path
+
+
+@pytest.fixture(scope="session")
+def made(tmp_path_factory):
+    from benchnav.runner.run import run_suite
+    from benchnav.runner.suite import Selection, load_suite
+
+    folder = tmp_path_factory.mktemp("made")
+    (folder / "open.yaml").write_text(TINY)
+    (folder / "suite.yaml").write_text(
+        "name: tiny\nscenarios: [open.yaml]\nnavigators: [straight-line, random-walk]\nseeds: 2\n"
+    )
+    for label, name in (("one", "straight-line"), ("two", "random-walk")):
+        suite = load_suite(str(folder / "suite.yaml"), Selection(navigators=(name,)))
+        run_suite(suite, folder / label, workers=0)
+    return folder
+
+
+@pytest.fixture
+def runs(made, tmp_path, monkeypatch):
+    """Two runs of a navigator each, on a machine that has verified nothing."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    return [shutil.copytree(made / label, tmp_path / label) for label in ("one", "two")]

@@ -12,30 +12,6 @@ from benchnav.store.part import RESULTS_FILE
 from tests.runner.verify.forge import Forger
 
 
-@pytest.fixture(scope="module")
-def made(tmp_path_factory):
-    from benchnav.runner.run import run_suite
-    from benchnav.runner.suite import Selection, load_suite
-    from tests.cli.conftest import TINY
-
-    folder = tmp_path_factory.mktemp("made")
-    (folder / "open.yaml").write_text(TINY)
-    (folder / "suite.yaml").write_text(
-        "name: tiny\nscenarios: [open.yaml]\nnavigators: [straight-line, random-walk]\nseeds: 2\n"
-    )
-    for label, name in (("one", "straight-line"), ("two", "random-walk")):
-        suite = load_suite(str(folder / "suite.yaml"), Selection(navigators=(name,)))
-        run_suite(suite, folder / label, workers=0)
-    return folder
-
-
-@pytest.fixture
-def runs(made, tmp_path, monkeypatch):
-    """Two runs of a navigator each, on a machine that has verified nothing."""
-    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
-    return [shutil.copytree(made / label, tmp_path / label) for label in ("one", "two")]
-
-
 def forge(run):
     forger = Forger(run)
     (stem,) = forger.stems()

@@ -16,7 +16,11 @@ from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, 
 from benchnav.episode.episode import Contacts, Episode, Identity, Timings
 from benchnav.store.digest import digest
 from benchnav.store.manifest import Manifest
+from benchnav.store.navigator_hash import hash_of_entry
 from benchnav.store.results import RESULTS
+
+ORCA = {"label": "orca", "says": {"type": "orca"}, "source": "benchnav"}
+HASH = hash_of_entry(ORCA)
 
 
 def make_world(rng, agents=3, bodies=2):
@@ -65,7 +69,7 @@ def make_episode(rng, seed=0, steps=5, agents=3, bodies=2, events=2, failure="")
     arrival = rng.random(agents)
     arrival[:1] = np.nan
     episode = Episode(
-        identity=Identity("a/b@1", "f" * 64, "test", seed, "known", "orca", f"hash {seed}"),
+        identity=Identity("a/b@1", "f" * 64, "test", seed, "known", "orca", HASH),
         world=world,
         position=rng.normal(size=(steps + 1, agents, 2)),
         heading=rng.normal(size=(steps + 1, agents)),
@@ -101,18 +105,14 @@ def make_results(episodes):
     return pa.Table.from_pylist(rows, schema=RESULTS)
 
 
-def make_manifest(**changes):
+def make_manifest(rehearsal=0, **changes):
     suite = {
-        "name": "tiny", "version": 1, "split": "test", "seeds": [0, 20], "scenarios": [],
-        "tracks": ["known"], "navigators": [], **changes,
+        "name": "tiny", "version": 1, "seeds": [0, 20], "split": "test", "tracks": ["known"],
+        "scenarios": [{"scenario": "a/b@1", "hash": "f" * 64, "says": {}, "files": {}}],
+        "navigators": [{**ORCA, "rehearsal": rehearsal}], **changes,
     }  # fmt: skip
-    cells = tuple(
-        {
-            "key": key, "scenario": "a/b@1", "track": "known", "navigator": navigator,
-            "reason": reason,
-        }
-        for key, navigator, reason in (("cell", "orca", ""), ("na", "grid", "needs a map"))
-    )  # fmt: skip
+    of = {"scenario": "a/b@1", "track": "known", "navigator": "orca"}
+    cells = ({"key": "cell", **of, "reason": ""}, {"key": "na", **of, "reason": "needs a map"})
     return Manifest(suite, cells)
 
 

@@ -1,6 +1,7 @@
 """Whatever happens to a byte of a run, nobody reads something else without being told."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,13 +27,15 @@ def whole(tmp_path_factory):
     from tests.store.conftest import make_episode, make_manifest, make_results
 
     run = tmp_path_factory.mktemp("runs") / "run"
-    folder = RunFolder.start(run, make_manifest())
+    folder = RunFolder.start(run, make_manifest(rehearsal=1))
     rng = np.random.default_rng(0)
     with folder.writing():
         for first, stop in PARTS:
-            episodes = [make_episode(rng, seed, steps=2) for seed in range(first, stop)]
+            drawn = [make_episode(rng, seed, steps=2) for seed in range(first, stop)]
+            episodes = [replace(e, rehearsals=1) for e in drawn]
+            practice = [replace(e, identity=replace(e.identity, rehearsal=1)) for e in drawn]
             with PartWriter(Part(folder.cell("cell"), first, stop)) as writer:
-                writer.add(episodes, make_results(episodes), episodes)
+                writer.add(episodes, make_results(episodes), practice)
                 writer.seal()
     return run, everything(run)
 

@@ -21,7 +21,7 @@ from benchnav.store.unpack import opened
 
 
 def scenario(files):
-    return {"scenario": "a/b@1", "hash": "0" * 16, "says": {}, "files": files}
+    return {"scenario": "a/b@1", "hash": "f" * 64, "says": {}, "files": files}
 
 
 @pytest.fixture

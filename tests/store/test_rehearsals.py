@@ -26,7 +26,7 @@ def made(tools, seed, rehearsal):
 
 @pytest.fixture
 def written(tools, run):
-    folder = RunFolder.start(run, tools.manifest())
+    folder = RunFolder.start(run, tools.manifest(rehearsal=2))
     scored = [made(tools, seed, 0) for seed in range(2)]
     rehearsed = [made(tools, seed, k) for k in (1, 2) for seed in range(2)]
     with PartWriter(Part(folder.cell("cell"), 0, 2)) as writer:

@@ -1,5 +1,6 @@
 """A run folder is append-only, resumable, and refuses what does not belong to it."""
 
+import dataclasses
 import json
 import os
 import resource
@@ -15,6 +16,7 @@ from benchnav.store.part_writer import TEMPORARY, PartWriter
 from benchnav.store.reading import read_episodes, read_results
 from benchnav.store.results import RESULTS
 from benchnav.store.run_folder import RunFolder
+from tests.store.conftest import HASH
 
 
 def write(tools, folder, first, stop, cell="cell"):
@@ -40,7 +42,7 @@ def test_parts_are_read_back_by_seed(tools, run):
 
 
 def test_results_of_before_navigators_had_hashes_are_read(tools, run, monkeypatch):
-    folder = RunFolder.start(run, tools.manifest())
+    folder = RunFolder.start(run, dataclasses.replace(tools.manifest(), schema=1))
     old = [tools.episode(np.random.default_rng(0), 0)]
     before = RESULTS.remove(RESULTS.get_field_index("navigator_hash"))
     with monkeypatch.context() as then:
@@ -49,7 +51,7 @@ def test_results_of_before_navigators_had_hashes_are_read(tools, run, monkeypatc
             writer.add(old, tools.results(old).drop_columns(["navigator_hash"]))
             writer.seal()
     write(tools, folder, 1, 3)
-    assert read_results(run).column("navigator_hash").to_pylist() == ["", "hash 1", "hash 2"]
+    assert read_results(run).column("navigator_hash").to_pylist() == ["", HASH, HASH]
 
 
 def test_nothing_is_visible_before_the_seal_and_leftovers_are_swept(tools, run):

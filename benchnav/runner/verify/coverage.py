@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from itertools import islice
 
+from benchnav.errors import CorruptPartError
 from benchnav.plural import counted
 from benchnav.runner.cell import Cell
 from benchnav.runner.verify.finding import Report
@@ -16,14 +17,20 @@ _SHOWN = 10  # seeds of each kind
 
 def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[Cell, Part]]:
     """Every part with the cell that it is of; the report says what lacks or is too much."""
-    reasons = {str(c["key"]): str(c.get("reason", "")) for c in run.manifest.cells}
+    stored = {str(c["key"]): c for c in run.manifest.cells}
     for cell in suite.cells:
         where = f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
-        parts = parts_of(run.cell(cell.key))
-        if reasons.get(cell.key):
-            if parts:
-                report.find("coverage", where, f"is n/a ({reasons[cell.key]}), and has episodes")
+        said = stored.get(cell.key, {"key": cell.key})
+        reason = str(said.get("reason", ""))
+        if reason:
+            if parts_of(run.cell(cell.key)):
+                report.find("coverage", where, f"is n/a ({reason}), and has episodes")
             report.counts["n/a cells"] += 1
+            continue
+        try:
+            parts = run.parts_in(said)
+        except CorruptPartError as error:
+            report.find("manifest", where, str(error))
             continue
         _check_seeds(parts, suite.seeds, where, report)
         for part in parts:

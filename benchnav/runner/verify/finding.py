@@ -7,6 +7,7 @@ from itertools import zip_longest
 from benchnav.plural import counted
 
 KINDS = {  # what a finding is about → what must hold there
+    "changed": "nothing writes the run while it is verified",
     "manifest": "the suite, its cells and hashes fit each other",
     "scenario": "a scenario is what its hash says, and its files are there",
     "coverage": "every cell has every seed once, and nothing else is there",
@@ -43,8 +44,12 @@ class Report:
     counts: Counter[str] = field(default_factory=Counter)
     notes: Counter[str] = field(default_factory=Counter)  # what was not checked, and how often
     unknown: set[str] = field(default_factory=set)  # metrics that are not installed here
+    unmeasured: set[str] = field(default_factory=set)  # metrics that are here, and not in a part
     versions: list[str] = field(default_factory=list)  # of packages that differ from the run's
     sources: list[str] = field(default_factory=list)  # a sentence for each navigator
+    claims: str = ""  # what the manifest says that nothing follows from
+    caveats: list[str] = field(default_factory=list)  # where the run is not what is installed
+    content: str = ""  # digest of what was verified
 
     @property
     def clean(self) -> bool:
@@ -61,6 +66,7 @@ class Report:
         self.counts += other.counts
         self.notes += other.notes
         self.unknown |= other.unknown
+        self.unmeasured |= other.unmeasured
 
     def sort(self) -> None:
         """Findings by kind, causes before what follows from them."""
@@ -107,9 +113,14 @@ class Report:
             f"timings, which nobody can verify: {c['values of timings']} values follow from the"
             " stored seconds, and that is all there is to say"
         ]
+        if self.claims:
+            lines.append(f"what its author says of the run: {self.claims}")
         if not c["rerun"]:
             lines.append("whether the navigators gave these commands (--rerun asks them)")
         if c["n/a cells"] and not c["rerun n/a"]:
             lines.append(f"why cells are n/a ({c['n/a cells']}), which navigators say (--rerun)")
+        if self.unmeasured:
+            names = ", ".join(sorted(self.unmeasured))
+            lines.append(f"metrics that are installed here and not measured in the run: {names}")
         lines += [f"{n} × {text}" for text, n in sorted(self.notes.items())]
         return lines

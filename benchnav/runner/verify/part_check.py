@@ -9,7 +9,8 @@ from typing import Any
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.errors import BenchnavError, CorruptPartError
+from benchnav.errors import BenchnavError, CorruptPartError, ForeignRowError
+from benchnav.plugins import METRICS
 from benchnav.runner.cell import Cell
 from benchnav.runner.generators import phases
 from benchnav.runner.rollout import Assignment, batches
@@ -67,7 +68,8 @@ def check_part(task: PartCheck) -> tuple[Report, list[Pair], list[Pair]]:
         rehearsed = list(task.part.rehearsals())
         rows = task.part.results().to_pylist()
     except CorruptPartError as error:
-        report.find("seal", task.shown, str(error).split(" Delete ")[0])
+        kind = "identity" if isinstance(error, ForeignRowError) else "seal"
+        report.find(kind, task.shown, str(error).split(" Delete ")[0])
         return report, [], []
     seeds = [e.identity.seed for e in scored]
     if seeds != list(task.part.seeds):
@@ -177,7 +179,10 @@ def _check_values(
     by_seed: dict[int, list[dict[str, Any]]] = {}
     for row in rows:
         by_seed.setdefault(row["seed"], []).append(row)
-    metrics = expected_metrics({row["metric"] for row in rows}, task.version)
+    stored = {row["metric"] for row in rows}
+    metrics = expected_metrics(stored, task.version)
+    if pairs:
+        report.unmeasured |= set(METRICS.names()) - stored
     for pair in pairs:
         seed = pair.stored.identity.seed
         again = replace(pair.again, identity=task.assignment.identity(seed))

@@ -28,7 +28,9 @@ def rerun(
     if entry is None:
         report.notes[f"episode not run again: {why}"] += len(scored)
         return
-    chosen = [pair for pair in scored if _repeatable(pair.stored, report)]
+    claimed = [pair for pair in scored if _asks_a_clock(pair.stored)]
+    clock = bool(claimed) and not _is_reproducible(task, claimed[0])
+    chosen = [pair for pair in scored if _repeatable(pair.stored, clock, report)]
     kept = {(_seed(p), p.stored.identity.rehearsal): p for p in (*chosen, *rehearsed)}
     worlds = [(_seed(pair), pair.again.world) for pair in chosen]
     for batch in perform(task.assignment, worlds):
@@ -41,11 +43,30 @@ def _seed(pair: Pair) -> int:
     return pair.stored.identity.seed
 
 
-def _repeatable(episode: Episode, report: Report) -> bool:
-    if not episode.reproducible:
+def _asks_a_clock(episode: Episode) -> bool:
+    """Whether it claims so, and can be run again to see whether that is true."""
+    return not episode.reproducible and _may_fail_again(episode)
+
+
+def _may_fail_again(episode: Episode) -> bool:
+    return not episode.failure or episode.failure.startswith(_TOLD)
+
+
+def _is_reproducible(task: PartCheck, pair: Pair) -> bool:
+    """Whether the navigators that are installed here ask no clock: an episode of theirs tells.
+
+    What is stored is not asked: it may have been written to keep them from being run.
+    """
+    ((performance,),) = perform(task.assignment, [(_seed(pair), pair.again.world)])
+    return performance.episode.reproducible
+
+
+def _repeatable(episode: Episode, clock: bool, report: Report) -> bool:
+    """``clock``: a clock decides what the navigators of the cell do, as they are installed."""
+    if clock and not episode.reproducible:
         report.notes["episode not run again: a clock decides what its navigator does"] += 1
         return False
-    if episode.failure and not episode.failure.startswith(_TOLD):
+    if not _may_fail_again(episode):
         report.notes[f"episode not run again: it failed because {episode.failure}"] += 1
         return False
     return True
@@ -110,6 +131,10 @@ def check_reasons(run: RunFolder, cells: Sequence[Cell], report: Report) -> None
             where = f"{cell.scenario.identity}, {label}"
             says = "uses" if entry.uses_map else "does not use"
             report.find("rerun", where, f"the navigator says that it {says} the map")
+        if entry.training != cell.entry.training:
+            where = f"{cell.scenario.identity}, {label}"
+            what = f"training is {cell.entry.training}, but the navigator says {entry.training}"
+            report.find("rerun", where, what)
         right = replace(cell, entry=entry).reason
         report.counts["rerun n/a"] += bool(stored)
         if right != stored:

@@ -12,6 +12,8 @@ from benchnav.errors import BenchnavError
 from benchnav.navigation.navigator import Training
 from benchnav.runner.cell import Cell
 from benchnav.runner.entry import Entry
+from benchnav.runner.limits import Limits
+from benchnav.runner.shard import Shard
 from benchnav.runner.suite import Block, Suite
 from benchnav.runner.suite_file import MAX_SEEDS
 from benchnav.runner.verify.finding import Report
@@ -53,22 +55,38 @@ def restore(run: RunFolder, root: Path, report: Report) -> Restored | None:
         sources = run.manifest.sources
         entries = [_entry(said, sources.get(said["label"], {})) for said in suite["navigators"]]
         known = len(report.findings)
-        scenarios = [
+        drawn = [
             _scenario(run, root / str(i), said, report) for i, said in enumerate(suite["scenarios"])
         ]
+        scenarios = [scenario for scenario in drawn if scenario is not None]
+        if len(report.findings) > known:
+            return None
+        whole_suite = Suite(
+            str(suite["name"]), suite["version"], split, range(first, stop), tuple(scenarios),
+            tracks, tuple(entries), blocks=blocks,
+        )  # fmt: skip
+        cells = list(whole_suite.cells())
     except _MALFORMED as error:
         report.find("manifest", where, f"the suite cannot be read: {type(error).__name__}: {error}")
         return None
-    if len(report.findings) > known:
-        return None
-    found = tuple(s for s in scenarios if s is not None)
-    whole_suite = Suite(
-        str(suite["name"]), suite["version"], split, range(first, stop), found, tracks,
-        tuple(entries), blocks=blocks,
-    )  # fmt: skip
-    cells = list(whole_suite.cells())
     _compare_cells(run, cells, where, report)
+    _check_claims(run, where, report)
     return Restored(whole_suite.seeds, tuple(cells))
+
+
+def _check_claims(run: RunFolder, where: str, report: Report) -> None:
+    """What nobody can recompute must at least be possible."""
+    try:
+        Limits.of(run.manifest.limits)
+        if run.manifest.shard:
+            Shard.parse(run.manifest.shard)
+    except (TypeError, ValueError) as error:
+        report.find("manifest", where, f"a limit or the shard is none: {error}")
+    if run.manifest.shard and any("seeds" not in c and not c["reason"] for c in run.manifest.cells):
+        report.find("manifest", where, "every cell of a shard must say which seeds are its share")
+    labels = {str(entry["label"]) for entry in run.manifest.suite["navigators"]}
+    for label in sorted(set(run.manifest.unguarded) - labels):
+        report.find("manifest", where, f"unguarded names {label!r}, which is no navigator of it")
 
 
 def _scenario(
@@ -123,6 +141,8 @@ def _compare_cells(run: RunFolder, cells: list[Cell], where: str, report: Report
         }  # fmt: skip
         if cell.also or "also" in said:
             expected["also"] = list(cell.also)
+        if not run.manifest.shard and "seeds" in said:
+            expected["seeds"] = None  # only a shard says which seeds it runs
         for name, value in expected.items():
             if said.get(name) != value:
                 report.find(

@@ -11,6 +11,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from benchnav.errors import BenchnavError, StoreError
+from benchnav.runner.caveat import caveats_of
+from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
 from benchnav.runner.verify.coverage import covered
 from benchnav.runner.verify.examine import Examination, examine
@@ -21,7 +23,8 @@ from benchnav.runner.verify.referee import require_referee
 from benchnav.runner.verify.rerun import check_reasons
 from benchnav.runner.verify.restored import restore
 from benchnav.runner.verify.sampled import sampled
-from benchnav.store.manifest import versions
+from benchnav.store.manifest import Manifest, versions
+from benchnav.store.pinned import changed_since, pinned, pinned_digest
 from benchnav.store.run_folder import RunFolder
 from benchnav.threads import core_count
 
@@ -47,7 +50,7 @@ def verify(
     """Re-simulate a run and check everything in it.
 
     Args:
-        run: the run; it is only read.
+        run: the run; it is only read, as it is when this begins.
         wanted: what to do beyond that.
         workers: processes; None: as many as there are cores; 0: in this process.
         progress: is told of every finished episode.
@@ -56,18 +59,13 @@ def verify(
         StoreError: an older benchnav made the run, which did not keep what this needs.
         MissingExtraError: the referee is wanted, and python-fcl or trimesh is not installed.
     """
-    if run.manifest.schema < VERIFIABLE:
-        raise StoreError(
-            f"A run must be of schema {VERIFIABLE} or later to be verified. {run.shown} is of"
-            f" schema {run.manifest.schema}: benchnav kept too little then. Run the suite again."
-        )
     if wanted.referee:
         require_referee()
     told = progress if progress is not None else Progress()
-    report = Report()
-    _note_versions(run, report)
+    run = pinned(run)
+    report = Report(content=pinned_digest(run))
     with TemporaryDirectory(prefix="benchnav-verify-") as root:
-        tasks = _tasks(run, Path(root), wanted, report)
+        tasks = tasks_of(run, Path(root), wanted, report)
         episodes = sum(len(task.check.part.seeds) for task in tasks)
         told.begin(episodes, 0)
         try:
@@ -76,14 +74,31 @@ def verify(
                 told.advance(len(task.check.part.seeds))
         finally:
             told.end()
+    changed = changed_since(run)
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        report.find(
+            "changed", str(run.shown),
+            f"{changed[0]}{more} changed while the run was verified: verify it again once nothing"
+            " writes it",
+        )  # fmt: skip
     report.sort()
     return report
 
 
-def _tasks(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[Examination]:
+def tasks_of(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[Examination]:
+    """Return what is to be examined of a pinned run; what its manifest shows goes to the report."""
+    if run.manifest.schema < VERIFIABLE:
+        raise StoreError(
+            f"A run must be of schema {VERIFIABLE} or later to be verified. {run.shown} is of"
+            f" schema {run.manifest.schema}: benchnav kept too little then. Run the suite again."
+        )
+    _note_versions(run, report)
     suite = restore(run, root, report)
     if suite is None:
         return []
+    report.caveats += [caveat.text for caveat in caveats_of(run.manifest)]
+    report.claims = _claims(run.manifest) if report.clean else ""
     entries = {cell.entry.label: cell.entry for cell in suite.cells}
     report.sources += [compare_source(e, run.packed is not None) for e in entries.values()]
     if wanted.rerun:
@@ -100,6 +115,18 @@ def _tasks(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[E
         Examination(check, tuple(seeds), wanted.referee, wanted.rerun, packed)
         for check, seeds in zip(checks, chosen, strict=True)
     ]
+
+
+def _claims(manifest: Manifest) -> str:
+    """What stands in the manifest that nothing else of the run follows from."""
+    suite = manifest.suite
+    shard = f", shard {manifest.shard}" if manifest.shard else ""
+    return (
+        f"suite {suite['name']} at version {suite['version']}{shard}, limits"
+        f" {Limits.of(manifest.limits)}, titles and descriptions of scenarios, made on"
+        f" {manifest.created} by benchnav {manifest.versions.get('benchnav')} on"
+        f" {manifest.platform}"
+    )
 
 
 def _note_versions(run: RunFolder, report: Report) -> None:

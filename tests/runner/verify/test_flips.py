@@ -187,7 +187,7 @@ def test_every_column_of_results(forger, findings, column, cell):
         return _off(value) if column in ("value", "rehearsal_seconds") else flipped(value)
 
     forger.column(stem, RESULTS_FILE, column, change, row)
-    assert findings(forger.run)[0] & {"metric", "seal"}  # the seal: no results can hold it
+    assert findings(forger.run)[0] & {"metric", "identity", "seal"}
 
 
 def test_every_metric(forger, findings):

@@ -18,6 +18,7 @@ from benchnav.store.episodes import from_table, to_table
 from benchnav.store.pack import pack
 from benchnav.store.part import EPISODES_FILE, RESULTS_FILE
 from benchnav.store.run_folder import RunFolder
+from tests.runner.verify.forge import Forger
 
 
 @pytest.fixture
@@ -55,6 +56,21 @@ def test_commands_that_were_replaced_consistently(replaced, findings):
     assert kinds == {"rerun"}
     assert len({f.where for f in report.findings}) == 1
     assert report.findings[0].where.startswith("tiny/crossing@1, known, walk, seed ")
+
+
+def test_a_claim_that_a_clock_decided_is_not_believed(replaced, findings):
+    """The installed navigators are asked: otherwise the claim would keep them from being run."""
+    forger = Forger(replaced)
+    (stem,) = forger.stems("walk")
+    for row in range(3):
+        forger.column(stem, EPISODES_FILE, "reproducible", lambda _: False, row)
+    assert findings(replaced)[0] == set()
+    kinds, report = findings(replaced, rerun=True)
+    text = " | ".join(finding.what for finding in report.findings)
+    assert kinds == {"rerun"}
+    assert text.count("reproducible is False, run again True") == 3
+    assert text.count("digest is") == 1
+    assert report.notes == {}
 
 
 @pytest.mark.parametrize(
