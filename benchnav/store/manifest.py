@@ -13,12 +13,12 @@ from typing import Any, Literal
 from benchnav.errors import CorruptPartError, NoRunError, StoreError
 from benchnav.store import checked_json
 from benchnav.store.run_path import RunPath, run_path
+from benchnav.store.spans import SEED_END
 
 SCHEMA = 4  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source
 MANIFEST = "manifest.json"
 _KEY = re.compile(r"[A-Za-z0-9@_-][A-Za-z0-9@._-]{0,250}")  # of a cell: the name of its folder
 _SOURCE = re.compile(r"[0-9a-f]{16}")
-_MOST_SEED = 10**15
 _OF_A_CELL = ("key", "scenario", "track", "navigator", "reason")
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
 
@@ -167,5 +167,5 @@ def _refuse_strange_cells(cells: Sequence[Mapping[str, Any]]) -> None:
             raise ValueError(f"cells[{i}].{strange[0]} must be text")
         for span in cell.get("seeds", ()):
             first, stop = map(int, span)
-            if not 0 <= first < stop <= _MOST_SEED:
+            if not 0 <= first < stop <= SEED_END:
                 raise ValueError(f"cells[{i}].seeds must be spans; got {span}")

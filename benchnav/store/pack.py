@@ -18,15 +18,17 @@ from benchnav.store.manifest import MANIFEST
 from benchnav.store.part import FILES, SEAL
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.scenario_files import FOLDER, sha256_of
+from benchnav.store.spans import SEED_DIGITS
 
 SUFFIX = ".bnrun"
 INDEX = "index.json"
 FORMAT = 1  # of the archive
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the first that zip knows: a pack does not tell when it was made
+_SEED = rf"[0-9]{{6,{SEED_DIGITS}}}"
 _SUFFIXES = "|".join(re.escape(suffix) for suffix in (*FILES, SEAL))
 MEMBER = re.compile(
     rf"{re.escape(MANIFEST)}|{FOLDER}/[0-9a-f]{{64}}"
-    rf"|parts/[A-Za-z0-9@_-][A-Za-z0-9@._-]{{0,250}}/[0-9]{{6,15}}-[0-9]{{6,15}}(?:{_SUFFIXES})"
+    rf"|parts/[A-Za-z0-9@_-][A-Za-z0-9@._-]{{0,250}}/{_SEED}-{_SEED}(?:{_SUFFIXES})"
 )
 """What a member may be called: none of it leads out of a folder."""
 

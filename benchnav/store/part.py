@@ -21,12 +21,13 @@ from benchnav.errors import CorruptPartError
 from benchnav.store import checked_json
 from benchnav.store.episodes import from_table
 from benchnav.store.results import completed
+from benchnav.store.spans import SEED_DIGITS
 
 SEAL = ".seal.json"
 EPISODES_FILE = ".episodes.parquet"
 RESULTS_FILE = ".results.parquet"
 REHEARSALS_FILE = ".rehearsals.parquet"  # only where there were rehearsals
-_STEM = re.compile(r"([0-9]{6,9})-([0-9]{6,9})")
+_STEM = re.compile(rf"([0-9]{{6,{SEED_DIGITS}}})-([0-9]{{6,{SEED_DIGITS}}})")
 FILES = (EPISODES_FILE, RESULTS_FILE, REHEARSALS_FILE)
 MOST_SEEDS = 1_000_000  # of a part, whatever its name says
 MOST_BYTES = 8 << 30  # that a file of a part may hold once it is decompressed

@@ -1,6 +1,9 @@
-"""Seeds in few numbers."""
+"""Seeds in few numbers, and which there are."""
 
 from collections.abc import Iterable
+
+SEED_DIGITS = 15  # at most, on the command line and in the names of files
+SEED_END = 10**SEED_DIGITS - 1  # the last number that a range of seeds may end before
 
 
 def spans(seeds: Iterable[int]) -> list[list[int]]:
