@@ -27,7 +27,7 @@ _SUM = hashlib.sha256().digest_size
 _STALE = 3600.0  # [s] after which an unfinished file belongs to a process that was killed
 
 
-class KernelCache(FunctionCache):  # type: ignore[misc] # Numba has no types
+class KernelCache(FunctionCache):
     """The compiled signatures of one function."""
 
     def __init__(self, function: Callable[..., Any], folder: Path) -> None:
@@ -36,7 +36,7 @@ class KernelCache(FunctionCache):  # type: ignore[misc] # Numba has no types
         self._impl = _Codec()
         self._cache_path = str(folder)
         name = f"{function.__module__}.{function.__qualname__}".replace("<", "").replace(">", "")
-        self._cache_file = _Files(folder, name)
+        self._cache_file: Any = _Files(folder, name)
         self.enable()
 
     def load_overload(self, signature: Any, target: Any) -> Any:
@@ -57,7 +57,7 @@ class KernelCache(FunctionCache):  # type: ignore[misc] # Numba has no types
         return (*super()._index_key(signature, codegen), source)
 
 
-class _Codec(CompileResultCacheImpl):  # type: ignore[misc]
+class _Codec(CompileResultCacheImpl):
     """What Numba keeps of a compiled function."""
 
     def __init__(self) -> None:
@@ -90,7 +90,7 @@ class _Files:
             return None
         if hashlib.sha256(raw[_SUM:]).digest() != raw[:_SUM]:
             return None
-        version, kept, data = pickle.loads(raw[_SUM:])
+        version, kept, data = pickle.loads(raw[_SUM:])  # noqa: S301 - from the user's own folder
         return data if (version, kept) == (numba.__version__, key) else None
 
     def save(self, key: object, data: object) -> None:
@@ -103,11 +103,11 @@ class _Files:
                 self._folder.mkdir(parents=True, exist_ok=True)
             handle, temporary = tempfile.mkstemp(prefix=_TEMPORARY, dir=self._folder)
             try:
-                with open(handle, "wb") as file:
+                with os.fdopen(handle, "wb") as file:
                     file.write(hashlib.sha256(content).digest() + content)
                 if path.is_dir():
                     shutil.rmtree(path)
-                os.replace(temporary, path)
+                Path(temporary).replace(path)
             finally:
                 Path(temporary).unlink(missing_ok=True)
 

@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import numba
 import pytest
@@ -110,7 +111,7 @@ def test_a_full_disk_keeps_nothing(tmp_path, monkeypatch):
         raise OSError(28, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr(os, "replace", full)
+        patch.setattr(Path, "replace", full)
         assert not was_loaded(compiled(tmp_path))
     assert list(tmp_path.iterdir()) == []
 

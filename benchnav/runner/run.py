@@ -20,6 +20,7 @@ from benchnav.runner.suite import Suite
 from benchnav.runner.task import Outcome, Task, chunks
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath, run_path
+from benchnav.store.scenario_files import keep_files
 from benchnav.threads import core_count
 
 Executor = Callable[[Sequence[Task], int | None, Progress, Limits], Generator[Finished, None, None]]
@@ -122,8 +123,10 @@ def run_suite(
         summary.in_process = tuple(dict.fromkeys(cell.entry.label for cell in here))
     wanted = _wanted(suite, cells, shard)
     manifest = planned(suite, cells, wanted, shard)
-    folder, limits = start(suite, out, manifest, timeout, memory)
-    with folder.writing():
+    begun, limits = start(suite, out, manifest, timeout, memory)
+    with begun.writing() as folder:
+        for scenario in suite.scenarios:
+            keep_files(folder.path, scenario.named_files())
         renewal = Renewal.of(folder, manifest)
         if not again:
             renewal.refuse(folder)

@@ -9,7 +9,9 @@ from pathlib import Path
 MOST_FILES = 5_000  # of a folder
 MOST_BYTES = 4 << 30  # of a file; of a larger one its size and this much count
 _SKIPPED = {"__pycache__", "tests", "test", "node_modules", "site-packages"}
-_NO_SOURCE = (".pyc", ".pyo", ".pyi", ".md", ".rst", ".typed", ".log", ".nbi", ".nbc", ".kernel", "~", ".swp")
+_NO_SOURCE = (
+    ".pyc", ".pyo", ".pyi", ".md", ".rst", ".typed", ".log", ".nbi", ".nbc", ".kernel", "~", ".swp",
+)  # fmt: skip
 
 
 def files_below(folder: Path) -> Iterator[Path]:

@@ -14,6 +14,7 @@ from pathlib import Path
 from zipfile import ZIP_STORED, ZipFile, ZipInfo
 
 from benchnav.errors import StoreError, UsageError
+from benchnav.store.lock import claimed
 from benchnav.store.manifest import MANIFEST
 from benchnav.store.part import FILES, SEAL
 from benchnav.store.run_folder import RunFolder
@@ -78,26 +79,31 @@ def pack(run: RunFolder, out: Path) -> None:
 
     Raises:
         UsageError: ``out`` is there already, or a scenario's file is named by its whole path.
+        RunConflictError: another process writes ``out``.
         StoreError: a file of the run lacks, or the disk refuses.
     """
-    if out.exists():
-        raise UsageError(f"{out} must be a new file. It is there already.")
+    _refuse_existing(out)
     _refuse_whole_paths(run)
     found = content(run)
     index = json.dumps({"format": FORMAT, "files": found}, indent=1, sort_keys=True)
     temporary = out.with_name(f".writing-{out.name}")
     try:
-        with ZipFile(temporary, "w", ZIP_STORED) as archive:
-            archive.writestr(_info(INDEX, len(index)), index)
-            for name, facts in found.items():
-                _copy(run.path / name, archive, _info(name, int(facts["bytes"])))
-        with temporary.open("rb") as file:
-            os.fsync(file.fileno())
-        temporary.replace(out)
+        with claimed(temporary):
+            _refuse_existing(out)  # another process wrote it meanwhile
+            with ZipFile(temporary, "w", ZIP_STORED) as archive:
+                archive.writestr(_info(INDEX, len(index)), index)
+                for name, facts in found.items():
+                    _copy(run.path / name, archive, _info(name, int(facts["bytes"])))
+            with temporary.open("rb") as file:
+                os.fsync(file.fileno())
+            temporary.replace(out)
     except OSError as error:
         raise StoreError(f"{out} must be writable. The system says: {error.strerror}.") from error
-    finally:
-        temporary.unlink(missing_ok=True)
+
+
+def _refuse_existing(out: Path) -> None:
+    if out.exists():
+        raise UsageError(f"{out} must be a new file. It is there already.")
 
 
 def _refuse_whole_paths(run: RunFolder) -> None:
