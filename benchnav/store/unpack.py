@@ -6,7 +6,6 @@ import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
@@ -15,6 +14,7 @@ from benchnav.store.manifest import load_manifest
 from benchnav.store.pack import FORMAT, INDEX, MEMBER
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath, run_path
+from benchnav.temporary_folder import TemporaryFolder
 
 MOST_MEMBERS = 1_000_000
 _ZIP = b"PK"  # with which every zip archive begins
@@ -34,12 +34,13 @@ def opened(path: RunPath) -> Iterator[RunFolder]:
     if not path.is_file():
         yield RunFolder.open(path)
         return
-    with TemporaryDirectory(prefix="benchnav-pack-") as folder:
+    with TemporaryFolder("pack") as temporary:
+        folder = temporary.path
         try:
-            unpack(path, Path(folder))
-            yield RunFolder(Path(folder), load_manifest(Path(folder)), path)
+            unpack(path, folder)
+            yield RunFolder(folder, load_manifest(folder), path)
         except StoreError as error:
-            raise type(error)(str(error).replace(folder, str(path))) from error
+            raise type(error)(str(error).replace(str(folder), str(path))) from error
 
 
 def unpack(path: Path, folder: Path) -> None:
