@@ -18,6 +18,7 @@ import pyarrow.parquet as pq
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError
+from benchnav.plain_file import open_file, read_file
 from benchnav.store import checked_json
 from benchnav.store.episodes import from_table
 from benchnav.store.results import completed
@@ -30,6 +31,7 @@ REHEARSALS_FILE = ".rehearsals.parquet"  # only where there were rehearsals
 _STEM = re.compile(rf"([0-9]{{6,{SEED_DIGITS}}})-([0-9]{{6,{SEED_DIGITS}}})")
 FILES = (EPISODES_FILE, RESULTS_FILE, REHEARSALS_FILE)
 MOST_SEEDS = 1_000_000  # of a part, whatever its name says
+MOST_SEAL = 1 << 20  # bytes
 MOST_BYTES = 8 << 30  # that a file of a part may hold once it is decompressed
 _UNDECODABLE = (
     KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError, RecursionError,
@@ -96,7 +98,7 @@ class Part:
     def _table(self, suffix: str) -> pa.Table:
         path, sealed = self.path(suffix), self._sealed(suffix)
         self._check_size(suffix, sealed)
-        with path.open("rb") as file:
+        with open_file(path) as file:
             found = hashlib.file_digest(file, "sha256").hexdigest()
         if found != sealed["sha256"]:
             raise self._corrupt(
@@ -131,7 +133,7 @@ class Part:
     def _seal(self) -> dict[str, Any]:
         seal = self.path(SEAL)
         try:
-            said = checked_json.load(seal.read_text(encoding="utf-8"), (*FILES, "episodes"))
+            said = checked_json.load(read_file(seal, MOST_SEAL).decode(), (*FILES, "episodes"))
         except (OSError, ValueError, RecursionError) as error:
             raise self._corrupt(seal, f"cannot be read ({error})") from error
         if said.get("episodes") != len(self.seeds):

@@ -155,6 +155,6 @@ def test_workers_and_isolated_processes_go_too(more, suite, begin, tmp_path):
     process = begin("run", suite, *arguments)
     code, stderr = stopped(process, signal.SIGTERM)
     assert code == 143
-    assert "Interrupted by SIGTERM: 0 of 4 episodes stored. The same command" in stderr
+    assert "Interrupted by SIGTERM: 0 of 2 episodes stored. The same command" in stderr
     assert list((tmp_path / "temporary").iterdir()) == []
     assert not list(tmp_path.glob("new/parts/*/*"))
