@@ -3,8 +3,8 @@
 import errno
 import os
 import stat
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO
 
 _KINDS = {
     stat.S_IFDIR: "a folder",
@@ -16,7 +16,7 @@ _KINDS = {
 _AT_ONCE = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
 
 
-def open_file(path: Path) -> BinaryIO:
+def open_file(path: Path) -> BufferedReader:
     """Open ``path`` for reading. Raises OSError where it is not there, or is not a plain file."""
     _refuse_other(path, path.stat().st_mode)  # before it is opened, which can do things to a device
     file = os.fdopen(os.open(path, os.O_RDONLY | _AT_ONCE), "rb")

@@ -117,4 +117,6 @@ def test_results_are_written_into_files_only(strange, call, suite):
     make("x.md")
     code, _, stderr = call("leaderboard", "run", "--out", "x.md")
     assert code == 1
-    assert stderr.endswith(f"x.md must be writable. The system says: it must be a file, and is {kind}.\n")
+    assert stderr.endswith(
+        f"x.md must be writable. The system says: it must be a file, and is {kind}.\n"
+    )
