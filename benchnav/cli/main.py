@@ -13,6 +13,7 @@ from benchnav.cli.doctor import doctor
 from benchnav.cli.imports import import_app
 from benchnav.cli.leaderboard import leaderboard
 from benchnav.cli.listing import list_
+from benchnav.cli.machine_fault import machine_fault
 from benchnav.cli.merge import merge
 from benchnav.cli.new import new_app
 from benchnav.cli.pack import pack
@@ -102,10 +103,13 @@ def status(arguments: Sequence[str]) -> int:
         return tell(aborted.__cause__)
     except SystemExit as left:  # typer's, where the reader of a help leaves early
         return 0 if isinstance(left.__context__, BrokenPipeError) else 1
-    except OSError as error:  # of the machine: a folder, a disk, the help on a full one
+    except (OSError, MemoryError, ImportError, RuntimeError) as error:
+        if not (sentence := machine_fault(error)):
+            raise
         drop(sys.stdout)
-        place = f"{error.filename}: " if error.filename else ""
-        say(f"benchnav: {place}{error.strerror or error}")
+        say(f"benchnav: {sentence}")
+        if DEBUG in arguments:
+            say(trace(error))
         return 1
     except _Usage as error:
         error.show()

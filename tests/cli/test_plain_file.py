@@ -103,7 +103,7 @@ def test_every_command_refuses_what_is_no_file(place, strange, call, suite, tmp_
 
 
 def test_a_run_or_pack_must_be_one(strange, call):
-    make, kind = strange
+    make, _ = strange
     make("x.bnrun")
     for verb in ("leaderboard", "verify"):
         code, _, stderr = call(verb, "x.bnrun")
