@@ -30,9 +30,8 @@ class TemporaryFolder:
     """
 
     def __init__(self, kind: str) -> None:
-        root = Path(tempfile.gettempdir())
-        drop_abandoned(root)
-        self.path, self._handle = _locked_folder(root, kind)
+        _drop_once()
+        self.path, self._handle = _locked_folder(Path(tempfile.gettempdir()), kind)
 
     def remove(self) -> None:
         """Remove it and everything in it; once more does nothing."""
@@ -54,11 +53,15 @@ class TemporaryFolder:
 
 
 @cache
-def drop_abandoned(root: Path) -> None:
-    """Remove the folders in ``root`` that no process holds; once in a process."""
+def _drop_once() -> None:
+    drop_abandoned()
+
+
+def drop_abandoned() -> None:
+    """Remove the folders of processes that are gone."""
     if fcntl is None:
         return
-    for path in root.glob(f"{_PREFIX}*"):
+    for path in Path(tempfile.gettempdir()).glob(f"{_PREFIX}*"):
         with suppress(OSError), _opened(path) as handle:  # OSError: another process holds it
             if os.fstat(handle).st_uid == os.geteuid():
                 fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)

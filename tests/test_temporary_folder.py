@@ -8,6 +8,7 @@ import tempfile
 
 import pytest
 
+from benchnav import temporary_folder
 from benchnav.temporary_folder import TemporaryFolder, drop_abandoned
 
 MAKES = """
@@ -23,7 +24,7 @@ sys.stdin.read()
 @pytest.fixture
 def root(tmp_path, monkeypatch):
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-    drop_abandoned.cache_clear()
+    temporary_folder._drop_once.cache_clear()
     return tmp_path
 
 
@@ -57,7 +58,7 @@ def test_what_another_process_uses_stays_and_goes_once_that_was_killed(root, oth
     process.send_signal(signal.SIGKILL)
     process.wait()
     assert path.exists()
-    drop_abandoned.cache_clear()
+    temporary_folder._drop_once.cache_clear()
     with TemporaryFolder("other") as folder:
         assert list(root.iterdir()) == [folder.path]
 
@@ -71,7 +72,7 @@ def test_nothing_else_is_removed(root):
     (root / f"benchnav-{os.geteuid()}").mkdir()  # the user's private folder
     (root / "benchnav-pack-x").mkdir()  # of another version, which locks nothing
     before = sorted(root.rglob("*"))
-    drop_abandoned(root)
+    drop_abandoned()
     assert sorted(root.rglob("*")) == before
 
 
@@ -79,7 +80,7 @@ def test_many_processes_at_once_never_take_each_others(root):
     code = (
         "from benchnav.temporary_folder import TemporaryFolder, drop_abandoned\n"
         "for k in range(100):\n"
-        "    drop_abandoned.cache_clear()\n"
+        "    drop_abandoned()\n"
         "    with TemporaryFolder('test') as folder:\n"
         "        (folder.path / 'x').write_text('x')\n"
         "        assert (folder.path / 'x').read_text() == 'x'\n"

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field, replace
 
 from benchnav.errors import UsageError
@@ -21,6 +21,7 @@ from benchnav.runner.task import Outcome, Task, chunks
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath, run_path
 from benchnav.store.scenario_files import keep_files
+from benchnav.temporary_folder import drop_abandoned
 from benchnav.threads import core_count
 
 Executor = Callable[[Sequence[Task], int | None, Progress, Limits], Generator[Finished, None, None]]
@@ -147,6 +148,8 @@ def run_suite(
         finally:
             told.end()
             pool.dismiss()
+            with suppress(OSError):
+                drop_abandoned()  # of workers that were killed
             not_run = {cell.key: why for cell, why in summary.not_applicable}
             summary.replaced.update(renewal.finish(folder.amend(reasons | not_run)))
     return summary

@@ -10,9 +10,11 @@ import pytest
 
 from benchnav.runner.process_tree import tree
 
-HANGS = "import sys, time, {module} as m;" + (
-    "m.{name} = lambda *a, **k: (print('now', file=sys.stderr, flush=True), [time.sleep(0.05) for _ in range(2000)]);"
-)  # short: a signal just before a sleep does not end it
+HANGS = (
+    "import sys, time, {module} as m;"
+    "pause = lambda: [time.sleep(0.05) for _ in range(2000)];"  # a signal may just miss a sleep
+    "m.{name} = lambda *a, **k: (print('now', file=sys.stderr, flush=True), pause());"
+)
 MAIN = "from benchnav.cli.main import main; main()"
 STATUS = {signal.SIGINT: 130, signal.SIGTERM: 143, signal.SIGHUP: 129}
 
