@@ -37,6 +37,7 @@ COMMAND = (sys.executable, "-c", "from benchnav.cli.main import main; main()")
 SALT = "9e" * 16
 TIMED = "rehearsal_seconds"  # the one column of timings that tables of verifiable metrics show
 WITHIN = 0.5  # of the time that a command takes undisturbed, until the latest kill
+IN_A_ROW = 5  # kills of one command, before it may reach its end and the next is killed
 RUN, PACK = "run", "run.bnrun"  # what a course makes
 
 SUITE = """
@@ -99,11 +100,12 @@ class Killer:
 
         Raises AssertionError where it fails.
         """
+        killed = 0
         while True:
             if command[0] == "pack" and (folder / PACK).exists():
                 return  # it was killed after its work was done
             process = _begin(command, folder)
-            left = self.tally.kills < self.times
+            left = self.tally.kills < self.times and killed < IN_A_ROW
             moment = self.moments.uniform(0.0, WITHIN * span) if left else None
             try:
                 code = process.wait(moment)
@@ -111,6 +113,7 @@ class Killer:
                 self.tally.states[f"{command[0]}: {_state(folder, command)}"] += 1
                 _kill(process, self.parent_only)
                 self.tally.kills += 1
+                killed += 1
                 self.tally.seconds.append(moment or 0.0)
                 if self.tally.kills % 10 == 0:
                     print(f"{self.tally.kills} of {self.times}", file=sys.stderr, flush=True)
