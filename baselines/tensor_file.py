@@ -11,7 +11,9 @@ from safetensors.numpy import load, save
 
 from benchnav.arrays import AnyArray
 from benchnav.errors import PluginError
+from benchnav.plain_file import read_file
 
+MOST_BYTES = 1 << 30
 _KEY = "about"
 
 
@@ -37,9 +39,11 @@ def write_tensors(path: Path, tensors: Mapping[str, AnyArray], about: Mapping[st
 def read_tensors(path: Path) -> TensorFile:
     """Raises PluginError where the file is missing, cut short, or something else."""
     try:
-        data = path.read_bytes()
+        data = read_file(path, MOST_BYTES)
     except OSError as error:
         raise PluginError(f"{path}: cannot be read: {error.strerror}.") from None
+    if len(data) > MOST_BYTES:
+        raise PluginError(f"{path}: must have at most {MOST_BYTES} bytes; it is larger.")
     try:
         tensors = load(data)
         header = json.loads(data[8 : 8 + int.from_bytes(data[:8], "little")])

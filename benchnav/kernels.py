@@ -15,14 +15,16 @@ import shutil
 import sys
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 from numba import njit
 from numba.core import config
 
+from benchnav.kernel_cache import KernelCache, drop_unfinished
 from benchnav.user_folders import UserFolder, user_cache
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -33,12 +35,10 @@ _CONSTANTS = ("arena", "episode")  # packages whose enumerations kernels freeze
 def kernel(function: F) -> F:
     """Compile once per signature, cached on disk where there is a folder for it."""
     folder = cache_folder(function.__module__.partition(".")[0])
-    settings = vars(config)
-    theirs = settings["CACHE_DIR"]
-    settings["CACHE_DIR"] = str(folder or theirs)
-    compiled: F = njit(function, cache=folder is not None, nogil=True, error_model="numpy")
-    settings["CACHE_DIR"] = theirs  # other packages keep their kernels where they did
-    return compiled
+    compiled: Any = njit(function, nogil=True, error_model="numpy")
+    if folder is not None and Path(function.__code__.co_filename).is_file():
+        compiled._cache = KernelCache(function, folder)
+    return cast(F, compiled)
 
 
 def inlined(function: F) -> F:
@@ -72,7 +72,9 @@ def cache_folder(package: str) -> Path | None:
     if base is None:
         return None
     folder = base / kernels_name(package)
-    if not folder.exists():
+    if folder.is_dir():
+        drop_unfinished(folder)
+    else:
         _forget_old(base)
     return folder
 
@@ -96,5 +98,6 @@ def cache_base() -> UserFolder:
 def _forget_old(base: Path) -> None:
     """Remove the kernels of states of the code that were not used for a month."""
     for folder in base.glob("kernels-*"):
-        if time.time() - folder.stat().st_mtime > 30 * 86400:
-            shutil.rmtree(folder, ignore_errors=True)
+        with suppress(OSError):  # another process forgets it at the same time
+            if time.time() - folder.stat().st_mtime > 30 * 86400:
+                shutil.rmtree(folder, ignore_errors=True)

@@ -154,7 +154,7 @@ def test_kernels_compile_where_nothing_can_be_kept(tmp_path, private):
 def test_numba_cache_dir_is_used_and_one_that_cannot_be_is_replaced(tmp_path, private):
     named = compiled(tmp_path, TMPDIR=str(private.parent), NUMBA_CACHE_DIR=str(tmp_path / "n"))
     assert named == ["4", str(tmp_path / "n"), ""]
-    assert list((tmp_path / "n").glob("kernels-*/*/*.nbi"))
+    assert list((tmp_path / "n").glob("kernels-*/*.kernel"))
     _, path, reason = compiled(tmp_path, TMPDIR=str(private.parent), NUMBA_CACHE_DIR="/dev/null/x")
     assert path == str(private / ".cache" / "benchnav")
     assert reason == "NUMBA_CACHE_DIR=/dev/null/x cannot be used (Not a directory)"

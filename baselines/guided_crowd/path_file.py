@@ -15,9 +15,11 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from benchnav.errors import InputError
+from benchnav.plain_file import read_file
 
 from .guiding_path import GuidingPath, arc_length, distinct
 
+MOST_BYTES = 256 << 20
 Number = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -64,7 +66,10 @@ def read_paths(file: Path | str) -> tuple[GuidingPath, ...]:
     """
     rule = f"{file} must be a file of guiding paths, as write_paths writes it."
     try:
-        said = _File.model_validate_json(Path(file).read_bytes())
+        raw = read_file(Path(file), MOST_BYTES)
+        if len(raw) > MOST_BYTES:
+            raise InputError(f"{rule} It has more than {MOST_BYTES} bytes.")
+        said = _File.model_validate_json(raw)
     except OSError as error:
         raise InputError(f"{rule} The system says: {error.strerror}.") from error
     except ValidationError as error:
@@ -85,4 +90,4 @@ def _path(k: int, said: _Path, rule: str) -> GuidingPath:
 
 def fingerprint_of(file: Path | str) -> str:
     """sha256 of the file."""
-    return hashlib.sha256(Path(file).read_bytes()).hexdigest()
+    return hashlib.sha256(read_file(Path(file), MOST_BYTES)).hexdigest()

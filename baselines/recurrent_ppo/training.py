@@ -22,6 +22,7 @@ from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.agent_vec_env import AgentVecEnv
 from benchnav.envs.trainer import TrainingReport
 from benchnav.errors import TrainingError, UsageError
+from benchnav.store.lock import locked
 from benchnav.threads import core_count
 
 from . import checkpoint
@@ -52,8 +53,15 @@ class Training:
         Raises:
             UsageError: the folder holds something else, or there is nothing to resume.
             TrainingError: a number stopped being finite; the last checkpoint is kept.
+            RunConflictError: another process trains into the folder.
         """
         self._claim(resume)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        with locked(self.folder):
+            self._claim(resume)  # another process began at the same time
+            return self._run(resume, report)
+
+    def _run(self, resume: bool, report: Report) -> dict[str, float]:
         torch.set_num_threads(1)
         self._lay_out(self.recipe.stages[0])
         self._validation = validation_batches(self.recipe)
@@ -62,7 +70,6 @@ class Training:
         if resume:
             progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
         else:
-            self.folder.mkdir(parents=True, exist_ok=True)
             checkpoint.save(self.folder, self.learner, progress)
         self._tell()
         curve = Curve(self.folder, progress.decisions)

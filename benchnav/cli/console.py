@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from benchnav.errors import StoreError, UsageError, did_you_mean
+from benchnav.plain_file import require_writable
 from benchnav.streams import drop
 from benchnav.visible import visible_lines
 
@@ -60,6 +61,7 @@ def spans(seeds: Sequence["Span"]) -> str:
 def write(path: Path, text: str) -> None:
     """Write a result to a file. Raises StoreError where that cannot be done."""
     try:
+        require_writable(path)
         path.write_text(text, encoding="utf-8")
     except OSError as error:
         raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from benchnav.cli.console import put, say
+from benchnav.cli.stopping import stoppable
 
 import_app = typer.Typer(help="Make a scenario of a published map.", no_args_is_help=True)
 
@@ -27,6 +28,7 @@ Force = Annotated[
 
 
 @import_app.command("movingai")
+@stoppable
 def movingai(
     map: Annotated[Path, typer.Argument(metavar="MAP", help="A .map file.")],
     out: Out,
@@ -65,6 +67,7 @@ def movingai(
 
 
 @import_app.command("ros-map")
+@stoppable
 def ros_map(
     map: Annotated[Path, typer.Argument(metavar="YAML", help="The map's YAML file.")],
     out: Out,

@@ -13,12 +13,14 @@ from benchnav.cli.doctor import doctor
 from benchnav.cli.imports import import_app
 from benchnav.cli.leaderboard import leaderboard
 from benchnav.cli.listing import list_
+from benchnav.cli.machine_fault import machine_fault
 from benchnav.cli.merge import merge
 from benchnav.cli.new import new_app
 from benchnav.cli.pack import pack
 from benchnav.cli.run import run
 from benchnav.cli.schema import schema
 from benchnav.cli.show import show
+from benchnav.cli.stopping import stop_on_signals, stoppable, tell
 from benchnav.cli.train import train
 from benchnav.cli.validate import validate
 from benchnav.cli.verify import verify
@@ -34,7 +36,6 @@ from benchnav.errors import (
 from benchnav.navigation.trace import notes, trace
 from benchnav.streams import drop, prepare_streams
 
-INTERRUPTED = 130
 DEBUG = "--debug"
 _Usage: type[Any] = typer.BadParameter.mro()[2]  # click's, which typers carry in changing places
 _ASKED_WRONGLY = (
@@ -44,27 +45,30 @@ _ASKED_WRONGLY = (
 app = typer.Typer(
     name="benchnav",
     help="Crowd navigation in unknown and dynamic environments: every method measured alike.",
-    epilog="Exit status: 0 done, 1 the work failed, 2 asked wrongly, 130 interrupted.",
+    epilog=(
+        "Exit status: 0 done, 1 the work failed, 2 asked wrongly, 130 interrupted (143 by SIGTERM,"
+        " 129 by SIGHUP)."
+    ),
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-app.command("run")(run)
-app.command("leaderboard")(leaderboard)
-app.command("verify")(verify)
-app.command("pack")(pack)
-app.command("compare")(compare)
-app.command("merge")(merge)
-app.command("train")(train)
-app.command("list")(list_)
-app.command("show")(show)
-app.command("validate")(validate)
-app.command("schema")(schema)
+app.command("run")(stoppable(run))
+app.command("leaderboard")(stoppable(leaderboard))
+app.command("verify")(stoppable(verify))
+app.command("pack")(stoppable(pack))
+app.command("compare")(stoppable(compare))
+app.command("merge")(stoppable(merge))
+app.command("train")(stoppable(train))
+app.command("list")(stoppable(list_))
+app.command("show")(stoppable(show))
+app.command("validate")(stoppable(validate))
+app.command("schema")(stoppable(schema))
 app.add_typer(import_app, name="import")
 app.add_typer(new_app, name="new")
-app.command("doctor")(doctor)
+app.command("doctor")(stoppable(doctor))
 
 
 def _version(asked: bool) -> None:
@@ -93,14 +97,19 @@ def status(arguments: Sequence[str]) -> int:
         if DEBUG in arguments:
             say(notes(error) or trace(error))
         return 2 if isinstance(error, _ASKED_WRONGLY) else 1
-    except (typer.Abort, KeyboardInterrupt):
-        return INTERRUPTED
+    except KeyboardInterrupt as stopped:
+        return tell(stopped)
+    except typer.Abort as aborted:
+        return tell(aborted.__cause__)
     except SystemExit as left:  # typer's, where the reader of a help leaves early
         return 0 if isinstance(left.__context__, BrokenPipeError) else 1
-    except OSError as error:  # of the machine: a folder, a disk, the help on a full one
+    except (OSError, MemoryError, ImportError, RuntimeError) as error:
+        if not (sentence := machine_fault(error)):
+            raise
         drop(sys.stdout)
-        place = f"{error.filename}: " if error.filename else ""
-        say(f"benchnav: {place}{error.strerror or error}")
+        say(f"benchnav: {sentence}")
+        if DEBUG in arguments:
+            say(trace(error))
         return 1
     except _Usage as error:
         error.show()
@@ -111,4 +120,5 @@ def status(arguments: Sequence[str]) -> int:
 def main() -> None:
     """Entry point of the command."""
     prepare_streams()
+    stop_on_signals()
     raise SystemExit(status(sys.argv[1:]))

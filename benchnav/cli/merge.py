@@ -21,7 +21,11 @@ def merge(
     from benchnav.cli.reading import warn_if_unfinished
     from benchnav.store import merge as merging
 
-    merged = merging.merge(runs, out)
+    try:
+        merged = merging.merge(runs, out)
+    except KeyboardInterrupt as stopped:
+        stopped.add_note(f"what was copied is kept. The same command continues in {out}.")
+        raise
     again = f"; already there, and the same: {merged.twice}" if merged.twice else ""
     say(f"{counted(merged.copied, 'episode')} copied{again}")
     warn_if_unfinished(merged.run)

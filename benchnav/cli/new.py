@@ -8,6 +8,7 @@ import typer
 
 from benchnav.cli.console import put, say
 from benchnav.cli.free_name import class_name, free_name, module_name, name_taken
+from benchnav.cli.stopping import stoppable
 from benchnav.errors import StoreError, UsageError
 
 new_app = typer.Typer(help="Write a plugin package to begin with.", no_args_is_help=True)
@@ -64,6 +65,7 @@ def _kinds() -> None:
 
 
 @new_app.command("navigator")
+@stoppable
 def navigator(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Small letters, digits and hyphens.")],
     folder: Annotated[

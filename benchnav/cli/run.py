@@ -142,13 +142,11 @@ def run(
             asked, folder, workers=workers, timeout=timeout, memory=memory, executor=running,
             shard=share, again=again, progress=progress(quiet), summary=summary,
         )  # fmt: skip
-    except KeyboardInterrupt:
-        parts = [
-            f"Interrupted: {summary.stored} of {counted(summary.total, 'episode')} stored.",
-            f"The same command with --out {folder} continues there.",
-            kept_for_now(summary),
-        ]
-        say(" ".join(part for part in parts if part))
+    except KeyboardInterrupt as stopped:
+        stopped.add_note(f"{summary.stored} of {counted(summary.total, 'episode')} stored.")
+        stopped.add_note(f"The same command with --out {folder} continues there.")
+        if kept := kept_for_now(summary):
+            stopped.add_note(kept)
         raise
     if not quiet:
         say(conclusion(summary, perf_counter() - began))

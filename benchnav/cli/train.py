@@ -44,8 +44,11 @@ def train(
     with training_progress(quiet) as report:
         try:
             trainer.train(said, seed, folder, resume=resume, device=device, report=report)
-        except KeyboardInterrupt:
-            say(f"Interrupted. Go on with: benchnav train {recipe} --out {folder} --resume")
+        except KeyboardInterrupt as stopped:
+            stopped.add_note(
+                "the last checkpoint is kept."
+                f" Go on with: benchnav train {recipe} --out {folder} --resume"
+            )
             raise
     put(str(folder / "weights.safetensors"))
 

@@ -1,9 +1,11 @@
 """The fence about a navigator's process: what it inherits, and what it can reach of this one.
 
-Where Linux allows it (namespaces of an ordinary user, util-linux), the process stands in a
-user, process, network and IPC namespace of its own: it sees no other process, and no
-capability of it counts outside. Everywhere on Linux this process is made unreadable to
-others of its user (`PR_SET_DUMPABLE`). `require_fence` tries whether that holds.
+Where Linux allows it (namespaces of an ordinary user, util-linux), the process stands in
+namespaces of its own (users, processes, network, IPC, host name, mounts): it sees no other
+process, has no capability, cannot write the kernel's own files, which root's number alone would
+allow, and finds harmless devices only (`benchnav.isolation.enclose`). Everywhere on Linux this
+process is made unreadable to others of its user (`PR_SET_DUMPABLE`). `require_fence` tries
+whether that holds.
 """
 
 import ctypes
@@ -27,14 +29,29 @@ _NAMESPACES = (
     "unshare", "--user", "--map-user=1000", "--map-group=1000", "--pid", "--fork", "--kill-child",
     "--mount-proc", "--net", "--ipc",
 )  # fmt: skip
+_ENCLOSED = (
+    *_NAMESPACES, "--uts", "--cgroup", "--keep-caps",
+    sys.executable, "-I", "-S", str(Path(__file__).with_name("enclose.py")),
+)  # fmt: skip
+_FENCES = (
+    (*_DIE_WITH_RUNNER, *_ENCLOSED), _ENCLOSED, (*_DIE_WITH_RUNNER, *_NAMESPACES), _NAMESPACES,
+    _DIE_WITH_RUNNER,
+)  # fmt: skip
 _LOOK = """
-import sys
+import os, sys
 try:
     with open(f"/proc/{sys.argv[1]}/mem", "rb") as memory:
         memory.seek(int(sys.argv[2]))
-        print(memory.read(1).hex())
+        memory.read(1)
+    print("read the memory of the runner")
 except OSError:
-    print("closed")
+    pass
+try:
+    os.open("/proc/sys/kernel/hostname", os.O_WRONLY)  # opened, and not written
+    print("write settings of the machine (/proc/sys)")
+except OSError:
+    pass
+print("closed")
 """
 _PR_SET_DUMPABLE = 4
 
@@ -51,7 +68,7 @@ def environment(folder: Path) -> Mapping[str, str]:
 @cache
 def prefix() -> tuple[str, ...]:
     """What a command is started by, so that it stands behind the fence that there is here."""
-    for fence in ((*_DIE_WITH_RUNNER, *_NAMESPACES), _NAMESPACES, _DIE_WITH_RUNNER):
+    for fence in _FENCES:
         if _works(fence):
             return fence
     return ()
@@ -61,7 +78,8 @@ def prefix() -> tuple[str, ...]:
 def require_fence() -> None:
     """Make this process unreadable, and try it from behind the fence.
 
-    Raises UsageError where what stands behind the fence could read this process's memory.
+    Raises UsageError where what stands behind the fence could read this process's memory, or
+    change settings of the machine.
     """
     hide()
     if not sys.platform.startswith("linux"):
@@ -70,10 +88,12 @@ def require_fence() -> None:
     where = (str(os.getpid()), str(ctypes.addressof(secret)))
     look = [*prefix(), sys.executable, "-I", "-S", "-c", _LOOK, *where]
     found = subprocess.run(look, capture_output=True, text=True, check=False)  # noqa: S603
-    if found.stdout.strip() != "closed":
+    reached = found.stdout.split("\n")
+    if reached[:1] != ["closed"]:
         raise UsageError(
-            "Isolated navigators must not be able to read the memory of the runner. Here they can:"
-            " namespaces cannot be made (unshare --user), and this user may read every process."
+            "Isolated navigators must not be able to read the memory of the runner, or to change"
+            f" the machine. Here they could {reached[0].strip() or 'not be started'}: namespaces"
+            " cannot be made (unshare --user --mount), and this user may do everything."
             f" Run as an ordinary user, or allow user namespaces.{_said(found.stderr)}"
         )
 

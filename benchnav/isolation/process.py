@@ -4,11 +4,9 @@ import contextlib
 import math
 import os
 import selectors
-import shutil
 import signal
 import subprocess
 import sys
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 from time import monotonic
@@ -18,6 +16,7 @@ from weakref import finalize
 from benchnav.errors import NavigatorError
 from benchnav.isolation import fence
 from benchnav.isolation.frame import HEAD, Fields, decode, encode, head
+from benchnav.temporary_folder import TemporaryFolder
 
 _ROOM = 1 << 20  # bytes of a pipe, where the system grants them
 _TAIL = 2000  # bytes of what it said last that are kept
@@ -31,12 +30,16 @@ class Process:
     """
 
     def __init__(self, command: Sequence[str]) -> None:
-        folder = tempfile.mkdtemp(prefix="navigator-")
-        self._popen = subprocess.Popen(  # noqa: S603 - the command is the user's
-            [*fence.prefix(), *command],
-            bufsize=0, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            cwd=folder, env=fence.environment(Path(folder)), start_new_session=True,
-        )  # fmt: skip
+        folder = TemporaryFolder("navigator")
+        try:
+            self._popen = subprocess.Popen(  # noqa: S603 - the command is the user's
+                [*fence.prefix(), *command],
+                bufsize=0, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                cwd=folder.path, env=fence.environment(folder.path), start_new_session=True,
+            )  # fmt: skip
+        except BaseException:
+            folder.remove()
+            raise
         self._pipes = [self._popen.stdin, self._popen.stdout, self._popen.stderr]
         self._in, self._out, self._err = (pipe.fileno() for pipe in self._pipes if pipe)
         for pipe in (self._in, self._out, self._err):
@@ -166,7 +169,7 @@ def _widen(pipe: int) -> None:
         pass  # as wide as it is
 
 
-def _stop(popen: subprocess.Popen[bytes], folder: str) -> None:
+def _stop(popen: subprocess.Popen[bytes], folder: TemporaryFolder) -> None:
     """End the process and all that it began, and remove its folder."""
     if popen.poll() is None:
         with contextlib.suppress(ProcessLookupError, PermissionError):
@@ -176,4 +179,4 @@ def _stop(popen: subprocess.Popen[bytes], folder: str) -> None:
     for pipe in (popen.stdin, popen.stdout, popen.stderr):
         if pipe is not None:
             pipe.close()
-    shutil.rmtree(folder, ignore_errors=True)
+    folder.remove()

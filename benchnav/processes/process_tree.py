@@ -4,10 +4,13 @@ Where the system shows no /proc (macOS, Windows) a process seems to be alone and
 is not known.
 """
 
+import multiprocessing
 import os
 import signal
 from contextlib import suppress
+from multiprocessing.connection import wait
 from pathlib import Path
+from threading import Thread
 
 PROC = Path("/proc")
 
@@ -34,6 +37,19 @@ def resident(pid: int) -> int:
 def tells_memory() -> bool:
     """Whether this system tells how much memory a process holds."""
     return resident(os.getpid()) > 0
+
+
+def end_with_parent() -> None:
+    """End this process, which multiprocessing began, as soon as the one that began it is gone."""
+    parent = multiprocessing.parent_process()
+    if parent is None:
+        return
+
+    def wait_for_its_end() -> None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+    Thread(target=wait_for_its_end, daemon=True).start()
 
 
 def kill(pid: int) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
-from tempfile import TemporaryDirectory, mkdtemp
+from tempfile import mkdtemp
 
 from benchnav.errors import BenchnavError
 from benchnav.plugins import Registration
@@ -16,6 +16,7 @@ from benchnav.runner.task import Outcome, Task
 from benchnav.store.manifest import versions
 from benchnav.store.part import FILES, SEAL, Part
 from benchnav.store.scenario_files import FOLDER, stage_files
+from benchnav.temporary_folder import TemporaryFolder
 
 
 @dataclass(frozen=True)
@@ -48,7 +49,7 @@ class Foreman:
         sys.path += [folder for folder in path if folder not in sys.path]
         main = sys.modules["__main__"]  # of who started this process: no worker is to run it
         main.__spec__, main.__file__ = None, None
-        self._home = TemporaryDirectory(prefix="benchnav-")
+        self._home = TemporaryFolder("ray")
         self._folders: dict[str, Path] = {}  # of scenarios' files, by hash
         self._crew = Crew(1, Progress(), limits, registrations)
 
@@ -59,7 +60,7 @@ class Foreman:
     def work(self, task: Task, files: Mapping[str, bytes]) -> list[Delivery] | Refusal:
         """Run a task. ``files`` are those that its scenario names, for where they lack."""
         try:
-            here = replace(task, folder=Path(self._home.name) / "parts" / task.cell.key)
+            here = replace(task, folder=self._home.path / "parts" / task.cell.key)
             finished = self._crew.run([self._staged(here, files)])
             return [self._delivery(task, piece, outcome) for piece, outcome in finished]
         except BenchnavError as error:
@@ -68,7 +69,7 @@ class Foreman:
     def leave(self) -> None:
         """Dismiss the worker, and leave nothing behind."""
         self._crew.dismiss()
-        self._home.cleanup()
+        self._home.remove()
 
     def _delivery(self, asked: Task, piece: Task, outcome: Outcome) -> Delivery:
         part, files = Part(piece.folder, piece.first, piece.stop), {}
@@ -84,7 +85,7 @@ class Foreman:
         scenario = task.cell.scenario
         if all((scenario.folder / name).is_file() for name in files):
             return task
-        home = Path(self._home.name)
+        home = self._home.path
         if scenario.hash not in self._folders:
             (home / FOLDER).mkdir(exist_ok=True)
             shas = {name: sha256(content).hexdigest() for name, content in files.items()}

@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Generator, Mapping, Sequence
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, field, replace
 
 from benchnav.errors import UsageError
@@ -20,6 +20,8 @@ from benchnav.runner.suite import Suite
 from benchnav.runner.task import Outcome, Task, chunks
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath, run_path
+from benchnav.store.scenario_files import keep_files
+from benchnav.temporary_folder import drop_abandoned
 from benchnav.threads import core_count
 
 Executor = Callable[[Sequence[Task], int | None, Progress, Limits], Generator[Finished, None, None]]
@@ -122,8 +124,10 @@ def run_suite(
         summary.in_process = tuple(dict.fromkeys(cell.entry.label for cell in here))
     wanted = _wanted(suite, cells, shard)
     manifest = planned(suite, cells, wanted, shard)
-    folder, limits = start(suite, out, manifest, timeout, memory)
-    with folder.writing():
+    begun, limits = start(suite, out, manifest, timeout, memory)
+    with begun.writing() as folder:
+        for scenario in suite.scenarios:
+            keep_files(folder.path, scenario.named_files())
         renewal = Renewal.of(folder, manifest)
         if not again:
             renewal.refuse(folder)
@@ -144,6 +148,8 @@ def run_suite(
         finally:
             told.end()
             pool.dismiss()
+            with suppress(OSError):
+                drop_abandoned()  # of workers that were killed
             not_run = {cell.key: why for cell, why in summary.not_applicable}
             summary.replaced.update(renewal.finish(folder.amend(reasons | not_run)))
     return summary

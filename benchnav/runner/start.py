@@ -15,7 +15,6 @@ from benchnav.runner.shard import Shard
 from benchnav.runner.suite import Suite
 from benchnav.store.manifest import MANIFEST, Manifest
 from benchnav.store.run_folder import RunFolder
-from benchnav.store.scenario_files import keep_files
 from benchnav.store.spans import spans
 
 
@@ -66,8 +65,6 @@ def start(
             f"{out} must hold {_share(manifest)}. It holds {_share(folder.manifest)}."
             " Give another --out."
         )
-    for scenario in suite.scenarios:
-        keep_files(folder.path, scenario.named_files())
     held = folder.manifest.salt
     if suite.salt not in ("", held):
         raise RunConflictError(

@@ -15,9 +15,10 @@ from benchnav.scenario.catalogue import names as scenario_names
 from benchnav.scenario.parameters import split_parameters
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.yaml_reader import read_yaml
+from benchnav.store.spans import SEED_DIGITS
 
 MAX_SEEDS = 1_000_000
-_RANGE = re.compile(r"(?:([0-9]{1,15}):)?([0-9]{1,15})")
+_RANGE = re.compile(rf"(?:([0-9]{{1,{SEED_DIGITS}}}):)?([0-9]{{1,{SEED_DIGITS}}})")
 _SUFFIXES = (".yaml", ".yml")
 
 Name = Annotated[str, Field(min_length=1, max_length=200)]
@@ -77,7 +78,10 @@ def parse_seeds(text: str) -> range:
 
     Raises ValueError, with the rule and what came instead.
     """
-    rule = f"must be N (seeds 0 … N-1) or A:B (seeds A … B-1), with 1 to {MAX_SEEDS} seeds"
+    rule = (
+        f"must be N (seeds 0 … N-1) or A:B (seeds A … B-1), with 1 to {MAX_SEEDS} seeds and at"
+        f" most {SEED_DIGITS} digits"
+    )
     match = _RANGE.fullmatch(text)
     if match is None:
         raise ValueError(f"{rule}; got {text[:60]!r}")

@@ -11,6 +11,7 @@ import numpy as np
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.errors import MeshError, MissingExtraError
 from benchnav.geometry.rotation import rotated
+from benchnav.plain_file import read_file
 
 Up = Literal["x", "y", "z"]
 
@@ -77,8 +78,7 @@ def _bytes(path: Path) -> bytes:
             f"{path}:1: a mesh file must end in one of {', '.join(FORMATS)}; got {path.suffix!r}."
         )
     try:
-        with path.open("rb") as file:
-            raw = file.read(MAX_BYTES + 1)
+        raw = read_file(path, MAX_BYTES)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise MeshError(f"{path}:1: the mesh cannot be read: {reason}.") from None

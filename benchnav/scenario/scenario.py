@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from pydantic import Field, PrivateAttr, model_validator
 
 from benchnav.errors import did_you_mean
+from benchnav.plain_file import open_file
 from benchnav.scenario.base import MAX_NAME, NAME_PATTERN, Bounds, Spec, inside
 from benchnav.scenario.document import PathKey, dotted
 from benchnav.scenario.law import RecordedTrack
@@ -115,7 +116,8 @@ class Scenario(Spec):
         resolved = self.model_dump(mode="json", exclude=_PROSE)
         digest.update(json.dumps(resolved, sort_keys=True, separators=(",", ":")).encode())
         for _, path in self.files():
-            digest.update(hashlib.sha256(path.read_bytes()).digest())
+            with open_file(path) as file:
+                digest.update(hashlib.file_digest(file, "sha256").digest())
         return digest.hexdigest()[:16]
 
     @cached_property

@@ -9,6 +9,7 @@ import numpy as np
 
 from benchnav.arrays import FloatArray
 from benchnav.errors import ScenarioError
+from benchnav.plain_file import read_file
 from benchnav.scenario.document import shown
 from benchnav.scenario.law import RecordedTrack
 
@@ -52,9 +53,10 @@ def read_tracks(law: RecordedTrack, folder: Path) -> list[FloatArray]:
 
 def _lines(path: Path) -> Iterator[tuple[int, str]]:
     try:
-        if path.stat().st_size > MAX_BYTES:
+        raw = read_file(path, MAX_BYTES)
+        if len(raw) > MAX_BYTES:
             raise ScenarioError(f"{path}:1: the file must be at most {MAX_BYTES} bytes.")
-        text = path.read_text(encoding="utf-8-sig")
+        text = raw.decode("utf-8-sig")
     except (OSError, ValueError) as error:
         raise ScenarioError(f"{path}:1: cannot be read: {error}.") from None
     for number, line in enumerate(text.splitlines(), 1):

@@ -14,6 +14,7 @@ from typing import Any
 import yaml
 
 from benchnav.errors import ScenarioError
+from benchnav.plain_file import read_file
 from benchnav.scenario.document import Document, PathKey, Place, shown
 from benchnav.scenario.validation import validate
 
@@ -45,8 +46,7 @@ def read_yaml(path: Path | str) -> Document:
     """
     path = Path(path)
     try:
-        with path.open("rb") as file:
-            raw = file.read(MAX_BYTES + 1)
+        raw = read_file(path, MAX_BYTES)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise ScenarioError(f"{shown(str(path), 300)}:1: cannot be read: {reason}.") from None

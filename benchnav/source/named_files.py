@@ -72,7 +72,7 @@ class Named:
             self.files += [(str(f.relative_to(path)), f) for f in files_below(path)]
         elif path.suffix == ".py":
             self.scripts.append(Module(path.stem, path.absolute(), is_package=False))
-        else:
+        elif path.is_file():  # reading a pipe or a device might never end
             self.files.append((path.name, path))
 
 

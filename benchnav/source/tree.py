@@ -6,10 +6,14 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
+from benchnav.plain_file import open_file
+
 MOST_FILES = 5_000  # of a folder
 MOST_BYTES = 4 << 30  # of a file; of a larger one its size and this much count
 _SKIPPED = {"__pycache__", "tests", "test", "node_modules", "site-packages"}
-_NO_SOURCE = (".pyc", ".pyo", ".pyi", ".md", ".rst", ".typed", ".log", ".nbi", ".nbc", "~", ".swp")
+_NO_SOURCE = (
+    ".pyc", ".pyo", ".pyi", ".md", ".rst", ".typed", ".log", ".nbi", ".nbc", ".kernel", "~", ".swp",
+)  # fmt: skip
 
 
 def files_below(folder: Path) -> Iterator[Path]:
@@ -26,7 +30,7 @@ def data_of(package: Path) -> Iterator[Path]:
 def digest_of(file: Path) -> str:
     """Return the sha256 of a file."""
     size = file.stat().st_size
-    with file.open("rb") as opened:
+    with open_file(file) as opened:
         if size <= MOST_BYTES:
             return hashlib.file_digest(opened, "sha256").hexdigest()
         digest, left = hashlib.sha256(str(size).encode()), MOST_BYTES

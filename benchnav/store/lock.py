@@ -31,6 +31,46 @@ def locked(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
+def claimed(path: Path) -> Iterator[None]:
+    """Hold the file ``path`` as its only writer until it is renamed; else it is removed.
+
+    What a process that was killed left there is taken over.
+
+    Raises:
+        RunConflictError: another process writes it.
+        OSError: it cannot be written.
+    """
+    handle = os.open(path, os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0), 0o644)
+    try:
+        if not _is_ours(path, handle):
+            raise RunConflictError(
+                f"{path} must have one writer. Another process writes it now."
+                " Wait for it, or give another --out."
+            )
+        try:
+            yield
+        except BaseException:
+            path.unlink(missing_ok=True)
+            raise
+        finally:
+            if fcntl is not None:
+                fcntl.flock(handle, fcntl.LOCK_UN)
+    finally:
+        os.close(handle)
+
+
+def _is_ours(path: Path, handle: int) -> bool:
+    """Whether this process could lock the file, and it is still the one of that name."""
+    if fcntl is None:
+        return True
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        return os.path.samestat(os.fstat(handle), path.stat())
+    except (BlockingIOError, FileNotFoundError):
+        return False
+
+
+@contextmanager
 def _flocked(folder: Path) -> Iterator[None]:
     try:
         handle = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
@@ -45,6 +85,7 @@ def _flocked(folder: Path) -> Iterator[None]:
         os.truncate(handle, 0)
         os.pwrite(handle, str(os.getpid()).encode(), 0)
         yield
+        fcntl.flock(handle, fcntl.LOCK_UN)  # also where a child still holds a copy of it
     finally:
         os.close(handle)
 

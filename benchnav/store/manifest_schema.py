@@ -13,17 +13,17 @@ from benchnav.navigation.tracks import Track
 from benchnav.scenario.document import shown
 from benchnav.scenario.parameters import Parameter
 from benchnav.scenario.validation import FieldError
+from benchnav.store.spans import SEED_END
 
 MOST_SEEDS = 1_000_000  # of a run
 MOST_CELLS = 1_000_000
-_SEED_END = 10**15
 _FAR = 1e15  # [s] of training
 
 Label = Annotated[str, Field(min_length=1, max_length=200)]
 Hex16 = Annotated[str, Field(pattern=r"^[0-9a-f]{16}$")]
 Hex64 = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
 Identity = Annotated[str, Field(min_length=1, max_length=2_000)]
-Seed = Annotated[int, Field(ge=0, le=_SEED_END)]
+Seed = Annotated[int, Field(ge=0, le=SEED_END)]
 Span = Annotated[tuple[Seed, Seed], Field(description="first, stop")]
 Short = Annotated[str, Field(max_length=200)]
 Text = Annotated[str, Field(max_length=10_000)]

@@ -14,20 +14,23 @@ from pathlib import Path
 from zipfile import ZIP_STORED, ZipFile, ZipInfo
 
 from benchnav.errors import StoreError, UsageError
+from benchnav.store.lock import claimed
 from benchnav.store.manifest import MANIFEST
 from benchnav.store.part import FILES, SEAL, parts_of
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.scenario_files import FOLDER, sha256_of
+from benchnav.store.spans import SEED_DIGITS
 
 SUFFIX = ".bnrun"
 INDEX = "index.json"
 FORMAT = 1  # of the archive
 MOST_MEMBERS = 100_000  # about 33,000 parts
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the first that zip knows: a pack does not tell when it was made
+_SEED = rf"[0-9]{{6,{SEED_DIGITS}}}"
 _SUFFIXES = "|".join(re.escape(suffix) for suffix in (*FILES, SEAL))
 MEMBER = re.compile(
     rf"{re.escape(MANIFEST)}|{FOLDER}/[0-9a-f]{{64}}"
-    rf"|parts/[A-Za-z0-9@_-][A-Za-z0-9@._-]{{0,250}}/[0-9]{{6,15}}-[0-9]{{6,15}}(?:{_SUFFIXES})"
+    rf"|parts/[A-Za-z0-9@_-][A-Za-z0-9@._-]{{0,250}}/{_SEED}-{_SEED}(?:{_SUFFIXES})"
 )
 """What a member may be called: none of it leads out of a folder."""
 
@@ -84,10 +87,10 @@ def pack(run: RunFolder, out: Path) -> None:
     Raises:
         UsageError: ``out`` is there already, a scenario's file is named by its whole path, or
             there are too many files.
+        RunConflictError: another process writes ``out``.
         StoreError: a file of the run lacks, or the disk refuses.
     """
-    if out.exists():
-        raise UsageError(f"{out} must be a new file. It is there already.")
+    _refuse_existing(out)
     _refuse_whole_paths(run)
     for part in run.parts():
         part.check_rows()
@@ -100,17 +103,22 @@ def pack(run: RunFolder, out: Path) -> None:
     index = json.dumps({"format": FORMAT, "files": found}, indent=1, sort_keys=True)
     temporary = out.with_name(f".writing-{out.name}")
     try:
-        with ZipFile(temporary, "w", ZIP_STORED) as archive:
-            archive.writestr(_info(INDEX, len(index)), index)
-            for name, facts in found.items():
-                _copy(run.path / name, archive, _info(name, int(facts["bytes"])))
-        with temporary.open("rb") as file:
-            os.fsync(file.fileno())
-        temporary.replace(out)
+        with claimed(temporary):
+            _refuse_existing(out)  # another process wrote it meanwhile
+            with ZipFile(temporary, "w", ZIP_STORED) as archive:
+                archive.writestr(_info(INDEX, len(index)), index)
+                for name, facts in found.items():
+                    _copy(run.path / name, archive, _info(name, int(facts["bytes"])))
+            with temporary.open("rb") as file:
+                os.fsync(file.fileno())
+            temporary.replace(out)
     except OSError as error:
         raise StoreError(f"{out} must be writable. The system says: {error.strerror}.") from error
-    finally:
-        temporary.unlink(missing_ok=True)
+
+
+def _refuse_existing(out: Path) -> None:
+    if out.exists():
+        raise UsageError(f"{out} must be a new file. It is there already.")
 
 
 def _refuse_whole_paths(run: RunFolder) -> None:

@@ -17,6 +17,7 @@ import pyarrow.compute as pc
 from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError, ForeignRowError
 from benchnav.navigation.answer import short
+from benchnav.plain_file import read_file
 from benchnav.store import bounded_json, bounded_parquet, results
 from benchnav.store.episodes import EPISODES, from_table
 from benchnav.store.episodes import LATER as EPISODES_LATER
@@ -31,6 +32,7 @@ from benchnav.store.seal import (
     Facts,
     read_seal,
 )
+from benchnav.store.spans import SEED_DIGITS
 
 __all__ = [
     "EPISODES_FILE", "FILES", "MOST_SEEDS", "REHEARSALS_FILE", "RESULTS_FILE", "SEAL", "Part",
@@ -39,7 +41,7 @@ __all__ = [
 
 MOST_REHEARSALS = 1_000  # of an episode
 CURE = " Delete "  # with which the advice of an error begins
-_STEM = re.compile(r"([0-9]{6,9})-([0-9]{6,9})")
+_STEM = re.compile(rf"([0-9]{{6,{SEED_DIGITS}}})-([0-9]{{6,{SEED_DIGITS}}})")
 MOST_SEEDS = 256  # of a part, whatever its name says; a task has at most 64
 UNDECODABLE = (
     KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError, RecursionError,
@@ -122,7 +124,7 @@ class Part:
         path, sealed = self.path(suffix), self._seal()[suffix]
         self._check_size(suffix, sealed)
         try:
-            content = path.read_bytes()
+            content = read_file(path, sealed["bytes"])
             found = hashlib.sha256(content).hexdigest()
             if found != sealed["sha256"]:
                 raise self._corrupt(

@@ -12,10 +12,10 @@ from benchnav.arena.agents import Role
 from benchnav.arrays import LARGEST
 from benchnav.navigation.tracks import TRACKS
 from benchnav.scenario.document import shown
+from benchnav.store.spans import SEED_END
 
 SPLITS = ("train", "validation", "test")
 MOST_ROWS = 1 << 18  # of a part: 64 seeds, two roles and 2048 metrics
-_SEED_END = 10**15
 _MOST_AGENTS = 1_000_000
 _KEYS = ("seed", "role", "metric")  # of which a part has one row
 _TEXTS = {  # column → characters that it may have
@@ -25,7 +25,7 @@ _TEXTS = {  # column → characters that it may have
 }  # fmt: skip
 _ONE_OF = {"track": TRACKS, "split": SPLITS, "role": tuple(r.name.lower() for r in Role)}
 _RANGES: dict[str, tuple[float, float]] = {
-    "seed": (0, _SEED_END), "value": (-LARGEST, LARGEST), "agents": (1, _MOST_AGENTS),
+    "seed": (0, SEED_END), "value": (-LARGEST, LARGEST), "agents": (1, _MOST_AGENTS),
     "defined": (0, _MOST_AGENTS), "horizon": (0, 1e6), "dt": (0, 10), "rehearsal": (0, 1_000_000),
     "rehearsal_decisions": (0, 1 << 60), "rehearsal_seconds": (0, LARGEST),
 }  # fmt: skip

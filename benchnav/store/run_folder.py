@@ -53,27 +53,28 @@ class RunFolder:
         The run that is found may have other seeds: `extend` adds those that are asked for.
 
         Raises:
-            RunConflictError: the folder holds another suite's run, or something else.
+            RunConflictError: the folder holds another suite's run, or something else, or another
+                process begins a run there.
             StoreError: the folder cannot be made.
         """
         path = run_path(path)
-        if (path / MANIFEST).exists():
-            held = load_manifest(path)
-            differing = _differing(held, manifest)
-            if differing not in ([], ["seeds"]) or (differing and (held.shard or manifest.shard)):
-                raise RunConflictError(
-                    f"{path} must be empty or hold a run of {manifest.name}."
-                    f" It holds a run of {held.name}, begun {held.created}."
-                    f" They differ in {', '.join(differing)}. Give another --out."
-                )
-            return cls(path, held)
-        if path.exists() and (not path.is_dir() or not _is_free(path)):
+        if not (path / MANIFEST).exists():
+            _refuse_other_things(path, manifest)  # before a lock is put there
+            _make(path)
+            with locked(path):
+                if not (path / MANIFEST).exists():  # another process began at the same time
+                    _refuse_other_things(path, manifest)
+                    _write(path / MANIFEST, manifest.dump())
+                    return cls(path, manifest)
+        held = load_manifest(path)
+        differing = _differing(held, manifest)
+        if differing not in ([], ["seeds"]) or (differing and (held.shard or manifest.shard)):
             raise RunConflictError(
-                f"{path} must be an empty folder or a run of {manifest.name}."
-                " It holds something that is not a run. Give another --out."
+                f"{path} must be empty or hold a run of {manifest.name}."
+                f" It holds a run of {held.name}, begun {held.created}."
+                f" They differ in {', '.join(differing)}. Give another --out."
             )
-        _write(path / MANIFEST, manifest.dump())
-        return cls(path, manifest)
+        return cls(path, held)
 
     def extend(self, seeds: range) -> "RunFolder":
         """Add ``seeds`` to those of the run; only the process that holds the folder may call it.
@@ -197,15 +198,16 @@ class RunFolder:
                 yield key, lacking
 
     @contextmanager
-    def writing(self) -> Iterator[None]:
-        """Hold the folder as its only writer; leftovers are removed before and after.
+    def writing(self) -> Iterator["RunFolder"]:
+        """Hold the folder as its only writer, and yield it with the manifest that it has then.
 
-        Raises RunConflictError where another process writes it.
+        Leftovers are removed before and after. Raises RunConflictError where another process
+        writes it.
         """
         with locked(self.path):
             self._sweep()
             try:
-                yield
+                yield RunFolder(self.path, load_manifest(self.path))
             finally:
                 self._sweep()
 
@@ -219,14 +221,31 @@ class RunFolder:
                     path.unlink()
 
 
+def _refuse_other_things(path: Path, manifest: Manifest) -> None:
+    if path.exists() and (not path.is_dir() or not _is_free(path)):
+        raise RunConflictError(
+            f"{path} must be an empty folder or a run of {manifest.name}."
+            " It holds something that is not a run. Give another --out."
+        )
+
+
+def _make(path: Path) -> None:
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+
+
 def _is_free(folder: Path) -> bool:
-    return all(p.name in LOCKS or p.name.startswith(TEMPORARY) for p in folder.iterdir())
+    names = {path.name for path in folder.iterdir()}
+    if MANIFEST in names:  # since another process has begun
+        return True
+    return all(name in LOCKS or name.startswith(TEMPORARY) for name in names)
 
 
 def _write(path: Path, text: str) -> None:
     temporary = path.with_name(TEMPORARY + path.name)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
         with temporary.open("w", encoding="utf-8") as file:
             file.write(text)
             file.flush()

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from pathlib import Path, PurePosixPath
 
 from benchnav.errors import CorruptPartError, StoreError
+from benchnav.plain_file import open_file
 
 FOLDER = "files"
 UP = 8  # levels that a scenario's names may climb above its own folder
@@ -20,7 +21,7 @@ _SHA = re.compile(r"[0-9a-f]{64}")
 
 def sha256_of(path: Path) -> str:
     """Hexadecimal sha256 of a file's bytes."""
-    with path.open("rb") as file:
+    with open_file(path) as file:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 

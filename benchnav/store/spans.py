@@ -1,8 +1,9 @@
-"""Seeds in few numbers."""
+"""Seeds in few numbers, and which there are."""
 
 from collections.abc import Iterable
 
-_END = 1 << 62  # behind every seed
+SEED_DIGITS = 15  # at most, on the command line and in the names of files
+SEED_END = 10**SEED_DIGITS - 1  # the last number that a range of seeds may end before
 
 
 def spans(seeds: Iterable[int]) -> list[list[int]]:
@@ -26,11 +27,11 @@ def without(wanted: Spans, held: Spans) -> list[Span]:
     """Return the spans of what is in ``wanted`` and not in ``held``, whose spans may overlap."""
     left: list[Span] = []
     taken = iter(held)
-    first_held, stop_held = next(taken, (_END, _END))
+    first_held, stop_held = next(taken, (SEED_END, SEED_END))
     for first, stop in wanted:
         while first < stop:
             if stop_held <= first:
-                first_held, stop_held = next(taken, (_END, _END))
+                first_held, stop_held = next(taken, (SEED_END, SEED_END))
             elif stop <= first_held:
                 left.append((first, stop))
                 break

@@ -5,7 +5,6 @@ import stat
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from zipfile import ZIP_STORED, BadZipFile, ZipFile, ZipInfo
 
 from benchnav.errors import CorruptPartError, NoRunError, StoreError
@@ -18,6 +17,7 @@ from benchnav.store.part import CURE
 from benchnav.store.run_folder import RunFolder
 from benchnav.store.run_path import RunPath, run_path
 from benchnav.store.seal import Facts, require_facts
+from benchnav.temporary_folder import TemporaryFolder
 
 MOST_DIRECTORY = 48 << 20  # bytes; a member takes about 150
 _ZIP = b"PK"  # with which every zip archive begins
@@ -38,13 +38,14 @@ def opened(path: RunPath) -> Iterator[RunFolder]:
     if not path.is_file():
         yield RunFolder.open(path)
         return
-    with TemporaryDirectory(prefix="benchnav-pack-") as folder:
+    with TemporaryFolder("pack") as temporary:
+        folder = temporary.path
         try:
-            unpack(path, Path(folder))
-            yield RunFolder(Path(folder), load_manifest(Path(folder)), path)
+            unpack(path, folder)
+            yield RunFolder(folder, load_manifest(folder), path)
         except StoreError as error:
             text, _, _ = str(error).partition(CURE)  # which a pack cannot have
-            raise type(error)(text.replace(folder, str(path))) from error
+            raise type(error)(text.replace(str(folder), str(path))) from error
 
 
 def unpack(path: Path, folder: Path) -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeGuard
 
 from benchnav.errors import MissingExtraError, StoreError
+from benchnav.plain_file import require_writable
 from benchnav.user_folders import home_is_usable, user_cache
 
 if TYPE_CHECKING:
@@ -54,6 +55,7 @@ def save(figure: Figure, path: Path) -> None:
     from matplotlib import rc_context
 
     try:
+        require_writable(path)
         with rc_context({"svg.hashsalt": "benchnav", "svg.fonttype": "none"}):
             figure.savefig(path, dpi=DPI, metadata=_UNDATED[path.suffix.lower()])
     except OSError as error:

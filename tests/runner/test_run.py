@@ -322,7 +322,7 @@ def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file,
     stdout, stderr = process.communicate(timeout=60)
     assert process.returncode == 130
     assert stdout == ""
-    assert "Interrupted: " in stderr
+    assert "Interrupted by SIGINT: " in stderr
     assert f"--out {out} continues there" in stderr
     assert "Traceback" not in stderr
     stored = len(list(read_episodes(out)))

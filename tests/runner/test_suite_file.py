@@ -23,14 +23,33 @@ def test_defaults_are_the_test_split_and_twenty_seeds_of_the_known_track():
 
 
 @pytest.mark.parametrize(
-    ("text", "seeds"), [("3", range(3)), ("5:8", range(5, 8)), ("0:1", range(1))]
+    ("text", "seeds"),
+    [
+        ("3", range(3)),
+        ("5:8", range(5, 8)),
+        ("0:1", range(1)),
+        ("999999999999998:999999999999999", range(10**15 - 2, 10**15 - 1)),
+    ],
 )
 def test_seeds_are_a_number_or_a_range(text, seeds):
     assert parse_seeds(text) == seeds
 
 
 @pytest.mark.parametrize(
-    "text", ["", "0", "-1", "3:3", "5:2", "a:b", "1:2:3", "1.5", "²", "9" * 30]
+    "text",
+    [
+        "",
+        "0",
+        "-1",
+        "3:3",
+        "5:2",
+        "a:b",
+        "1:2:3",
+        "1.5",
+        "²",
+        "9" * 30,
+        "999999999999999:1000000000000000",
+    ],
 )
 def test_other_seeds_are_refused_with_the_rule(text):
     with pytest.raises(ValueError, match=r"must be N .* or A:B"):

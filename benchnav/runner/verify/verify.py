@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
-from multiprocessing import get_context
+from multiprocessing import active_children, get_context
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 from benchnav.errors import BenchnavError, StoreError
+from benchnav.processes.process_tree import end_with_parent
 from benchnav.runner.caveat import caveats_of
 from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
@@ -26,6 +26,7 @@ from benchnav.runner.verify.sampled import sampled
 from benchnav.store.manifest import Manifest, versions
 from benchnav.store.pinned import changed_since, pinned, pinned_digest
 from benchnav.store.run_folder import RunFolder
+from benchnav.temporary_folder import TemporaryFolder
 from benchnav.threads import core_count
 
 VERIFIABLE = 3  # schema from which on a run holds all that this needs
@@ -64,8 +65,8 @@ def verify(
     told = progress if progress is not None else Progress()
     run = pinned(run)
     report = Report(content=pinned_digest(run))
-    with TemporaryDirectory(prefix="benchnav-verify-") as root:
-        tasks = tasks_of(run, Path(root), wanted, report)
+    with TemporaryFolder("verify") as root:
+        tasks = tasks_of(run, root.path, wanted, report)
         episodes = sum(len(task.check.part.seeds) for task in tasks)
         told.begin(episodes, 0)
         try:
@@ -147,6 +148,8 @@ def _done(tasks: Sequence[Examination], workers: int) -> Iterator[tuple[Examinat
             yield from _collected(pool, tasks)
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
+            for process in active_children():
+                process.kill()
             raise
 
 
@@ -165,7 +168,8 @@ def _collected(
 
 
 def _begin() -> None:
-    """Of a worker: one core, Ctrl-C is the parent's, and what is printed is talk."""
+    """Of a worker: one core, Ctrl-C is the parent's, as is its end, and what is printed is talk."""
+    end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ["BENCHNAV_THREADS"] = "1"
     os.dup2(2, 1)

@@ -8,6 +8,7 @@ import numpy as np
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.errors import MapError
 from benchnav.geometry.rotation import rotated
+from benchnav.plain_file import read_file
 
 MAX_CELLS = 16_000_000
 
@@ -91,8 +92,7 @@ def read_bytes(path: Path, limit: int, what: str) -> bytes:
         MapError: it is missing, unreadable or larger.
     """
     try:
-        with path.open("rb") as file:
-            raw = file.read(limit + 1)
+        raw = read_file(path, limit)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise MapError(f"{path}:1: {what} cannot be read: {reason}.") from None

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from benchnav.arrays import BoolArray
 from benchnav.errors import MapError
+from benchnav.plain_file import open_file
 from benchnav.scenario.importers.grid import MAX_CELLS, check_size
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ def read_levels(path: Path) -> tuple[Levels, BoolArray]:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # Pillow warns of metadata that no map needs
             warnings.simplefilter("error", pillow.DecompressionBombWarning)
-            with pillow.open(path, formats=_FORMATS) as image:
+            with open_file(path) as file, pillow.open(file, formats=_FORMATS) as image:
                 check_size(f"{path}:1", *image.size)
                 return _levels(image)
     except MapError:

@@ -133,7 +133,7 @@ def image_path(document: Document, spec: RosMap) -> Path:
     except (OSError, ValueError):
         there = False
     if not there:
-        near = did_you_mean(image.name, [p.name for p in folder.iterdir()])
+        near = did_you_mean(image.name, [p.name for p in folder.iterdir() if p.is_file()])
         raise MapError(
             f"{document.where(['image'])} must name an existing image file; "
             f"got {spec.image!r}, and there is no {image}.{near}"

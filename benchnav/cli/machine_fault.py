@@ -1,0 +1,28 @@
+"""What the machine refuses a command: files, memory, processes; in a sentence with the cure."""
+
+import errno
+
+_CURES = {
+    errno.EMFILE: "Allow this process more of them (ulimit -n 1024).",
+    errno.ENFILE: "Close other programs, or allow this machine more of them.",
+    errno.ENOMEM: "Allow this process more memory (ulimit -v), or give fewer --workers.",
+    errno.EAGAIN: "Allow this user more processes (ulimit -u), or give fewer --workers.",
+}
+_NO_THREAD = "can't start new thread"  # all that tells Python's error from others of its class
+
+
+def machine_fault(error: BaseException) -> str:
+    """Return the sentence for an error that is the machine's; "" for any other."""
+    if isinstance(error, MemoryError):
+        return f"Memory is short. {_CURES[errno.ENOMEM]}"
+    if isinstance(error, RuntimeError) and str(error) == _NO_THREAD:
+        return f"No further thread can be started. {_CURES[errno.EAGAIN]}"
+    if isinstance(error, ImportError):  # of a library that cannot be mapped, or is not whole
+        return (
+            f"{error}. Allow this process more memory and files (ulimit -v, -n), or install again."
+        )
+    if not isinstance(error, OSError):
+        return ""
+    place = f"{error.filename}: " if error.filename else ""
+    cure = _CURES.get(error.errno or 0)
+    return f"{place}{error.strerror or error}" + (f". {cure}" if cure else "")

@@ -1,0 +1,129 @@
+"""Compiled kernels on disk, one file for each signature, believed only if it is what was written.
+
+Numba's own index of data files loses entries where several processes compile at once, raises on
+a damaged file, and runs machine code with a flipped bit. Here each file begins with the sha256
+of the rest and holds its whole key: anything else is compiled again and replaced.
+"""
+
+import hashlib
+import os
+import pickle
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numba
+from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.serialize import dumps
+
+SUFFIX = ".kernel"
+_TEMPORARY = ".writing-"
+_SUM = hashlib.sha256().digest_size
+_STALE = 3600.0  # [s] after which an unfinished file belongs to a process that was killed
+
+
+class KernelCache(FunctionCache):
+    """The compiled signatures of one function."""
+
+    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+        self._name = repr(function)
+        self._py_func = function
+        self._impl = _Codec()
+        self._cache_path = str(folder)
+        name = f"{function.__module__}.{function.__qualname__}".replace("<", "").replace(">", "")
+        self._cache_file: Any = _Files(folder, name)
+        self.enable()
+
+    def load_overload(self, signature: Any, target: Any) -> Any:
+        """Return the compiled code; None where it must be compiled."""
+        try:
+            return super().load_overload(signature, target)
+        except Exception:  # whole, but not of use to this Numba: of another build, say
+            return None
+
+    def save_overload(self, signature: Any, compiled: Any) -> None:
+        """Keep the compiled code where it can be kept."""
+        if self._enabled and self._impl.check_cachable(compiled):
+            key = self._index_key(signature, compiled.codegen)
+            self._cache_file.save(key, self._impl.reduce(compiled))
+
+    def _index_key(self, signature: Any, codegen: Any) -> Any:
+        source = _digest_of(self._py_func.__code__.co_filename)
+        return (*super()._index_key(signature, codegen), source)
+
+
+class _Codec(CompileResultCacheImpl):
+    """What Numba keeps of a compiled function."""
+
+    def __init__(self) -> None:
+        """Files are found by `_Files`, and not from the place of the source."""
+
+    def check_cachable(self, compiled: Any) -> bool:
+        """Whether it can be used by another process."""
+        whole = all(part.can_cache for part in compiled.lifted)
+        return whole and not compiled.library.has_dynamic_globals
+
+
+@lru_cache
+def _digest_of(source: str) -> str:
+    """Return the sha256 of a source file: Numba's key leaves out the constants of a function."""
+    return hashlib.sha256(Path(source).read_bytes()).hexdigest()
+
+
+class _Files:
+    """A file for each key; what cannot be written is not kept."""
+
+    def __init__(self, folder: Path, name: str) -> None:
+        self._folder = folder
+        self._name = name
+
+    def load(self, key: object) -> object | None:
+        """Return what was saved for ``key``; None where nothing was, or it was damaged."""
+        try:
+            raw = self._path(key).read_bytes()
+        except OSError:
+            return None
+        if hashlib.sha256(raw[_SUM:]).digest() != raw[:_SUM]:
+            return None
+        version, kept, data = pickle.loads(raw[_SUM:])  # noqa: S301 - from the user's own folder
+        return data if (version, kept) == (numba.__version__, key) else None
+
+    def save(self, key: object, data: object) -> None:
+        """Write a whole file at once; nothing where the disk refuses."""
+        content = dumps((numba.__version__, key, data))
+        path = self._path(key)
+        with suppress(OSError):
+            if not self._folder.is_dir():
+                self._folder.unlink(missing_ok=True)
+                self._folder.mkdir(parents=True, exist_ok=True)
+            handle, temporary = tempfile.mkstemp(prefix=_TEMPORARY, dir=self._folder)
+            try:
+                with os.fdopen(handle, "wb") as file:
+                    file.write(hashlib.sha256(content).digest() + content)
+                if path.is_dir():
+                    shutil.rmtree(path)
+                Path(temporary).replace(path)
+            finally:
+                Path(temporary).unlink(missing_ok=True)
+
+    def flush(self) -> None:
+        """Forget every signature."""
+        for path in self._folder.glob(f"{self._name}-*{SUFFIX}"):
+            path.unlink(missing_ok=True)
+
+    def _path(self, key: object) -> Path:
+        digest = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
+        return self._folder / f"{self._name}-{digest}{SUFFIX}"
+
+
+def drop_unfinished(folder: Path) -> None:
+    """Remove the files that processes which were killed did not finish."""
+    for path in folder.glob(f"{_TEMPORARY}*"):
+        with suppress(OSError):
+            if time.time() - path.stat().st_mtime > _STALE:
+                path.unlink()
