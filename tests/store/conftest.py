@@ -109,10 +109,13 @@ def make_manifest(rehearsal=0, **changes):
     suite = {
         "name": "tiny", "version": 1, "seeds": [0, 20], "split": "test", "tracks": ["known"],
         "scenarios": [{"scenario": "a/b@1", "hash": "f" * 64, "says": {}, "files": {}}],
-        "navigators": [{**ORCA, "rehearsal": rehearsal}], **changes,
+        "navigators": [{**ORCA, "rehearsal": rehearsal}, {**ORCA, "label": "grid"}], **changes,
     }  # fmt: skip
-    of = {"scenario": "a/b@1", "track": "known", "navigator": "orca"}
-    cells = ({"key": "cell", **of, "reason": ""}, {"key": "na", **of, "reason": "needs a map"})
+    of = {"scenario": "a/b@1", "track": "known"}
+    cells = (
+        {"key": "cell", **of, "navigator": "orca", "reason": ""},
+        {"key": "na", **of, "navigator": "grid", "reason": "needs a map"},
+    )
     return Manifest(suite, cells)
 
 
