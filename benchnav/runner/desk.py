@@ -100,7 +100,7 @@ class Desk:
         if worker.exitcode is not None:
             return self._fault(words(worker.exitcode), worker.exitcode)
         if watch.twice:
-            return self._fault(f"forked in {watch.call()}, which returned twice")
+            return self._fault("forked, and a call returned in both processes")
         if watch.lasted > limits.timeout:
             return self._fault(f"did not return from {watch.call()} within {limits.timeout:g} s")
         if watch.idle > limits.timeout + SLACK:

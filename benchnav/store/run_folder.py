@@ -4,7 +4,7 @@ import json
 import os
 import re
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -106,6 +106,16 @@ class RunFolder:
         if cells == self.manifest.cells:
             return self
         return RunFolder(self.path, replace(self.manifest, cells=cells)).kept()
+
+    def unguard(self, labels: Iterable[str]) -> "RunFolder":
+        """Say that episodes of ``labels`` run where nothing is guarded; a writer may.
+
+        Raises StoreError where the disk refuses.
+        """
+        both = tuple(dict.fromkeys((*self.manifest.unguarded, *labels)))
+        if both == self.manifest.unguarded:
+            return self
+        return RunFolder(self.path, replace(self.manifest, unguarded=both)).kept()
 
     def kept(self) -> "RunFolder":
         """Write the manifest. Raises StoreError where the disk refuses."""
