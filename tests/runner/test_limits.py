@@ -15,10 +15,10 @@ from benchnav.errors import RunConflictError, UsageError
 from benchnav.metrics.metric import Metric
 from benchnav.navigation.answer import kind_of
 from benchnav.plugins import METRICS
+from benchnav.processes.process_tree import tells_memory, tree
 from benchnav.runner import start as start_module
 from benchnav.runner import task as task_module
 from benchnav.runner.limits import Limits
-from benchnav.processes.process_tree import tells_memory, tree
 from benchnav.runner.run import run_suite
 from benchnav.runner.suite import Selection, load_suite
 from benchnav.store.manifest import load_manifest
