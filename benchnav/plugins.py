@@ -229,6 +229,12 @@ def adopt(registrations: Iterable[Registration]) -> None:
         by_group[group].adopt(name, value)
 
 
+def look_again() -> None:
+    """Read anew what is installed: this process was forked before the import path was set."""
+    for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, SCENARIOS, TRAINERS):
+        registry._found = None
+
+
 _FOR_WORKERS = (NAVIGATORS, PLANNERS, CONTROLLERS)
 
 register_navigator = NAVIGATORS.register

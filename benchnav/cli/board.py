@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from benchnav.cli.console import say
 from benchnav.errors import StoreError, UsageError, did_you_mean
 from benchnav.leaderboard.columns import choose, choose_columns
 from benchnav.leaderboard.curve import HORIZON, Point, Setting, horizon_curves, parameter_curves
@@ -14,7 +15,7 @@ from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.leaderboard.record import NotApplicable
 from benchnav.leaderboard.render import render
 from benchnav.leaderboard.table import leaderboard
-from benchnav.metrics.measure import all_metrics
+from benchnav.metrics.declared import declared_metrics
 from benchnav.metrics.metric import Metric
 from benchnav.metrics.success import SUCCESS
 from benchnav.scenario.parameters import joined_parameters, split_parameters
@@ -131,7 +132,11 @@ def _settings(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
 
 
 def _metrics() -> dict[str, Metric]:
-    return {metric.name: metric for metric in all_metrics()}
+    """Every metric that is installed, by name; says which cannot be used."""
+    metrics, broken = declared_metrics()
+    for cause in broken:
+        say(f"{cause} It is left out.")
+    return metrics
 
 
 def _results(folders: Sequence[RunFolder], metrics: dict[str, Metric], recompute: bool) -> pa.Table:
@@ -140,9 +145,9 @@ def _results(folders: Sequence[RunFolder], metrics: dict[str, Metric], recompute
     require_one_navigator_per_label(stored)
     tables = list(stored.values())
     if recompute:
-        from benchnav.runner.measured import measure_again
+        from benchnav.runner.recomputed import recomputed
 
-        tables = [measure_again(f.path, list(metrics.values())) for f in folders]
+        tables = [recomputed(f.path, list(metrics.values())) for f in folders]
     joined = pa.concat_tables(tables, promote_options="default")
     if not len(joined):
         raise StoreError(

@@ -13,16 +13,17 @@ from typing import Any
 from benchnav.errors import BenchnavError, BrokenPluginError, named
 from benchnav.navigation.answer import said
 from benchnav.navigation.trace import bounded, plain, trace
+from benchnav.plugins import look_again
 from benchnav.processes.channel import Channel, ChannelError
 from benchnav.processes.inquiry import Fault, Inquiry, Limits, Step, inquire
 
 TIMEOUT = 300.0  # [s] of a call of a plugin, unless somebody says otherwise
 _IMPORTING = 10.0  # [s] that at least are granted to an import, of a large library say
 _MEMORY = 4e9  # [bytes]
-IMPORT, CONFIG = "import", "Config"
+IMPORT, CONFIG, MEASURING = "import", "Config", "measuring"
 _STEPS = (
     IMPORT, CONFIG, "__init__", "required", "command", "uses_map", "reproducible", "rehearsal",
-    "leader", "training", "fingerprint", "parts", "unfit", "remarks",
+    "leader", "training", "fingerprint", "parts", "unfit", "remarks", MEASURING,
 )  # fmt: skip
 Stepping = Callable[[str], None]
 """Told which step of `_STEPS` begins."""
@@ -86,6 +87,7 @@ def _understood(plugin: Plugin, answer: Any) -> Any:
 def tell(channel: Channel, notes: "memoryview[float]", telling: Telling) -> None:
     """Answer the questions that come, one by one. Of the process that was asked."""
     try:
+        look_again()
         folder = Path.cwd()
         for question in channel.receive():
             os.chdir(folder)
