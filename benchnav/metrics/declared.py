@@ -1,4 +1,4 @@
-"""What metrics declare: unit, direction, range. Those of plugins do so in a process of their own."""
+"""What metrics declare: unit, direction, range. Those of plugins do so in their own process."""
 
 from typing import Annotated, Any, Literal, NoReturn
 

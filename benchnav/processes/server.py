@@ -16,6 +16,7 @@ from pathlib import Path
 from select import select
 from typing import Any, NoReturn
 
+from benchnav.errors import BenchnavError
 from benchnav.processes.channel import Channel, ChannelError
 from benchnav.processes.process_tree import kill
 
@@ -99,7 +100,8 @@ class _Server:
     def _warm(self) -> None:
         """Load what a run needs, once."""
         if not self.is_warm:
-            load(WARM)()
+            with suppress(BenchnavError):  # what cannot be used, a worker names
+                load(WARM)()
             self.is_warm = True
 
     def _reap(self) -> None:
