@@ -26,6 +26,7 @@ from benchnav.errors import (
 from benchnav.named_module import load_by_module
 
 T = TypeVar("T")
+_LONGEST = 500  # letters of what an exception says
 
 
 @dataclass(frozen=True)
@@ -122,7 +123,7 @@ class Registry:
             thing = entry.load()
         except (Exception, SystemExit) as error:
             raise BrokenPluginError(
-                f"The {self.kind} {name!r} cannot be used: {type(error).__name__}: {error}"
+                f"The {self.kind} {name!r} cannot be used: {_said(error)}"
                 f" (while importing {entry.value}, from {_source(entry).distribution})."
             ) from error
         self._require_contract(name, thing, f"{entry.value}, from {_source(entry).distribution}")
@@ -162,7 +163,7 @@ class Registry:
         try:
             thing = load_by_module(name)
         except (Exception, SystemExit) as error:
-            told = str(error) if isinstance(error, PluginError) else _said(error)
+            told = str(error) if isinstance(error, PluginError) else f"{_said(error)}."
             raise BrokenPluginError(f"The {self.kind} {name!r} cannot be used: {told}") from error
         self._require_contract(name, thing, _value(thing))
         return thing
@@ -198,7 +199,10 @@ def _kind_of(thing: Any) -> str:
 
 
 def _said(error: BaseException) -> str:
-    return f"{type(error).__name__}: {error}."
+    try:
+        return f"{type(error).__name__}: {error}"[:_LONGEST]
+    except BaseException:  # its text is code of the plugin too
+        return type(error).__name__
 
 
 def _source(entry: EntryPoint) -> Source:

@@ -25,3 +25,4 @@ def forgotten(monkeypatch):
     """What a test registers is forgotten after it."""
     for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, SCENARIOS, TRAINERS):
         monkeypatch.setattr(registry, "_local", dict(registry._local))
+        monkeypatch.setattr(registry, "_found", registry._found)

@@ -7,6 +7,7 @@ from typing import Any
 import pyarrow as pa
 import pyarrow.compute as pc
 
+from benchnav.cli.console import say
 from benchnav.errors import StoreError, UsageError, did_you_mean
 from benchnav.leaderboard.caveats import metric_caveats, table_caveats
 from benchnav.leaderboard.columns import choose, choose_columns
@@ -17,7 +18,7 @@ from benchnav.leaderboard.marks import labels_of, marked
 from benchnav.leaderboard.record import NotApplicable
 from benchnav.leaderboard.render import render
 from benchnav.leaderboard.table import leaderboard
-from benchnav.metrics.measure import all_metrics
+from benchnav.metrics.declared import declared_metrics
 from benchnav.metrics.metric import Metric
 from benchnav.metrics.success import SUCCESS
 from benchnav.scenario.parameters import joined_parameters, split_parameters
@@ -142,7 +143,11 @@ def _settings(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
 
 
 def _metrics() -> dict[str, Metric]:
-    return {metric.name: metric for metric in all_metrics()}
+    """Every metric that is installed, by name; says which cannot be used."""
+    metrics, broken = declared_metrics()
+    for cause in broken:
+        say(f"{cause} It is left out.")
+    return metrics
 
 
 def _tables(
@@ -154,9 +159,9 @@ def _tables(
     require_one_navigator_per_label({str(f.shown): results for f, results in named})
     if not recompute:
         return stored
-    from benchnav.runner.measured import measured_of
+    from benchnav.runner.recomputed import recomputed
 
-    return [measured_of(folder, list(metrics.values())) for folder in folders]
+    return [recomputed(folder, list(metrics.values())) for folder in folders]
 
 
 def _joined(folders: Sequence[RunFolder], tables: Sequence[pa.Table]) -> pa.Table:

@@ -9,8 +9,9 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchnav.cli.listing import REGISTRIES, Kind, sentence
+from benchnav.cli.listing import REGISTRIES, Kind
 from benchnav.cli.parameters import SAID_ONCE_MADE, needs, parameters
+from benchnav.cli.plugin_page import sentence
 from benchnav.plugins import Registry
 
 KINDS = (Kind.NAVIGATORS, Kind.PLANNERS, Kind.CONTROLLERS)

@@ -11,7 +11,7 @@ import typer
 
 from benchnav.cli.console import columns, put
 from benchnav.errors import BenchnavError, MissingExtraError
-from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS, Registry
+from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS
 from benchnav.plural import counted
 from benchnav.threads import core_count
 from benchnav.user_folders import user_state
@@ -37,7 +37,6 @@ _EXTRAS = {
     "view": {"matplotlib": "matplotlib", "plotly": "plotly"},
     "ray": {"ray": "ray"},
 }  # extra → package → module
-_MADE = (NAVIGATORS, PLANNERS, CONTROLLERS)  # that `benchnav run` makes from a Config
 Line = tuple[str, str, str]  # verdict, what, detail
 
 
@@ -102,31 +101,16 @@ def _folder(what: str, place: Path, reason: str) -> Line:
 
 
 def _plugins() -> Iterator[Line]:
+    from benchnav.cli.inspection import MADE, inspect_plugins
+
     for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, TRAINERS):
-        broken = dict(registry.broken())
-        whole = [name for name in registry.names() if name not in broken]
-        incomplete: dict[str, str] = {}
-        for name in whole if registry in _MADE else ():
-            try:
-                _make(registry, name)
-            except MissingExtraError as error:
-                incomplete[name] = str(error)
-            except BenchnavError as error:
-                broken[name] = str(error)
-        usable = len(registry.names()) - len(incomplete) - len(broken)
-        yield "ok", f"{registry.kind}s", f"{usable} can be used"
+        answers = inspect_plugins(registry, registry.names(), MADE)
+        errors = {n: e for n, e in answers.items() if isinstance(e, BenchnavError)}
+        incomplete = {n: str(e) for n, e in errors.items() if isinstance(e, MissingExtraError)}
+        yield "ok", f"{registry.kind}s", f"{len(answers) - len(errors)} can be used"
         for cause in dict.fromkeys(incomplete.values()):
             names = ", ".join(name for name, why in incomplete.items() if why == cause)
             yield "-", f"{registry.kind}s", f"without {names}. {cause}"
-        for cause in broken.values():
-            yield "WRONG", registry.kind, cause
-
-
-def _make(registry: Registry, name: str) -> None:
-    """Make the plugin as it stands, unless it has parameters that must be given."""
-    from benchnav.navigation.configure import make
-
-    declared = getattr(registry.load(name), "Config", None)
-    required = getattr(declared, "model_fields", {}).values()
-    if not any(field.is_required() for field in required):
-        make(registry, name)
+        for name, error in errors.items():
+            if name not in incomplete:
+                yield "WRONG", registry.kind, str(error)

@@ -1,6 +1,5 @@
 """`benchnav list`: what is installed, and what of it is broken."""
 
-import inspect
 from collections.abc import Iterator
 from enum import StrEnum
 from typing import Annotated
@@ -61,12 +60,13 @@ def _rows(kind: Kind) -> Iterator[Row]:
 
 
 def _plugins(registry: Registry) -> Iterator[Row]:
-    for name in registry.names():
-        try:
-            source = registry.source(name).distribution
-            yield name, source, sentence(registry.load(name))
-        except BenchnavError as error:
-            yield name, "broken", str(error)
+    from benchnav.cli.inspection import SENTENCE, inspect_plugins
+
+    for name, text in inspect_plugins(registry, registry.names(), SENTENCE).items():
+        if isinstance(text, BenchnavError):
+            yield name, "broken", str(text)
+        else:
+            yield name, registry.source(name).distribution, text
 
 
 def _scenarios() -> Iterator[Row]:
@@ -90,12 +90,3 @@ def _suites() -> Iterator[Row]:
             yield name, f"version {said.version}", said.description
         except BenchnavError as error:
             yield name, "broken", str(error)
-
-
-def sentence(thing: object) -> str:
-    """What a plugin says that it is: a metric's title, or the first line of a docstring."""
-    title = getattr(thing, "title", None)
-    if isinstance(title, str):
-        return title
-    text = inspect.getdoc(thing) or ""
-    return text.partition("\n")[0]

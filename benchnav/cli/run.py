@@ -119,6 +119,10 @@ def run(
     Scenarios × tracks × navigators × seeds. Prints the run folder on stdout;
     `benchnav leaderboard` makes the table from it.
     """
+    from benchnav.processes.fork_server import fork_server
+
+    if workers != 0:
+        fork_server().prepare()  # while the suite is read
     from benchnav.cli.conclusion import conclusion, kept_for_now, tracebacks
     from benchnav.runner.progress import progress
     from benchnav.runner.run import Summary, run_suite
@@ -130,7 +134,7 @@ def run(
     )  # fmt: skip
     running = _executor(one_of(Where, "--executor", executor), address, workers)
     share = _shard(shard)
-    asked = load_suite(suite, chosen)
+    asked = load_suite(suite, chosen, timeout=timeout)
     folder = (
         out if out is not None else Path("runs") / f"{asked.name}-{datetime.now():%Y%m%d-%H%M%S}"
     )

@@ -1,18 +1,16 @@
 """`benchnav show`: one thing by name, with its parameters, units and source."""
 
-import inspect
 from collections.abc import Iterator
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
 from benchnav.cli.console import columns, put
-from benchnav.cli.listing import REGISTRIES, Kind, sentence
-from benchnav.cli.parameters import needs, parameters
+from benchnav.cli.listing import REGISTRIES, Kind
 from benchnav.cli.scenario_page import scenario_page
-from benchnav.errors import UsageError, did_you_mean
-from benchnav.navigation.pair import MAPPING, NO_PLANNER, is_pair
-from benchnav.plugins import CONTROLLERS, NAVIGATORS, PLANNERS, Registry
+from benchnav.errors import BenchnavError, UsageError, did_you_mean
+from benchnav.navigation.pair import is_pair
+from benchnav.plugins import NAVIGATORS
 
 
 def show(
@@ -24,8 +22,10 @@ def show(
 
     Purpose, parameters with units and defaults, and where it comes from.
     """
+    from benchnav.cli.inspection import PAGE, inspect_plugins
+
     blocks = [
-        _plugin(kind, registry, name)
+        _shown(inspect_plugins(registry, [name], PAGE)[name])
         for kind, registry in REGISTRIES.items()
         if name in registry.names()
         or (kind == Kind.NAVIGATORS and _is_class(name) and not is_pair(name))
@@ -39,72 +39,23 @@ def show(
     put("\n\n".join(blocks))
 
 
-def _is_class(name: str) -> bool:
-    """True for ``module:Class``; a scenario's parameters stand behind a colon, too."""
-    return ":" in name and "=" not in name
-
-
-def _plugin(kind: Kind, registry: Registry, name: str) -> str:
-    thing, source = registry.load(name), registry.source(name)
-    facts = [("is", f"a {registry.kind}: {sentence(thing)}")]
-    facts.append(("comes from", f"{source.distribution}, {source.value}{_place(thing)}"))
-    if kind == Kind.METRICS:
-        facts += _metric_facts(thing)
-    if kind in (Kind.NAVIGATORS, Kind.CONTROLLERS):
-        facts.append(("needs", needs(registry, name)))
-    if isinstance(getattr(thing, "command", None), str):
-        facts.append(("answers", f"a {thing.command} per agent"))
-    text = f"{name}\n" + columns([("  " + key, value) for key, value in facts])
-    return f"{text}\n  parameters\n{_parameters(thing)}" if hasattr(thing, "Config") else text
+def _shown(page: "str | BenchnavError") -> str:
+    if isinstance(page, BenchnavError):
+        raise page
+    return page
 
 
 def _pair(name: str) -> Iterator[str]:
     """A navigator named by its parts, and these."""
-    from benchnav.navigation.configure import make
+    from benchnav.cli.inspection import PAIR, inspect_plugins
 
-    if not is_pair(name):
-        return
-    navigator = make(NAVIGATORS, name)
-    distributions = dict.fromkeys(part.distribution for part in navigator.parts)
-    facts = [
-        ("is", f"a navigator: {sentence(type(navigator))}"),
-        ("comes from", ", ".join(distributions)),
-        ("needs", needs(NAVIGATORS, name)),
-        ("answers", f"a {navigator.command} per agent"),
-    ]
-    head = f"{name}\n" + columns([("  " + key, value) for key, value in facts])
-    others = _parameters(type(navigator), named=(PLANNERS.kind, CONTROLLERS.kind, MAPPING))
-    yield f"{head}\n  parameters beside its parts'\n{others}"
-    planner, controller = name.split("+")[-2:]
-    if planner != NO_PLANNER:
-        yield _plugin(Kind.PLANNERS, PLANNERS, planner)
-    yield _plugin(Kind.CONTROLLERS, CONTROLLERS, controller)
+    if is_pair(name):
+        yield _shown(inspect_plugins(NAVIGATORS, [name], PAIR)[name])
 
 
-def _metric_facts(metric: Any) -> list[tuple[str, str]]:
-    facts = [
-        ("unit", metric.unit or "none"),
-        ("better", metric.better or "neither: it describes, and is never ranked"),
-        ("range", f"{metric.low:g} to {metric.high:g}"),
-        ("per", metric.scope),
-    ]
-    if metric.conditional:
-        facts.append(("of", "those that arrived, so it shows their number and never ranks"))
-    return [*facts, ("reference", metric.reference)]
-
-
-def _parameters(plugin: Any, named: tuple[str, ...] = ()) -> str:
-    """One line each, without those ``named`` elsewhere."""
-    rows = [("    " + row[0], *row[1:]) for row in parameters(plugin) if row[0] not in named]
-    return columns(rows) if rows else "    none"
-
-
-def _place(thing: Any) -> str:
-    try:
-        path, (_, line) = inspect.getsourcefile(thing), inspect.getsourcelines(thing)
-    except (TypeError, OSError):
-        return ""
-    return f" ({path}:{line})"
+def _is_class(name: str) -> bool:
+    """True for ``module:Class``; a scenario's parameters stand behind a colon, too."""
+    return ":" in name and "=" not in name
 
 
 def _scenario(name: str) -> Iterator[str]:

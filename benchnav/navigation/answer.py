@@ -43,7 +43,8 @@ def checked(answer: Any, active: BoolArray) -> FloatArray:
         raise CallFailed(
             f"act must return an array of shape {expected}. Got shape {command.shape} instead"
         )
-    command = np.where(active[..., None], command.astype(np.float64), 0.0)
+    with np.errstate(over="ignore"):  # a number that float64 cannot hold is not finite
+        command = np.where(active[..., None], command.astype(np.float64), 0.0)
     finite = np.isfinite(command).all(axis=2)
     if not finite.all():
         world, agent = np.argwhere(~finite)[0]
@@ -98,4 +99,4 @@ def _name(value: Any) -> str:
 
 
 def _kind(answer: Any, command: np.ndarray) -> str:
-    return f"dtype {command.dtype}" if isinstance(answer, np.ndarray) else _name(answer)
+    return f"dtype {short(command.dtype)}" if isinstance(answer, np.ndarray) else _name(answer)

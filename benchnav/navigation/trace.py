@@ -22,6 +22,7 @@ MESSAGE = 1000  # characters of a message in a traceback
 LINE = 200  # characters of a line of source
 FIRST, LAST = 4, 16  # frames that are shown of a deep stack
 CHAIN = 3  # exceptions that led to another one
+SOURCE = 10_000_000  # bytes of a file that lines are taken from
 RAW = 20_000  # characters that are looked at of a text
 
 _CORE = str(Path(__file__).parents[1]) + os.sep  # also where a part of it is run as a program
@@ -36,7 +37,7 @@ def plain(value: object) -> str:
     """``str(value)`` that can be written as UTF-8: control characters but line breaks marked."""
     try:
         text = str.__getitem__(str(value), slice(RAW))
-    except (Exception, SystemExit):
+    except BaseException:  # also a KeyboardInterrupt that a plugin raises
         return f"(a {class_name(value)} that cannot be read)"
     clean = visible_lines(text).encode("utf-8", "replace").decode()
     home = os.path.expanduser("~")  # noqa: PTH111 - Path.home() raises where there is none
@@ -46,7 +47,7 @@ def plain(value: object) -> str:
 def class_name(value: object) -> str:
     """The name of the class of ``value``, whatever its metaclass says."""
     name: str = type.__dict__["__name__"].__get__(type(value))
-    return visible(name[:100])
+    return visible(str.__getitem__(name, slice(100)))
 
 
 def location(error: BaseException) -> str:
@@ -108,10 +109,19 @@ def _lines(error: BaseException, deep: int, seen: set[int]) -> Iterator[str]:
                 yield f"  … {skipped} more calls"
             continue
         yield f'  File "{_shown(frame)}", line {line}, in {plain(frame.f_code.co_name)[:100]}'
-        if source := plain(linecache.getline(frame.f_code.co_filename, line)).strip():
+        if source := plain(_source_line(frame.f_code.co_filename, line)).strip():
             yield f"    {source[:LINE]}"
     message = plain(error)[:MESSAGE].strip()
     yield f"{class_name(error)}: {message}" if message else class_name(error)
+
+
+def _source_line(path: str, line: int) -> str:
+    """Of a file that is one: a plugin may name a device or a pipe instead."""
+    known = path in linecache.cache  # a cell of a notebook is no file
+    file = Path(path)
+    if known or (file.is_file() and file.stat().st_size <= SOURCE):
+        return linecache.getline(path, line)
+    return ""
 
 
 def _own(frames: _Frames) -> _Frames:

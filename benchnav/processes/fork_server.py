@@ -22,6 +22,7 @@ from benchnav.named_module import current_folder
 from benchnav.processes.channel import Channel, ChannelError
 from benchnav.processes.main_module import main_module, require_main_guard
 from benchnav.processes.process_tree import kill
+from benchnav.processes.server import PREPARE, START
 
 ONE_THREAD = {  # a process is one core: more threads would only fight those of others
     "BENCHNAV_THREADS": "1",
@@ -94,13 +95,20 @@ class ForkServer:
         """False once it ended."""
         return self._process.poll() is None
 
-    def start(self, target: str, main: bool = True) -> Child:
+    def prepare(self) -> None:
+        """Load what a run needs, while this process does other things."""
+        with suppress(OSError):  # `start` says why
+            self._socket.sendall(PREPARE)
+
+    def start(self, target: str, main: bool = True, warm: bool = True) -> Child:
         """Start ``target``, "module:function", with (channel, notes) in a new process.
 
         It has the environment, the folder and the module path of this process as they are
-        now, and with ``main`` also its ``__main__``.
+        now, and with ``main`` also its ``__main__``. With ``warm`` it begins with the modules
+        and kernels of a run, and else with those alone that plugins are made of.
         """
-        require_main_guard()
+        if main:
+            require_main_guard()
         ours, theirs = socket.socketpair()
         with TemporaryFile() as file:
             file.truncate(NOTES)
@@ -111,9 +119,10 @@ class ForkServer:
                 "path": sys.path,
                 "folder": str(current_folder()),
                 "main": main_module() if main else {},
+                "warm": warm,
             }
             try:
-                socket.send_fds(self._socket, [b"\0"], [theirs.fileno(), file.fileno()])
+                socket.send_fds(self._socket, [START], [theirs.fileno(), file.fileno()])
                 self._channel.send(asked)
             except (OSError, ChannelError) as error:
                 raise self._lost() from error

@@ -16,10 +16,13 @@ from pathlib import Path
 from select import select
 from typing import Any, NoReturn
 
+from benchnav.errors import BenchnavError
 from benchnav.processes.channel import Channel, ChannelError
 from benchnav.processes.process_tree import kill
 
-PRELOADED = "benchnav.runner.warm:warm"
+LIGHT = "benchnav.navigation.introduction"  # what plugins are made of; imported at once
+WARM = "benchnav.runner.warm:warm"  # what runs them: imports, and compiles where it must
+PREPARE, START = b"\1", b"\0"  # what a message on the socket asks for
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 
 
@@ -32,7 +35,7 @@ def main(file: int) -> None:
         os.set_blocking(end, False)
     signal.signal(signal.SIGCHLD, lambda *_: None)
     signal.set_wakeup_fd(wakes, warn_on_full_buffer=False)
-    load(PRELOADED)()
+    importlib.import_module(LIGHT)
     server = _Server(socket.socket(fileno=file), woken, wakes)
     with suppress(EOFError, ChannelError, ConnectionError):
         server.serve()
@@ -52,6 +55,7 @@ class _Server:
     woken: int
     wakes: int
     children: set[int] = field(default_factory=set)
+    is_warm: bool = False
 
     def __post_init__(self) -> None:
         self.channel = Channel(self.asked)
@@ -79,7 +83,12 @@ class _Server:
         mark, files, _, _ = socket.recv_fds(self.asked, 1, 2)
         if not mark:
             raise EOFError
+        if mark == PREPARE:
+            self._warm()
+            return
         said = json.loads(self.channel.receive_bytes())
+        if said["warm"]:
+            self._warm()
         pid = os.fork()
         if not pid:
             self._become(said, *files)
@@ -87,6 +96,13 @@ class _Server:
             os.close(file)
         self.children.add(pid)
         self.channel.send({"started": pid})
+
+    def _warm(self) -> None:
+        """Load what a run needs, once."""
+        if not self.is_warm:
+            with suppress(BenchnavError):  # what cannot be used, a worker names
+                load(WARM)()
+            self.is_warm = True
 
     def _reap(self) -> None:
         with suppress(ChildProcessError):
@@ -139,7 +155,7 @@ def _run(said: dict[str, Any], channel: Channel, shared: mmap) -> None:
 
     from benchnav.processes.main_module import import_main
 
-    random.seed()  # noqa: NPY002 - who forgets to seed draws other numbers in each process, as elsewhere
+    random.seed()  # noqa: NPY002 - who forgets to seed draws other numbers in each process
     if said["main"]:
         import_main(said["main"])
     with memoryview(shared).cast("d") as notes:

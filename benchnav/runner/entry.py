@@ -1,19 +1,21 @@
 """The navigators of a suite: who they are, as they say themselves."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from benchnav.arena.sensing import Sensing
-from benchnav.errors import BrokenPluginError, NavigatorError, ScenarioError
+from benchnav.errors import BenchnavError, BrokenPluginError, NavigatorError, ScenarioError
 from benchnav.isolation import isolated
 from benchnav.isolation.program import PROCESS
 from benchnav.navigation.configure import Spec, split
+from benchnav.navigation.guarded_introduction import introductions
 from benchnav.navigation.introduction import Introduction, introduction
 from benchnav.navigation.navigator import Need, Training
 from benchnav.plugins import NAVIGATORS
+from benchnav.runner.limits import Limits
 from benchnav.source.digest import FoundSource, find_source
-from benchnav.source.parts import places_of
+from benchnav.source.parts import names_known_here, places_of
 from benchnav.store.manifest import IN_PROCESS, ISOLATED, Mode
 from benchnav.store.navigator_hash import navigator_hash
 
@@ -50,32 +52,54 @@ class Entry:
 
 @dataclass(frozen=True)
 class Meeting:
-    """Asks navigators who they are, each in a process of its own where they are isolated."""
+    """Asks navigators who they are, each in a process of its own.
+
+    Those that this process alone knows are asked in it.
+    """
 
     sensings: tuple[Sensing, ...]
     isolate: bool
+    timeout: float = Limits.timeout  # [s] that a call of a navigator may last
 
     def entry(self, spec: Spec, where: str) -> Entry:
         """The entry that ``spec`` describes, as it stands at ``where``."""
-        label = label_of(spec)
-        if not isinstance(spec, str):
-            spec = {key: value for key, value in spec.items() if key != "label"}
-            if not label.strip() or len(label) > 80:
-                raise ScenarioError(
-                    f"{where} label must have 1 to 80 characters; got {label[:90]!r}."
-                )
-        name, _ = split(NAVIGATORS, spec, where=where)
-        apart = self.isolate and name != PROCESS
-        ask = isolated.introduction if apart else introduction
-        try:
-            said = ask(spec, self.sensings, where=where)
-        except NavigatorError as error:
-            raise BrokenPluginError(
-                f"{where}: The navigator {label!r} cannot be used: {error}."
-            ) from None
+        return self.entries([(spec, where)])[0]
+
+    def entries(self, wanted: Sequence[tuple[Spec, str]]) -> tuple[Entry, ...]:
+        """The entries that specs describe, each with what it stands at; asked side by side."""
+        asked = [(_without_label(spec, where), where) for spec, where in wanted]
+        met = self._introductions(asked)
+        return tuple(
+            self._entry(label_of(spec), met[k], where) for k, (spec, where) in enumerate(wanted)
+        )
+
+    def _introductions(self, asked: Sequence[tuple[Spec, str]]) -> dict[int, Introduction]:
+        """By place; raises for the first that cannot be used."""
+        found: dict[int, Introduction | BenchnavError] = {}
+        away = []
+        for k, (spec, where) in enumerate(asked):
+            name, parameters = split(NAVIGATORS, spec, where=where)
+            if self.isolate and name != PROCESS:
+                found[k] = _isolated(spec, self.sensings, where)
+            elif names_known_here({"type": name, **parameters}):
+                found[k] = introduction(spec, self.sensings, where=where)
+            else:
+                away.append(k)
+        answers = introductions([asked[k] for k in away], self.sensings, self.timeout)
+        found.update(zip(away, answers, strict=True))
+        met = {}
+        for k in range(len(asked)):
+            said = found[k]
+            if isinstance(said, BenchnavError):
+                raise said
+            met[k] = said
+        return met
+
+    def _entry(self, label: str, said: Introduction, where: str) -> Entry:
         led = self._leader(said, where)
         places = tuple(sorted({*places_of(said.spec, said.parts), *(led.places if led else ())}))
-        alone = self.isolate or (name == PROCESS and (led is None or led.mode == ISOLATED))
+        program = said.spec["type"] == PROCESS
+        alone = self.isolate or (program and (led is None or led.mode == ISOLATED))
         entry = Entry(
             label, said.spec, ", ".join(said.made_of), said.needs, said.lacks,
             training=said.training or (led.training if led else None),
@@ -100,6 +124,25 @@ class Meeting:
                 f"{where}: who leads in rehearsals must need none itself. Got {led.label!r}."
             )
         return led
+
+
+def _without_label(spec: Spec, where: str) -> Spec:
+    """``spec`` as the navigator is made of it. Raises ScenarioError for a label that is none."""
+    if isinstance(spec, str):
+        return spec
+    label = label_of(spec)
+    if not label.strip() or len(label) > 80:
+        raise ScenarioError(f"{where} label must have 1 to 80 characters; got {label[:90]!r}.")
+    return {key: value for key, value in spec.items() if key != "label"}
+
+
+def _isolated(spec: Spec, sensings: Sequence[Sensing], where: str) -> Introduction:
+    try:
+        return isolated.introduction(spec, sensings, where=where)
+    except NavigatorError as error:
+        raise BrokenPluginError(
+            f"{where}: The navigator {label_of(spec)!r} cannot be used: {error}."
+        ) from None
 
 
 def source_of(entry: Entry) -> FoundSource:

@@ -1,11 +1,14 @@
 """Tasks that this process alone can run: their plugins were registered in it, in a notebook say."""
 
 from collections.abc import Iterable
+from contextlib import suppress
 
 from benchnav.errors import UsageError
+from benchnav.named_module import load_by_module
 from benchnav.navigation.configure import Spec, split
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.cell import Cell
+from benchnav.runner.entry import source_of
 from benchnav.source.importable import is_importable
 from benchnav.source.parts import live_object, places_of
 
@@ -28,9 +31,13 @@ def refuse_limits_here(cells: Iterable[Cell], limited: bool) -> None:
 
 def refuse_edited(cells: Iterable[Cell]) -> None:
     """Raise UsageError where this process would run code that is no longer what the files hold."""
-    for cell in cells:
-        if cell.entry.edited:
-            module = cell.entry.edited[0]
+    for cell in {cell.entry.label: cell for cell in cells}.values():
+        for place in cell.entry.places:
+            with suppress(Exception, SystemExit):  # making it says why
+                load_by_module(place)
+        edited = cell.entry.edited or source_of(cell.entry).edited
+        if edited:
+            module = edited[0]
             raise UsageError(
                 f"What runs in this process must be what its files hold. {module} was edited after"
                 f" this process had imported it, and {cell.entry.label!r} would run as it was."

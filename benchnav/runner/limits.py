@@ -38,3 +38,11 @@ class Limits:
 
     def __str__(self) -> str:
         return f"{self.timeout:g} s a call and {self.memory:g} GB a worker"
+
+
+def patience(timeout: float | None) -> float:
+    """[s] for a call of a navigator that is asked who it is, before the limits are checked."""
+    try:
+        return Limits().timeout if timeout is None else Limits(timeout=timeout).timeout
+    except ValueError:
+        return Limits().timeout

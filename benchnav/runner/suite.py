@@ -17,6 +17,7 @@ from benchnav.navigation.tracks import TRACKS
 from benchnav.runner.cell import Cell
 from benchnav.runner.entry import Entry, Meeting, label_of, resolved
 from benchnav.runner.generators import check_salt
+from benchnav.runner.limits import patience
 from benchnav.runner.suite_file import SuiteFile, is_scenario, parse_seeds, suite_path
 from benchnav.scenario.catalogue import find
 from benchnav.scenario.document import Document
@@ -116,11 +117,14 @@ class Suite:
         }
 
 
-def load_suite(name: str, selection: Selection = Selection()) -> Suite:
+def load_suite(
+    name: str, selection: Selection = Selection(), *, timeout: float | None = None
+) -> Suite:
     """Return the suite called ``name`` or in that file, with the selection applied.
 
     The name or file of a scenario gives a suite of that scenario: its navigators, tracks and
-    seeds are those of the suite `FIRST_LOOK` where nothing is selected.
+    seeds are those of the suite `FIRST_LOOK` where nothing is selected. Navigators are asked
+    who they are in processes of their own, in which a call may last ``timeout`` [s].
 
     Raises:
         UsageError: no such suite, track, seeds or salt; a label or scenario twice.
@@ -128,7 +132,7 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
         PluginError: a navigator cannot be used.
     """
     if is_scenario(name):
-        return _suite_of_one(name, selection)
+        return _suite_of_one(name, selection, timeout)
     path = suite_path(name)
     document = read_yaml(path)
     said = validate(SuiteFile, document)
@@ -137,12 +141,15 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
         scenarios = tuple(find(name) for name in selection.scenarios)
     else:
         scenarios = tuple(find(name, path.parent) for name in said.scenarios)
-    for scenario in scenarios:
-        check_drivers(scenario)
-    meeting = Meeting(tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate)
-    entries = tuple(
-        meeting.entry(spec, "--navigator" if i is None else document.where(("navigators", i)))
-        for i, spec in wanted
+    check_drivers(*scenarios, timeout=patience(timeout))
+    meeting = Meeting(
+        tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate, patience(timeout)
+    )
+    entries = meeting.entries(
+        [
+            (spec, "--navigator" if i is None else document.where(("navigators", i)))
+            for i, spec in wanted
+        ]
     )
     tracks = tuple(selection.tracks or said.tracks)
     _refuse_unknown_tracks(tracks)
@@ -158,10 +165,10 @@ def load_suite(name: str, selection: Selection = Selection()) -> Suite:
     return replace(suite, blocks=_blocks(said, suite, path)) if said.blocks else suite
 
 
-def _suite_of_one(name: str, selection: Selection) -> Suite:
+def _suite_of_one(name: str, selection: Selection, timeout: float | None) -> Suite:
     """Return a suite of the scenario called ``name``, and of those that are selected with it."""
     chosen = replace(selection, scenarios=(name, *selection.scenarios))
-    suite = load_suite(FIRST_LOOK, chosen)
+    suite = load_suite(FIRST_LOOK, chosen, timeout=timeout)
     scenario = suite.scenarios[0]
     called = re.sub(r"[^a-z0-9]+", "-", scenario.name.lower()).strip("-")[:60]
     return replace(suite, name=called or "scenario", version=scenario.version, blocks=())

@@ -13,6 +13,7 @@ from jsonschema import Draft202012Validator
 import benchnav
 from benchnav.plugins import NAVIGATORS, PLANNERS
 from benchnav.threads import core_count
+from tests.installed import install
 
 
 @pytest.mark.parametrize(
@@ -82,16 +83,8 @@ def test_list_names_everything_and_where_it_comes_from(call):
     assert f"benchnav {benchnav.__version__}" in navigators
 
 
-def test_a_broken_plugin_is_listed_with_its_cause(call, monkeypatch):
-    class Broken:
-        name, value, dist = "gone", "no_such_module:Thing", None
-
-        @staticmethod
-        def load():
-            raise ModuleNotFoundError("No module named 'no_such_module'")
-
-    entries = {**NAVIGATORS._entries(), "gone": [Broken]}
-    monkeypatch.setattr(NAVIGATORS, "_found", entries)
+def test_a_broken_plugin_is_listed_with_its_cause(call, monkeypatch, tmp_path):
+    install(monkeypatch, tmp_path / "site", "", navigators={"gone": "no_such_module:Thing"})
     code, stdout, _ = call("list", "navigators")
     assert code == 0
     line = next(line for line in stdout.splitlines() if line.startswith("gone"))
@@ -203,11 +196,14 @@ def test_new_writes_a_package_of_fifteen_lines_that_works(call, tmp_path, suite,
     assert call("new", "navigator", "my-idea", "--out", target)[0] == 2
 
 
-def test_doctor_counts_what_can_be_used_and_says_what_is_missing(call, monkeypatch):
+def test_doctor_counts_what_can_be_used_and_says_what_is_missing(call, monkeypatch, tmp_path):
     kinds = ("navigators", "planners", "controllers")
     whole = " ".join(call("doctor")[1].split())
     for name in ("ompl", "networkx"):
         monkeypatch.setitem(sys.modules, name, None)
+        gone = f"raise ModuleNotFoundError(\"No module named '{name}'\", name='{name}')"
+        (tmp_path / f"{name}.py").write_text(gone)  # for the processes that make plugins
+    monkeypatch.syspath_prepend(tmp_path)
     code, stdout, _ = call("doctor")
     assert code == 0
     lines = [" ".join(line.split()) for line in stdout.splitlines()]

@@ -251,8 +251,8 @@ def test_a_metric_of_a_plugin_costs_its_own_values(honest, tmp_path):
         "a_patches = odd_metrics:PATCHES\na_gone = odd_metrics:GONE\n"
     )
     done = subprocess.run(
-        [sys.executable, "-c", "from benchnav.cli.main import main; main()", "run", "suite.yaml", "--out",
-         str(tmp_path / "run"), "--timeout", "1", "--workers", "1", "--salt", "5a" * 16],
+        [sys.executable, "-c", "from benchnav.cli.main import main; main()", "run", "suite.yaml",
+         "--out", str(tmp_path / "run"), "--timeout", "1", "--workers", "1", "--salt", "5a" * 16],
         cwd=folder, env={**os.environ, "PYTHONPATH": str(site)}, capture_output=True, text=True,
         check=False,
     )  # fmt: skip

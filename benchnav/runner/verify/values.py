@@ -1,12 +1,12 @@
 """The values that a run holds beside those measured on the re-simulated episodes."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import PluginError
-from benchnav.metrics.measure import all_metrics, measure
+from benchnav.metrics.measure import is_own, load_metric, measure
 from benchnav.metrics.metric import Metric
 from benchnav.plugins import METRICS
 from benchnav.runner.verify.finding import Report
@@ -87,6 +87,16 @@ def expected_metrics(stored: set[str], version: str) -> tuple[Metric, ...]:
     ours = f"benchnav {version}"
     return tuple(
         metric
-        for metric in all_metrics()
+        for metric in _usable()
         if metric.name in stored or METRICS.source(metric.name).distribution == ours
     )
+
+
+def _usable() -> Iterator[Metric]:
+    """All installed metrics but those of plugins that cannot be loaded."""
+    for name in METRICS.names():
+        try:
+            yield load_metric(name)
+        except PluginError:
+            if is_own(name):
+                raise

@@ -1,0 +1,86 @@
+"""What metrics declare: unit, direction, range. Those of plugins do so in their own process."""
+
+from typing import Annotated, Any, Literal, NoReturn
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, StrictBool, ValidationError
+
+from benchnav.errors import BenchnavError, PluginError
+from benchnav.metrics.measure import is_own, load_metric
+from benchnav.metrics.metric import Metric
+from benchnav.navigation.answer import short
+from benchnav.navigation.guarded import IMPORT, Plugin, Stepping, ask_plugins, tell
+from benchnav.plugins import METRICS
+from benchnav.processes.channel import Channel
+
+_TIMEOUT = 30.0  # [s] for an import
+_Line = Annotated[str, AfterValidator(short)]
+
+
+class _Declaration(BaseModel):
+    """A metric without its name and its function."""
+
+    model_config = ConfigDict(extra="forbid", from_attributes=True)
+
+    title: _Line
+    unit: _Line
+    better: Literal["higher", "lower"] | None
+    low: float
+    high: float
+    reference: _Line
+    scope: Literal["agent", "group"]
+    conditional: StrictBool
+    verifiable: StrictBool
+    rate: StrictBool
+
+
+def declared_metrics() -> tuple[dict[str, Metric], list[str]]:
+    """(metrics by name, why others cannot be used).
+
+    A metric of a plugin has no function here. `benchnav.runner.recomputed` measures with it.
+    """
+    found: dict[str, Metric | BenchnavError] = {}
+    groups: dict[str, list[Plugin]] = {}
+    for name in METRICS.names():
+        try:
+            if METRICS.is_local(name) or is_own(name):
+                found[name] = load_metric(name)
+            else:
+                source = METRICS.source(name).distribution
+                groups.setdefault(source, []).append(Plugin(METRICS.kind, name, "", name))
+        except PluginError as error:
+            found[name] = error
+    answers = ask_plugins(f"{__name__}:tell_declarations", list(groups.values()), _TIMEOUT)
+    for group, answered in zip(groups.values(), answers, strict=True):
+        for plugin, answer in zip(group, answered, strict=True):
+            found[plugin.name] = _metric(plugin, answer)
+    metrics = {name: found[name] for name in METRICS.names()}
+    return (
+        {name: metric for name, metric in metrics.items() if isinstance(metric, Metric)},
+        [str(error) for error in metrics.values() if isinstance(error, BenchnavError)],
+    )
+
+
+def _metric(plugin: Plugin, answer: Any) -> Metric | BenchnavError:
+    if isinstance(answer, BenchnavError):
+        return answer
+    try:
+        declared = _Declaration.model_validate(answer)
+    except ValidationError as error:
+        first = error.errors()[0]
+        key = ".".join(map(str, first["loc"])) or "declaration"
+        return plugin.broken(f"its {key} must be something else: {first['msg']}")
+    return Metric(name=plugin.name, function=_not_here, **declared.model_dump())
+
+
+def _not_here(*_: Any) -> NoReturn:
+    raise PluginError("A metric of a plugin is measured in a process of its own.")
+
+
+def tell_declarations(channel: Channel, notes: "memoryview[float]") -> None:
+    """Declare the metrics that the channel asks for. Of a process of its own."""
+    tell(channel, notes, _declared)
+
+
+def _declared(name: str, stepping: Stepping) -> dict[str, Any]:
+    stepping(IMPORT)
+    return _Declaration.model_validate(load_metric(name)).model_dump()

@@ -1,0 +1,183 @@
+"""Questions to processes of their own, which may hang, die or answer nonsense.
+
+One process answers a list of questions in order. Where it fails, the question that it was at is
+charged, and a new process goes on with the next one. Several lists are answered at once.
+"""
+
+from collections import deque
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+from select import select
+from time import monotonic
+from typing import Any
+
+from benchnav.errors import BenchnavError
+from benchnav.processes.channel import ChannelError
+from benchnav.processes.fork_server import Child, fork_server, words
+from benchnav.processes.process_tree import resident
+from benchnav.threads import core_count
+
+_POLL = 0.1  # [s] between looks at what a process does and holds
+_END = 5.0  # [s] for a process that closed its channel to end
+
+
+@dataclass(frozen=True)
+class Inquiry:
+    """Questions for one process; ``target`` is as in `ForkServer.start`."""
+
+    target: str
+    questions: Sequence[Any]  # what JSON can say
+
+
+@dataclass(frozen=True)
+class Step:
+    """A part of an answer; the process notes the number of the one that it begins."""
+
+    name: str
+    patience: float  # [s] that it may last
+
+
+@dataclass(frozen=True)
+class Fault:
+    """Why there is no answer: "it did not return from __init__ within 2 s"."""
+
+    text: str
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Of an answer."""
+
+    steps: Sequence[Step]
+    memory: float  # [bytes] that the process may hold in RAM
+
+
+def inquire(inquiries: Sequence[Inquiry], limits: Limits) -> list[list[Any | Fault]]:
+    """The answers to each inquiry's questions, in order; a `Fault` where there is none.
+
+    Raises BenchnavError where no process can be started.
+    """
+    answers: list[list[Any | Fault]] = [[] for _ in inquiries]
+    waiting = deque(k for k, inquiry in enumerate(inquiries) if inquiry.questions)
+    running: dict[int, _Asked] = {}
+    most = core_count()
+    try:
+        while waiting or running:
+            try:
+                while waiting and len(running) < most:
+                    running[waiting[0]] = _Asked.begin(
+                        inquiries[waiting[0]], len(answers[waiting[0]])
+                    )
+                    waiting.popleft()
+                select([asked.child.channel for asked in running.values()], [], [], _POLL)
+                _collect(answers, waiting, running, limits, alone=most == 1)
+            except _ServerLost as lost:  # by one of those that ran: each is asked again, alone
+                if most == 1 and not running and lost.__cause__ is not None:
+                    raise lost.__cause__ from None
+                waiting.extendleft(reversed(running))
+                _close(running)
+                most = 1
+    finally:
+        _close(running)
+    return answers
+
+
+class _ServerLost(Exception):
+    """The process that starts processes ended, and with it all of them."""
+
+
+def _collect(
+    answers: list[list[Any | Fault]], waiting: deque[int], running: "dict[int, _Asked]",
+    limits: Limits, alone: bool,
+) -> None:  # fmt: skip
+    """Take what came."""
+    for k, asked in list(running.items()):
+        found = asked.look(limits, alone)
+        answers[k] += found
+        failed = any(isinstance(answer, Fault) for answer in found)
+        if failed or not asked.left:
+            running.pop(k).child.close()
+            if asked.left:
+                waiting.append(k)
+
+
+def _close(running: "dict[int, _Asked]") -> None:
+    while running:
+        running.popitem()[1].child.close()
+
+
+@dataclass
+class _Asked:
+    """A process, and the question that it is at."""
+
+    child: Child
+    left: int  # questions without an answer
+    since: float = field(default_factory=monotonic)  # when this question began
+    begun: float = 0.0  # when this step did
+    step: int = 0
+
+    @classmethod
+    def begin(cls, inquiry: Inquiry, answered: int) -> "_Asked":
+        questions = list(inquiry.questions)[answered:]
+        server = fork_server()
+        try:
+            child = server.start(inquiry.target, main=False, warm=False)
+        except BenchnavError as error:
+            raise _ServerLost from error
+        with suppress(ChannelError):  # its end shows
+            child.channel.send(questions)
+        return cls(child, len(questions), begun=monotonic())
+
+    def look(self, limits: Limits, alone: bool) -> list[Any | Fault]:
+        """What came, and a `Fault` last where the process failed.
+
+        Raises _ServerLost where not it ``alone`` may be what ended the server.
+        """
+        found: list[Any | Fault] = []
+        try:
+            if select([self.child.channel], [], [], 0.0)[0]:
+                found += self.child.channel.arrived()[: self.left]
+        except EOFError:
+            found.append(Fault(self._end(alone) + self._during(limits)))
+        except ChannelError as error:
+            found.append(Fault(str(error)))
+        if found:
+            self.left -= len(found)
+            self.since = self.begun = monotonic()
+            self.step = 0
+            return found
+        if why := self._overdue(limits):
+            self.left -= 1
+            return [Fault(why)]
+        return []
+
+    def _end(self, alone: bool) -> str:
+        try:
+            self.child.join(_END)
+        except BenchnavError:
+            if alone:
+                return "it ended the process that had started it"
+            raise _ServerLost from None
+        code = self.child.exitcode
+        return "its process closed its channel" if code is None else f"its process {words(code)}"
+
+    def _overdue(self, limits: Limits) -> str:
+        """How the process exceeds a limit; "" where it does not."""
+        now, step = monotonic(), self._noted(limits)
+        if step > self.step:
+            self.step, self.begun = step, now
+        name, patience = limits.steps[self.step].name, limits.steps[self.step].patience
+        if now - self.begun > patience or now - self.since > sum(s.patience for s in limits.steps):
+            return f"it did not return from {name} within {patience:g} s"
+        if resident(self.child.pid) > limits.memory:
+            return f"it held more than {limits.memory / 1e9:g} GB of memory{self._during(limits)}"
+        return ""
+
+    def _noted(self, limits: Limits) -> int:
+        """The step that the process is at; what it noted may be anything."""
+        noted = self.child.notes[0]
+        return int(noted) if 0 <= noted < len(limits.steps) else 0
+
+    def _during(self, limits: Limits) -> str:
+        return f" in {limits.steps[max(self.step, self._noted(limits))].name}"
