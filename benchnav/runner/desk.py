@@ -58,6 +58,8 @@ class Desk:
         self._watch = Watch([0.0] * 4)
         self._state: Literal["idle", "playing", "measuring"] = "idle"
         self._tasks = 0  # that the worker was given
+        self._began = 0.0  # what its worker's notes counted when the task began
+        self._most = 0.0  # that they may count more until it ends
         self._unmeasured = 0.0  # [s] since an episode was measured
         self.company = ""  # whom its worker serves
         self.task: Task | None = None
@@ -71,6 +73,7 @@ class Desk:
         if self._worker is None:
             self._hire(task.company)
         self._tasks += 1
+        self._began, self._most = self._watch.notes[0], 2.0 * task.most_calls
         self._send(self._worker, task)
 
     def files(self) -> list[int]:
@@ -101,6 +104,8 @@ class Desk:
             return self._fault(words(worker.exitcode), worker.exitcode)
         if watch.twice:
             return self._fault("forked, and a call returned in both processes")
+        if not self._began <= watch.notes[0] <= self._began + self._most:
+            return self._fault(f"went on after {watch.call()}, beyond the end of its episodes")
         if watch.lasted > limits.timeout:
             return self._fault(f"did not return from {watch.call()} within {limits.timeout:g} s")
         if watch.idle > limits.timeout + SLACK:

@@ -17,6 +17,7 @@ from benchnav.navigation.observation import Observation
 from benchnav.navigation.rehearsal import Rehearsal, copied
 from benchnav.navigation.trace import trace
 from benchnav.navigation.tracks import granted_map
+from benchnav.runner.guard import Guard
 from benchnav.runner.watch import Call, calling
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
@@ -42,12 +43,14 @@ class Driver:
         track: str,
         blame: str = "",
         rehearsals: Sequence[tuple[Rehearsal, ...]] = (),
+        guard: Guard | None = None,
     ) -> None:
         self.navigator = navigator
         self.simulation = simulation
         self.which = which
         self.track = track
         self._blame = blame  # what its reasons start with
+        self._guard = guard  # of the code that runs it, where it shares the process
         worlds = simulation.worlds
         self._rehearsals = rehearsals or [()] * len(worlds)
         self.chosen = _chosen(worlds, which)  # (B, An) agent index, -1: padding
@@ -86,7 +89,9 @@ class Driver:
         except (Exception, SystemExit) as error:
             reason, traceback = _raised("reset", error)
             raise CallFailed(self._blame + reason, traceback=traceback) from error
-        return perf_counter() - began
+        seconds = perf_counter() - began
+        self._require_intact(self._blame)
+        return seconds
 
     def mark_twists(self, twist: BoolArray) -> None:
         """Set ``twist`` (B, A) for its agents where it answers twists."""
@@ -111,6 +116,7 @@ class Driver:
                 answer = self.navigator.act(observation)
                 seconds = perf_counter() - began
                 told = checked(answer, active)
+            self._require_intact()
         except CallFailed as failed:
             who = None if failed.suspects is None else observation.rows[failed.suspects]
             raise CallFailed(self._at(failed.reason, time), who, failed.traceback) from None
@@ -131,6 +137,11 @@ class Driver:
                 return tuple(remarks_of(self.navigator.remarks(row)))
         except (Exception, SystemExit) as error:
             return (_raised("remarks", error)[0],)
+
+    def _require_intact(self, blame: str = "") -> None:
+        replaced = self._guard.replaced() if self._guard is not None else ""
+        if replaced:
+            raise CallFailed(f"{blame}it replaced {replaced}, which is no part of it")
 
     def _at(self, reason: str, time: float) -> str:
         return f"{self._blame}{reason} at t = {time:g} s"

@@ -145,10 +145,8 @@ def _lockstep(
     else:
         told = [grants.get(seed, ()) for seed, _ in batch]
         try:
-            guard = None if assignment.isolated else Guard()  # before anything of it is imported
             drivers = drivers_of(assignment, simulation, told)
             planning = drive(assignment, drivers, recorder, [seed for seed, _ in batch])
-            _require_intact(guard)
         except NavigatorError as error:  # its process does not start, in whatever world
             return _lockstep(assignment, batch, str(error), grants, notes(error))
         except CallFailed as failed:
@@ -180,12 +178,6 @@ def drive(
     return planning
 
 
-def _require_intact(guard: Guard | None) -> None:
-    replaced = guard.replaced() if guard is not None else ""
-    if replaced:
-        raise CallFailed(f"it replaced {replaced}, which is no part of it")
-
-
 def _charge(simulation: Simulation, recorder: Recorder) -> None:
     for b in range(simulation.B):
         simulation.fail(b, np.flatnonzero(simulation.world(b).agents.evaluated))
@@ -203,8 +195,9 @@ def drivers_of(
     CallFailed where one cannot be made.
     """
     cell = assignment.cell if assignment.isolated else ()
+    guard = None if cell else Guard()  # before anything of it is imported
     chosen, track = _made(assignment.navigator, "", cell), assignment.track
-    drivers = [Driver(chosen, simulation, 0, track, rehearsals=rehearsals)]
+    drivers = [Driver(chosen, simulation, 0, track, rehearsals=rehearsals, guard=guard)]
     for which, spec in enumerate(assignment.background, start=1):
         blame = f"the scenario's background navigator {split(NAVIGATORS, spec)[0]!r}: "
         drivers.append(Driver(_made(spec, blame), simulation, which, "known", blame))
@@ -248,13 +241,14 @@ def _run(
     for driver in drivers:
         driver.mark_twists(twist)
     recorder.record_kinds(twist)
-    dt = simulation.world(0).clock.dt
-    step = 0
-    while simulation.running.any() and step != decisions:
+    clock = simulation.world(0).clock
+    dt, last = clock.dt, clock.steps if decisions is None else min(decisions, clock.steps)
+    for step in range(last):  # also where somebody replaced what ends an episode
+        if not simulation.running.any():
+            break
         served = int(simulation.running.sum())
         command = np.zeros_like(simulation.position)
         seconds = [driver.act(command, step * dt) for driver in drivers]
         executed = simulation.step(command, twist)
         recorder.record_commands(command, executed, seconds[0] / served)
         recorder.record_state()
-        step += 1

@@ -65,6 +65,14 @@ class Task:
         """For the estimate of the time that is left."""
         return Load(self.cell.entry.label, self.cell.effort * len(self.seeds))
 
+    @property
+    def most_calls(self) -> int:
+        """How often navigators may be called for it, whoever fails, and worlds be built."""
+        cell, seeds = self.cell, len(self.seeds)
+        drivers = 1 + len(cell.scenario.driver_specs)
+        passes = (1 + cell.entry.rehearsal) * seeds * (seeds.bit_length() + 2) + 1
+        return drivers * passes * (cell.scenario.clock.steps + 10) + 10 * seeds + 100
+
     def alone(self) -> list["Task"]:
         """The same, seed by seed."""
         return [replace(self, first=seed, stop=seed + 1) for seed in self.seeds]
