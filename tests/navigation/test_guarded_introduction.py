@@ -96,7 +96,13 @@ def is_broken(answer, spec, cause):
     return True
 
 
-@pytest.mark.parametrize("place", [*PLACES, "import"])
+@pytest.mark.parametrize(
+    "place",
+    [
+        "__init__",
+        *(pytest.param(p, marks=pytest.mark.slow) for p in ("Config", "required", "import")),
+    ],
+)
 def test_what_misbehaves_is_broken_and_the_others_are_met(place, tmp_path, monkeypatch):
     modules, specs = {}, []
     for k, (misdeed, _) in enumerate(MISDEEDS.values()):
