@@ -1,7 +1,5 @@
 """Plugins that a test installs, as other processes find them too."""
 
-from benchnav.plugins import look_again
-
 
 def install(monkeypatch, folder, code, **groups):
     """Install the module ``hostile`` with ``code``; groups are {name: attribute} by kind."""
@@ -14,4 +12,3 @@ def install(monkeypatch, folder, code, **groups):
     (info / "entry_points.txt").write_text("\n".join(lines) + "\n")
     (folder / "hostile.py").write_text(code)
     monkeypatch.syspath_prepend(folder)
-    look_again()

@@ -14,7 +14,7 @@ from typing import Any
 
 from benchnav.errors import BenchnavError
 from benchnav.processes.channel import ChannelError
-from benchnav.processes.fork_server import Child, fork_server, words
+from benchnav.processes.fork_server import Child, ForkServer, fork_server, words
 from benchnav.processes.process_tree import resident
 from benchnav.threads import core_count
 
@@ -111,6 +111,7 @@ def _close(running: "dict[int, _Asked]") -> None:
 class _Asked:
     """A process, and the question that it is at."""
 
+    server: ForkServer  # that began it
     child: Child
     left: int  # questions without an answer
     since: float = field(default_factory=monotonic)  # when this question began
@@ -127,7 +128,7 @@ class _Asked:
             raise _ServerLost from error
         with suppress(ChannelError):  # its end shows
             child.channel.send(questions)
-        return cls(child, len(questions), begun=monotonic())
+        return cls(server, child, len(questions), begun=monotonic())
 
     def look(self, limits: Limits, alone: bool) -> list[Any | Fault]:
         """What came, and a `Fault` last where the process failed.
@@ -153,12 +154,11 @@ class _Asked:
         return []
 
     def _end(self, alone: bool) -> str:
-        try:
-            self.child.join(_END)
-        except BenchnavError:
+        self.child.join(_END)
+        if not self.server.alive:
             if alone:
                 return "it ended the process that had started it"
-            raise _ServerLost from None
+            raise _ServerLost
         code = self.child.exitcode
         return "its process closed its channel" if code is None else f"its process {words(code)}"
 

@@ -96,7 +96,10 @@ def is_broken(answer, spec, cause):
     return True
 
 
-@pytest.mark.parametrize("place", [*PLACES, "import"])
+SLOW = [pytest.param(place, marks=pytest.mark.slow) for place in ("Config", "required", "import")]
+
+
+@pytest.mark.parametrize("place", ["__init__", *SLOW])
 def test_what_misbehaves_is_broken_and_the_others_are_met(place, tmp_path, monkeypatch):
     modules, specs = {}, []
     for k, (misdeed, _) in enumerate(MISDEEDS.values()):
