@@ -28,7 +28,9 @@ def own_metrics() -> tuple[Metric, ...]:
 
 def is_own(name: str) -> bool:
     """Whether the metric of this name is part of benchnav, and not of a plugin."""
-    return not METRICS.is_local(name) and METRICS.source(name).value.startswith("benchnav.")
+    source = METRICS.source(name)
+    ours = source.distribution.partition(" ")[0] == "benchnav"
+    return ours and not METRICS.is_local(name) and source.value.startswith("benchnav.")
 
 
 def all_metrics() -> tuple[Metric, ...]:

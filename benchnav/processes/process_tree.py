@@ -7,10 +7,12 @@ is not known.
 import multiprocessing
 import os
 import signal
+from collections.abc import Sequence
 from contextlib import suppress
 from multiprocessing.connection import wait
 from pathlib import Path
 from threading import Thread
+from time import monotonic, sleep
 
 PROC = Path("/proc")
 
@@ -57,3 +59,10 @@ def kill(pid: int) -> None:
     for each in tree(pid):
         with suppress(OSError):
             os.kill(each, getattr(signal, "SIGKILL", signal.SIGTERM))
+
+
+def wait_for_end(pids: Sequence[int], patience: float) -> None:
+    """Wait until none of the processes is left, and at most ``patience`` [s]."""
+    deadline = monotonic() + patience
+    while any((PROC / f"{pid}").exists() for pid in pids) and monotonic() < deadline:
+        sleep(0.005)

@@ -14,7 +14,7 @@ from benchnav.plugins import METRICS, Registration
 from benchnav.processes.channel import ChannelError
 from benchnav.processes.fork_server import Child, fork_server, words
 from benchnav.processes.main_module import main_module
-from benchnav.processes.process_tree import resident
+from benchnav.processes.process_tree import resident, tree
 from benchnav.runner.limits import Limits
 from benchnav.runner.task import Measuring, Outcome, Played, Task
 from benchnav.runner.watch import Watch
@@ -125,6 +125,10 @@ class Desk:
             self._measurer.close()
             self._measurer = None
         return self._leave()
+
+    def processes(self) -> list[int]:
+        """Its processes, and all that they started."""
+        return [pid for one in (self._worker, self._measurer) if one for pid in tree(one.pid)]
 
     def close(self) -> None:
         """End its processes."""

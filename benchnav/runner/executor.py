@@ -14,6 +14,7 @@ from typing import Any
 
 from benchnav.plugins import Registration, registrations
 from benchnav.processes.fork_server import fork_server
+from benchnav.processes.process_tree import wait_for_end
 from benchnav.runner.desk import Desk, Fault
 from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
@@ -22,6 +23,7 @@ from benchnav.store.part import Part
 from benchnav.store.part_writer import discard
 
 Finished = tuple[Task, Outcome]
+GOODBYE = 2.0  # [s] for killed processes to let go of their files
 LOOK = 0.1  # [s] between two looks at the workers' calls and memory
 
 
@@ -89,11 +91,13 @@ class Crew:
 
     def dismiss(self) -> None:
         """Stop everybody at once; unfinished parts are thrown away."""
+        ending = [pid for desk in self.desks for pid in desk.processes()]
         for desk in self.desks:
             if desk.task is not None:
                 discard(_part(desk.task))
             desk.close()
         self.desks.clear()
+        wait_for_end(ending, GOODBYE)
 
     def _busy(self) -> list[Desk]:
         return [desk for desk in self.desks if desk.task is not None]

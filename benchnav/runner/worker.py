@@ -8,6 +8,7 @@ import pickle
 import signal
 import sys
 import traceback
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from os import getpid
@@ -16,7 +17,7 @@ from typing import Any
 
 from benchnav.errors import BenchnavError
 from benchnav.navigation.trace import bounded, plain
-from benchnav.plugins import adopt
+from benchnav.plugins import Registration, adopt
 from benchnav.processes.channel import Channel
 from benchnav.runner.source_check import SourceCheck
 from benchnav.runner.task import Task, play
@@ -36,25 +37,26 @@ def serve(channel: Channel, notes: Notes) -> None:
     write_to(notes, getpid())
     check = SourceCheck()
     registrations = pickle.loads(channel.receive_bytes())  # noqa: S301 - of who started this
-    adopted = False
     while True:
         try:
             task: Task = pickle.loads(channel.receive_bytes())  # noqa: S301
         except EOFError:
             return
-        if not (adopted or task.charge):
-            with calling("__init__"):
-                adopt(registrations)
-            adopted = True
-        channel.send(_answer(task, check))
+        channel.send(_answer(task, check, registrations))
+        registrations = registrations if task.charge else ()
         sys.stdout.flush()
 
 
-def _answer(task: Task, check: SourceCheck) -> dict[str, Any]:
+def _answer(
+    task: Task, check: SourceCheck, registrations: Sequence[Registration]
+) -> dict[str, Any]:
     beat()
     try:
         if not task.charge:
             check.require_same(task.cell.entry)
+            if registrations:
+                with calling("__init__"):
+                    adopt(registrations)
         return {"kind": "played", **asdict(play(task))}
     except BenchnavError as error:
         return {"kind": "refused", "name": type(error).__name__, "text": plain(error)}

@@ -45,7 +45,7 @@ def test_other_errors_are_faults_of_the_program(call, monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("files", [10, 12, 64])
+@pytest.mark.parametrize("files", [10, 64])
 def test_few_descriptors_are_enough_or_told(files, suite, tmp_path):
     done = subprocess.run(
         [sys.executable, "-c", "from benchnav.cli.main import main; main()", "run", str(suite),

@@ -7,8 +7,8 @@ import time
 
 import pytest
 
+from benchnav.processes import process_tree
 from benchnav.processes.process_tree import kill, resident, tells_memory, tree
-from benchnav.runner import process_tree
 
 HOLD = "import time; kept = bytearray(b'x') * 300_000_000; print('held', flush=True); {more}"
 LEAF = HOLD.format(more="time.sleep(600)")

@@ -16,6 +16,7 @@ from benchnav.errors import (
 )
 from benchnav.metrics.measure import all_metrics
 from benchnav.plugins import METRICS, register_navigator
+from benchnav.processes import fork_server
 from benchnav.runner import task as task_module
 from benchnav.runner.measured import measure_again
 from benchnav.runner.progress import Progress
@@ -274,7 +275,8 @@ def test_a_scenario_that_cannot_be_drawn_stops_the_run_and_says_so(
             )
 
 
-def test_what_a_navigator_prints_is_not_a_result(suite_file, tmp_path, capfd):
+def test_what_a_navigator_prints_is_not_a_result(suite_file, tmp_path, capfd, monkeypatch):
+    monkeypatch.setattr(fork_server, "_servers", [])  # another one writes where this test reads
     chosen = Selection(navigators=("troubled_navigators:Talks",))
     run_suite(load_suite(str(suite_file), chosen), tmp_path / "r", workers=1)
     out, err = capfd.readouterr()
