@@ -95,7 +95,7 @@ class Channel:
             return None
         (size,) = _HEAD.unpack_from(self._received)
         if size > MOST:
-            raise ChannelError("it sent what is no message")
+            raise ChannelError("sent what is no message")
         if len(self._received) < _HEAD.size + size:
             return None
         frame = bytes(self._received[_HEAD.size : _HEAD.size + size])
@@ -107,4 +107,4 @@ def _decoded(frame: bytes) -> Any:
     try:
         return json.loads(frame)
     except (ValueError, RecursionError):
-        raise ChannelError("it sent what is no message") from None
+        raise ChannelError("sent what is no message") from None

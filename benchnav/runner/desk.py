@@ -204,7 +204,7 @@ class Desk:
     def _raised(self, kind: str, name: str, text: str, measuring: bool) -> Fault:
         last = short(text.strip().splitlines()[-1] if text.strip() else name)
         cause = f"broke: {last}"
-        own = measuring or not self._watch.called
+        own = kind == "refused" if measuring else not self._watch.called
         raised = name if kind == "refused" else ""
         return Fault(cause, self._tasks == 1, own=own, name=raised, text=text or last)
 

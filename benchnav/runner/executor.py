@@ -5,10 +5,12 @@ next, and a measurer, in which no evaluated code runs. Who fails is charged only
 one seed failed in a process of its own.
 """
 
+import os
 from collections import deque
 from collections.abc import Generator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from select import select
+from tempfile import TemporaryFile
 from time import monotonic
 from typing import Any
 
@@ -23,6 +25,7 @@ from benchnav.store.part import Part
 from benchnav.store.part_writer import discard
 
 Finished = tuple[Task, Outcome]
+_ROOM = 16 << 20  # bytes: more than the episodes of most tasks
 GOODBYE = 2.0  # [s] for killed processes to let go of their files
 LOOK = 0.1  # [s] between two looks at the workers' calls and memory
 
@@ -155,6 +158,8 @@ class Crew:
         self.progress.drop(id(desk))
         if fault.own or task.charge:  # no code of a navigator can have done it
             raise fault.error()
+        if fault.name == "StoreError" and not _has_room(task):
+            raise fault.error()
         queue = self.suspects if fault.sudden else self.pending
         if len(task.seeds) > 1:
             alone = [replace(each, suspect=fault.sudden) for each in task.alone()]
@@ -164,6 +169,18 @@ class Crew:
         else:
             charge = f"the navigator's process {fault.cause}"
             self.pending.appendleft(replace(task, charge=charge))
+
+
+def _has_room(task: Task) -> bool:
+    """Whether this process can write where a worker could not."""
+    try:
+        with TemporaryFile(dir=task.folder) as file:
+            file.write(bytes(_ROOM))
+            file.flush()
+            os.fsync(file.fileno())
+    except OSError:
+        return False
+    return True
 
 
 def _part(task: Task) -> Part:
