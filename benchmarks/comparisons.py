@@ -7,13 +7,13 @@ docs/statistics.md keeps the output for 2,000 tables. The inference is that of
 simulated values.
 """
 
-import argparse
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
+from benchmarks.markdown_tables import print_parts
 from benchmarks.simulated_tables import CROWDS, EACH_FOR_ITSELF, Crowd, unit_rates, world_rates
 from benchnav.arrays import FloatArray
 from benchnav.leaderboard.compare import holm, pairs
@@ -216,19 +216,5 @@ PARTS = {
 }  # fmt: skip
 
 
-def main() -> None:
-    """Print Markdown tables."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--tables", type=int, default=TABLES)
-    parser.add_argument("--part", choices=PARTS, action="append", help="may be given again")
-    asked = parser.parse_args()
-    for part in asked.part or PARTS:
-        print(f"\n{part}\n")
-        for k, row in enumerate(PARTS[part](asked.tables)):
-            print(f"| {' | '.join(row)} |", flush=True)
-            if k == 0:
-                print("| --- |" + " --- |" * (len(row) - 1))
-
-
 if __name__ == "__main__":
-    main()
+    print_parts(__doc__.split("\n")[0], PARTS, TABLES)

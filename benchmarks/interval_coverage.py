@@ -8,7 +8,6 @@ tables. Agents of single rates share their luck through a beta distribution of e
 Single rates of one agent a world need no tables: all outcomes are counted.
 """
 
-import argparse
 from collections.abc import Callable, Iterator
 from functools import partial
 from itertools import product
@@ -16,6 +15,7 @@ from itertools import product
 import numpy as np
 from scipy.stats import binom
 
+from benchmarks.markdown_tables import print_parts
 from benchmarks.simulated_tables import CROWDS, Crowd, unit_rates, world_rates
 from benchnav.arrays import FloatArray
 from benchnav.leaderboard.difference import Moments, difference
@@ -162,19 +162,5 @@ def mean_rows(tables: int) -> Iterator[Row]:
 PARTS = {"rates": rate_rows, "differences": difference_rows, "means": mean_rows}
 
 
-def main() -> None:
-    """Print Markdown tables."""
-    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("--tables", type=int, default=TABLES)
-    parser.add_argument("--part", choices=PARTS, action="append", help="may be given again")
-    asked = parser.parse_args()
-    for part in asked.part or PARTS:
-        print(f"\n{part}\n")
-        for k, row in enumerate(PARTS[part](asked.tables)):
-            print(f"| {' | '.join(row)} |", flush=True)
-            if k == 0:
-                print("| --- |" + " --- |" * (len(row) - 1))
-
-
 if __name__ == "__main__":
-    main()
+    print_parts(__doc__.split("\n")[0], PARTS, TABLES)

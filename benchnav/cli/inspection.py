@@ -5,6 +5,7 @@ from typing import Any
 
 from benchnav.cli.plugin_page import pair_page, plugin_page, sentence
 from benchnav.errors import BenchnavError, PluginError
+from benchnav.metrics.measure import is_own
 from benchnav.navigation.answer import short
 from benchnav.navigation.configure import make, split
 from benchnav.navigation.guarded import IMPORT, Plugin, Stepping, ask_plugins, tell
@@ -23,7 +24,6 @@ from benchnav.source.parts import names_known_here
 
 SENTENCE, MADE, PAGE, PAIR = "sentence", "made", "page", "pair"  # what can be asked
 _TIMEOUT = 30.0  # [s] for an import, or to be made
-_OWN = "benchnav."  # begin of the places of what is part of benchnav
 _MADE = (NAVIGATORS, PLANNERS, CONTROLLERS)  # that `benchnav run` makes from a Config
 _REGISTRIES = {r.kind: r for r in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, TRAINERS)}
 
@@ -46,9 +46,7 @@ def inspect_plugins(
         except PluginError as error:  # two distributions claim it
             found[name] = error
             continue
-        if _is_known_here(registry, name) or (
-            registry is METRICS and source.value.startswith(_OWN)
-        ):
+        if _is_known_here(registry, name) or (registry is METRICS and is_own(name)):
             found[name] = _here(question)
         else:
             plugin = Plugin(registry.kind, name, "", question)

@@ -196,21 +196,6 @@ def fork_server() -> ForkServer:
     return _servers[0]
 
 
-def ask(target: str, question: Any, patience: float) -> Any:
-    """What a process of its own answers, which ends after this one answer.
-
-    ``target`` is as in `ForkServer.start`: it receives the question, and sends the answer.
-
-    Raises TimeoutError, and EOFError or ChannelError where it ends or sends no answer.
-    """
-    child = fork_server().start(target)
-    try:
-        child.channel.send(question)
-        return child.channel.receive(patience)
-    finally:
-        child.close()
-
-
 def words(exitcode: int | None) -> str:
     """How a process ended, in words."""
     if exitcode is not None and exitcode < 0:

@@ -16,7 +16,7 @@ from benchnav.processes.fork_server import Child, fork_server, words
 from benchnav.processes.main_module import main_module
 from benchnav.processes.process_tree import resident, tree
 from benchnav.runner.limits import Limits
-from benchnav.runner.task import Measuring, Outcome, Played, Task
+from benchnav.runner.task import CHUNK, Measuring, Outcome, Played, Task
 from benchnav.runner.watch import Watch
 
 SLACK = 5.0  # [s] beyond a call's limit that nothing may happen between two calls
@@ -53,6 +53,7 @@ class Desk:
 
     def __init__(self, limits: Limits, known: tuple[Registration, ...]) -> None:
         self._limits, self._known = limits, known
+        self._plugins = tuple(name for name in METRICS.names() if not is_own(name))
         self._worker: Child | None = None
         self._measurer: Child | None = None
         self._watch = Watch([0.0] * 4)
@@ -164,8 +165,7 @@ class Desk:
         self._state, self._unmeasured = "measuring", 0.0
         if self._measurer is None:
             self._measurer = fork_server().start("benchnav.runner.measurer:serve", main=False)
-            plugins = tuple(name for name in METRICS.names() if not is_own(name))
-            measuring = Measuring(plugins, self._known, main_module(), self._limits.timeout)
+            measuring = Measuring(self._plugins, self._known, main_module(), self._limits.timeout)
             self._send(self._measurer, measuring)
         self._send(self._measurer, (self.task, played))
 
@@ -230,8 +230,7 @@ class Desk:
         self._unmeasured += min(elapsed, 1.0)
         if measurer.exitcode is not None:
             return self._fault(words(measurer.exitcode), measurer.exitcode)
-        plugins = sum(not is_own(name) for name in METRICS.names())
-        room = PATIENCE + 64 * plugins * self._limits.timeout
+        room = PATIENCE + CHUNK * len(self._plugins) * self._limits.timeout
         if self._unmeasured > room:
             return self._fault(f"left an episode that cannot be measured within {room:g} s")
         if resident(measurer.pid) > self._limits.memory * 1e9:

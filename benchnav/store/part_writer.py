@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
 from typing import IO, Any, Self
 
 import pyarrow as pa
@@ -73,13 +72,8 @@ class EpisodeFiles:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        if self._finished and error is None:
+    def __exit__(self, *raised: object) -> None:
+        if self._finished and raised[1] is None:
             return
         for stream in self._streams.values():
             with suppress(OSError, pa.ArrowException):  # what made it fail is already on its way up
@@ -131,13 +125,8 @@ class PartWriter:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self._files.__exit__(kind, error, trace)
+    def __exit__(self, *raised: object) -> None:
+        self._files.__exit__(*raised)
         if not self._sealed:
             discard(self.part)
 

@@ -7,16 +7,11 @@ from benchnav.navigation.drivers import check_drivers
 from benchnav.runner.suite import load_suite
 from benchnav.scenario.catalogue import find, names
 from benchnav.scenario.load import scenario_from_text
+from tests.plain_scenario import PLAIN
 
-SCENARIO = """\
-name: tests/driven
-bounds: [-5, -5, 5, 5]
-teams:
-  - name: one
-    radius: 0.2
-    max_speed: 1
-    start: {type: points, points: [[-4, 0]]}
-    goal: {type: points, points: [[4, 0]]}
+SCENARIO = (
+    PLAIN
+    + """\
   - name: people
     radius: 0.2
     max_speed: 1
@@ -24,6 +19,7 @@ teams:
     goal: {type: points, points: [[4, 2]]}
     driver: DRIVER
 """
+)
 SEVERAL = """
       type: orca
       time_horizn: 3

@@ -7,17 +7,8 @@ from benchnav.errors import ScenarioError
 from benchnav.runner.suite_file import SuiteFile
 from benchnav.scenario.load import scenario_from_text
 from benchnav.scenario.yaml_reader import read_yaml_text, validate
+from tests.plain_scenario import PLAIN
 
-PLAIN = """\
-name: tests/plain
-bounds: [-5, -5, 5, 5]
-teams:
-  - name: one
-    radius: 0.2
-    max_speed: 1
-    start: {type: points, points: [[-4, 0]]}
-    goal: {type: points, points: [[4, 0]]}
-"""
 SUITE = "name: q\nscenarios: [trap/u]\nnavigators: [orca]\n"
 DISC = "{shape: {type: disc, radius: 0.3}"
 LAW = "law: {type: circle, radius: 1, speed: 1}"

@@ -10,17 +10,8 @@ import yaml
 from benchnav.errors import ScenarioError
 from benchnav.scenario.load import json_schema, scenario_from_text
 from benchnav.world.build import build
+from tests.plain_scenario import PLAIN
 
-PLAIN = """\
-name: tests/plain
-bounds: [-5, -5, 5, 5]
-teams:
-  - name: one
-    radius: 0.2
-    max_speed: 1
-    start: {type: points, points: [[-4, 0]]}
-    goal: {type: points, points: [[4, 0]]}
-"""
 DISC = "shape: {type: disc, radius: 0.3}"
 PARTS = {
     "walls": f"{{{DISC}, at: AT}}",
