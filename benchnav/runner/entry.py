@@ -90,6 +90,8 @@ class Meeting:
         met = {}
         for k in range(len(asked)):
             said = found[k]
+            if isinstance(said, NavigatorError):  # of the program of a process
+                raise _broken(*asked[k], said)
             if isinstance(said, BenchnavError):
                 raise said
             met[k] = said
@@ -140,9 +142,11 @@ def _isolated(spec: Spec, sensings: Sequence[Sensing], where: str) -> Introducti
     try:
         return isolated.introduction(spec, sensings, where=where)
     except NavigatorError as error:
-        raise BrokenPluginError(
-            f"{where}: The navigator {label_of(spec)!r} cannot be used: {error}."
-        ) from None
+        raise _broken(spec, where, error) from None
+
+
+def _broken(spec: Spec, where: str, error: NavigatorError) -> BrokenPluginError:
+    return BrokenPluginError(f"{where}: The navigator {label_of(spec)!r} cannot be used: {error}.")
 
 
 def source_of(entry: Entry) -> FoundSource:

@@ -27,8 +27,10 @@ class Inference:
         t = (self.value - null) / self.error
         against = max(0.0, -math.copysign(1.0, t) * self.skewness)
         worth = abs(t)
-        if against:  # worth + against · worth² / 3 = |t|
-            worth = (-1 + math.sqrt(1 + 4 * against * abs(t) / 3)) / (2 * against / 3)
+        if against and worth:
+            worth = optimize.brentq(
+                lambda w: w + against * w**2 / 3 - abs(t), 0.0, abs(t), xtol=1e-15
+            )
         return float(2 * stats.t.sf(worth, self.freedom))
 
     def interval(self) -> tuple[float, float]:

@@ -41,7 +41,7 @@ def foreman(monkeypatch):
     foreman = Foreman(Limits(timeout=60.0), sys.path)
     yield foreman
     foreman.leave()
-    assert not Path(foreman._home.name).exists()
+    assert not foreman._home.path.exists()
 
 
 def task_of(suite, tmp_path, **changes):
