@@ -4,7 +4,6 @@ import shutil
 import sys
 import types
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
