@@ -124,13 +124,14 @@ class ForkServer:
             try:
                 socket.send_fds(self._socket, [START], [theirs.fileno(), file.fileno()])
                 self._channel.send(asked)
-            except (OSError, ChannelError) as error:
+                self._starting.append(child)
+                while not child.pid:
+                    self._hear(None)
+            except (OSError, ChannelError, BenchnavError) as error:
+                child.channel.close()
                 raise self._lost() from error
             finally:
                 theirs.close()
-        self._starting.append(child)
-        while not child.pid:
-            self._hear(None)
         return child
 
     def look(self) -> None:
@@ -141,6 +142,8 @@ class ForkServer:
 
     def wait(self, child: Child, patience: float) -> bool:
         """Whether ``child`` ends within ``patience`` [s]."""
+        if not self.alive:
+            self._lost()
         with suppress(TimeoutError, BenchnavError):
             while child.exitcode is None:
                 self._hear(patience)
@@ -156,8 +159,7 @@ class ForkServer:
         self._channel.close()
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(5.0)
-        self._process.kill()
-        self._process.wait()
+        self._lost()
 
     def _hear(self, patience: float | None) -> None:
         try:
@@ -174,6 +176,8 @@ class ForkServer:
             self._children.pop(message["ended"]).exitcode = message["status"]
 
     def _lost(self) -> BenchnavError:
+        self._process.kill()
+        self._process.wait()
         for child in self._children.values():
             child.exitcode = -9
         self._children.clear()
@@ -188,12 +192,22 @@ _servers: list[ForkServer] = []
 
 def fork_server() -> ForkServer:
     """The server of this process, which lives as long as it; a new one where there is none."""
-    if _servers and not (_servers[0].owner == os.getpid() and _servers[0].alive):
-        _servers.clear()
+    if _servers and _servers[0].owner != os.getpid():
+        _servers.clear()  # of the process that this one was forked from
+    if _servers and not _servers[0].alive:
+        _servers.pop().close()
     if not _servers:
         _servers.append(ForkServer())
         atexit.register(_servers[0].close)
     return _servers[0]
+
+
+def start_process(target: str, *, main: bool = True) -> Child:
+    """Start ``target`` as `ForkServer.start`, also where a plugin has just killed the server."""
+    try:
+        return fork_server().start(target, main)
+    except BenchnavError:
+        return fork_server().start(target, main)
 
 
 def words(exitcode: int | None) -> str:

@@ -12,7 +12,7 @@ from benchnav.metrics.measure import is_own
 from benchnav.navigation.answer import short
 from benchnav.plugins import METRICS, Registration
 from benchnav.processes.channel import ChannelError
-from benchnav.processes.fork_server import Child, fork_server, words
+from benchnav.processes.fork_server import Child, start_process, words
 from benchnav.processes.main_module import main_module
 from benchnav.processes.process_tree import resident, tree
 from benchnav.runner.limits import Limits
@@ -145,7 +145,7 @@ class Desk:
         return task
 
     def _hire(self, company: str) -> None:
-        self._worker = fork_server().start("benchnav.runner.worker:serve")
+        self._worker = start_process("benchnav.runner.worker:serve")
         self._watch, self._tasks, self.company = Watch(self._worker.notes), 0, company
         self._send(self._worker, self._known)
 
@@ -164,7 +164,7 @@ class Desk:
     def _measure(self, played: Played) -> None:
         self._state, self._unmeasured = "measuring", 0.0
         if self._measurer is None:
-            self._measurer = fork_server().start("benchnav.runner.measurer:serve", main=False)
+            self._measurer = start_process("benchnav.runner.measurer:serve", main=False)
             measuring = Measuring(self._plugins, self._known, main_module(), self._limits.timeout)
             self._send(self._measurer, measuring)
         self._send(self._measurer, (self.task, played))

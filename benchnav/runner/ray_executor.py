@@ -151,7 +151,10 @@ class _Site:
                     f" {task.first} to {task.stop - 1} of {task.cell.key}. Ray says: {error}"
                 )
             self.pending.appendleft(task)
-        self._hire()
+        if self.pending and self.idle:  # a new one may have no core to begin on
+            self._assign(self.idle.pop())
+        else:
+            self._hire()
 
     def _files(self, task: Task) -> Any:
         """Of its scenario, by name; each goes to a machine once."""

@@ -124,6 +124,9 @@ def from_table(table: pa.Table, order: Sequence[int] | None = None) -> Iterator[
         if name not in table.column_names:
             field = EPISODES.field(name)
             table = table.append_column(field, pa.nulls(len(table), field.type))
+    for field in EPISODES:
+        if field.name not in LATER and table.column(field.name).null_count:
+            raise ValueError(f"{field.name} must have a value in every row")
     batches = table.to_batches()
     rows = [(batch, row) for batch in batches for row in range(batch.num_rows)]
     for place in range(len(rows)) if order is None else order:
