@@ -1,5 +1,6 @@
 """Whatever a navigator does to its process costs its own episodes, and changes no other's."""
 
+import json
 import os
 import subprocess
 import sys
@@ -91,6 +92,10 @@ class _Hostile(Navigator):
         return ()
     def __del__(self):
         self._at("__del__")
+
+class Moody(_Hostile):
+    # what it does may be another thing when somebody verifies its run
+    what = property(lambda self: os.environ.get("MOOD", "nothing"))
 
 for _where in ("reset", "act", "remarks", "__del__"):
     for _what in WHAT:
@@ -252,13 +257,11 @@ def test_a_metric_of_a_plugin_costs_its_own_values(honest, tmp_path):
         "[benchnav.metrics]\na_hangs = odd_metrics:HANGS\na_dies = odd_metrics:DIES\n"
         "a_patches = odd_metrics:PATCHES\na_gone = odd_metrics:GONE\n"
     )
-    done = subprocess.run(
-        [sys.executable, "-c", "from benchnav.cli.main import main; main()", "run", "suite.yaml",
-         "--out", str(tmp_path / "run"), "--timeout", "1", "--workers", "1", "--salt", "5a" * 16],
-        cwd=folder, env={**os.environ, "PYTHONPATH": str(site)}, capture_output=True, text=True,
-        check=False,
+    run = str(tmp_path / "run")
+    _command(
+        folder, "run", "suite.yaml", "--out", run, "--timeout", "1", "--workers", "1",
+        "--salt", "5a" * 16, PYTHONPATH=str(site),
     )  # fmt: skip
-    assert done.returncode == 0, done.stderr
     rows = read_results(tmp_path / "run").to_pylist()
     said = {(r["metric"], r["seed"]): (r["value"], r["missing"]) for r in rows}
     assert said["a_hangs", 0] == (1.0, "")
@@ -267,3 +270,39 @@ def test_a_metric_of_a_plugin_costs_its_own_values(honest, tmp_path):
     assert said["a_patches", 1] == (0.0, "")
     assert "a_gone" in said["a_gone", 0][1]
     assert _values(tmp_path / "run") == values
+    report = _verified(folder, run, PYTHONPATH=str(site))
+    assert (report["findings"], report["checked"]["episodes"]) == ([], 2)
+    assert not [line for line in report["not_checked"] if "a_dies" in line]
+
+
+def _command(folder, *arguments, status=0, **environment):
+    done = subprocess.run(
+        [sys.executable, "-c", "from benchnav.cli.main import main; main()", *arguments],
+        cwd=folder, env={**os.environ, **environment}, capture_output=True, text=True,
+        check=False,
+    )  # fmt: skip
+    assert done.returncode == status, done.stderr
+    return done.stdout
+
+
+def _verified(folder, run, *options, status=0, **environment):
+    asked = ("verify", run, "--json", "--twin", "0", "--workers", "1", *options)
+    return json.loads(_command(folder, *asked, status=status, **environment))
+
+
+@pytest.mark.parametrize("mood", ["hangs", "patches"])
+@pytest.mark.slow
+def test_who_verifies_a_run_is_as_safe_as_who_runs_it(honest, tmp_path, mood):
+    folder, _ = honest
+    run = str(tmp_path / "run")
+    _command(
+        folder, "run", "suite.yaml", "--navigator", "hostile_navigators:Moody",
+        "--navigator", "straight-line", "--out", run, "--timeout", "1",
+        PYTHONPATH=str(folder),
+    )  # fmt: skip
+    report = _verified(
+        folder, run, "--rerun", status=mood != "patches", PYTHONPATH=str(folder), MOOD=mood
+    )
+    assert report["checked"]["rerun"] == 4
+    assert {f["kind"] for f in report["findings"]} <= {"rerun"}
+    assert not [f for f in report["findings"] if "straight-line" in f["where"]]

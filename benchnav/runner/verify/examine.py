@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.part_check import PartCheck, check_part
 from benchnav.runner.verify.referee import judge
-from benchnav.runner.verify.rerun import rerun
 from benchnav.runner.verify.twin_check import check_twin
 
 
@@ -16,8 +15,6 @@ class Examination:
     check: PartCheck
     twin: tuple[int, ...]  # seeds of the episodes that the slow twin replays
     referee: bool
-    rerun: bool
-    packed: bool  # it came in a pack: from somebody else
 
 
 def examine(task: Examination) -> Report:
@@ -29,6 +26,4 @@ def examine(task: Examination) -> Report:
     if task.referee:
         for pair in scored + rehearsed:
             judge(pair, report)
-    if task.rerun:
-        rerun(task.check, scored, rehearsed, task.packed, report)
     return report

@@ -1,7 +1,7 @@
 """Checks one part of a run: every episode, rehearsal and value in it."""
 
 from collections import OrderedDict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import Any
@@ -14,12 +14,13 @@ from benchnav.plugins import METRICS
 from benchnav.runner.cell import Cell
 from benchnav.runner.generators import phases
 from benchnav.runner.rollout import Assignment, batches
+from benchnav.runner.task import Measuring
 from benchnav.runner.verify.compare import check_commands, check_timings, compare
 from benchnav.runner.verify.difference import first_difference
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.rehearsed import check_rehearsals
 from benchnav.runner.verify.resimulate import resimulate, unfit
-from benchnav.runner.verify.values import check_values, expected_metrics
+from benchnav.runner.verify.values import check_values, expected_metrics, measured_again
 from benchnav.store.part import Part
 from benchnav.world.build import build
 from benchnav.world.draw_rehearsal import rehearsal_world
@@ -37,6 +38,8 @@ class PartCheck:
     salt: str
     probe: int  # the seed with which latency stands
     version: str  # of the benchnav that made the run
+    metrics: Mapping[str, bool]  # that are installed here, and whether they are verifiable
+    measuring: Measuring | None  # how those of plugins are measured; None: in this process
 
     @property
     def assignment(self) -> Assignment:
@@ -48,6 +51,12 @@ class PartCheck:
         """The cell, as findings name it."""
         cell = self.cell
         return f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
+
+    def place(self, episode: Episode) -> str:
+        """An episode of it, as findings name it."""
+        rehearsal = episode.identity.rehearsal
+        more = f", rehearsal {rehearsal}" if rehearsal else ""
+        return f"{self.shown}, seed {episode.identity.seed}{more}"
 
 
 @dataclass(frozen=True)
@@ -93,7 +102,7 @@ def _identified(task: PartCheck, episode: Episode, report: Report) -> bool:
     """Report an episode of another cell, seed or navigator; True where it is of this part."""
     who = episode.identity
     right = replace(task.assignment.identity(who.seed), rehearsal=who.rehearsal)
-    place = _place(task, episode)
+    place = task.place(episode)
     text = first_difference(who, right, "identity")
     if text:
         report.find("identity", place, text)
@@ -103,17 +112,11 @@ def _identified(task: PartCheck, episode: Episode, report: Report) -> bool:
     return True
 
 
-def _place(task: PartCheck, episode: Episode) -> str:
-    rehearsal = episode.identity.rehearsal
-    more = f", rehearsal {rehearsal}" if rehearsal else ""
-    return f"{task.shown}, seed {episode.identity.seed}{more}"
-
-
 def _again(task: PartCheck, episodes: Sequence[Episode], report: Report) -> list[Pair]:
     """Re-simulate what can be, and compare."""
     checked: list[tuple[World, Episode]] = []
     for episode in episodes:
-        world, place = _world(task, episode), _place(task, episode)
+        world, place = _world(task, episode), task.place(episode)
         text = first_difference(episode.world, world, "world")
         if text:
             report.find("world", place, f"{text} (drawn anew)")
@@ -125,7 +128,7 @@ def _again(task: PartCheck, episodes: Sequence[Episode], report: Report) -> list
     pairs = []
     for batch in _batches(checked):
         for (_, stored), (again, wrong, touched) in zip(batch, resimulate(batch), strict=True):
-            place = _place(task, stored)
+            place = task.place(stored)
             if wrong:
                 report.find("state", place, wrong)
             compare(stored, again, place, report)
@@ -167,7 +170,7 @@ def _check_rehearsals(
     made = {seed: list(group) for seed, group in groupby(rehearsed, seed_of)}
     for episode in scored:
         own = made.pop(seed_of(episode), [])
-        check_rehearsals(task.assignment, episode, own, _place(task, episode), report)
+        check_rehearsals(task.assignment, episode, own, task.place(episode), report)
     for seed in made:
         report.find("rehearsal", task.shown, f"seed {seed} has rehearsals, and no episode")
 
@@ -180,15 +183,19 @@ def _check_values(
     for row in rows:
         by_seed.setdefault(row["seed"], []).append(row)
     stored = {row["metric"] for row in rows}
-    metrics = expected_metrics(stored, task.version)
+    names = expected_metrics(stored, task.version, task.metrics)
     if pairs:
         report.unmeasured |= set(METRICS.names()) - stored
-    for pair in pairs:
-        seed = pair.stored.identity.seed
-        again = replace(pair.again, identity=task.assignment.identity(seed))
-        check_values(by_seed.pop(seed, []), again, metrics, pair.where, report)
+    again = [replace(pair.again, identity=task.assignment.identity(_seed(pair))) for pair in pairs]
+    right = measured_again(again, names, task.measuring)
+    for pair, expected in zip(pairs, right, strict=True):
+        check_values(by_seed.pop(_seed(pair), []), expected, task.metrics, pair.where, report)
     for seed in by_seed:
         if seed not in task.part.seeds:
             report.find(
                 "metric", task.shown, f"there are values for seed {seed}, which is not here"
             )
+
+
+def _seed(pair: Pair) -> int:
+    return pair.stored.identity.seed

@@ -1,90 +1,125 @@
-"""Runs the navigators of a run again: only this finds commands that were replaced."""
+"""Runs the navigators of a run again: only this finds commands that were replaced.
 
+They play in workers of their own, as in any run, and what these write is compared here: no
+evaluated code runs where a run is judged.
+"""
+
+import dataclasses
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from benchnav.episode.episode import Episode
-from benchnav.errors import BenchnavError
+from benchnav.errors import BenchnavError, CorruptPartError
 from benchnav.runner.cell import Cell
 from benchnav.runner.entry import Entry, Meeting
-from benchnav.runner.rehearsal import Performance, perform
+from benchnav.runner.executor import execute
+from benchnav.runner.limits import Limits
+from benchnav.runner.progress import Progress
+from benchnav.runner.task import Task, chunks
 from benchnav.runner.verify.finding import Report
-from benchnav.runner.verify.part_check import Pair, PartCheck
+from benchnav.runner.verify.part_check import PartCheck
 from benchnav.runner.verify.stranger import is_by_module, is_program
 from benchnav.store.manifest import ISOLATED
+from benchnav.store.part import FILES, SEAL, Part
 from benchnav.store.run_folder import RunFolder
 from benchnav.world.build import sensing_of
 
 _TOLD = ("act ", "reset ", "in rehearsal ", "the scenario's background ")  # raised or answered
 
-
-def rerun(
-    task: PartCheck, scored: Sequence[Pair], rehearsed: Sequence[Pair], packed: bool, report: Report
-) -> None:
-    """Report every episode that its navigator, run again, does not repeat to the last bit."""
-    entry, why = installed(task.cell.entry, packed, [task.cell])
-    if entry is None:
-        report.notes[f"episode not run again: {why}"] += len(scored)
-        return
-    claimed = [pair for pair in scored if _asks_a_clock(pair.stored)]
-    clock = bool(claimed) and not _is_reproducible(task, claimed[0])
-    chosen = [pair for pair in scored if _repeatable(pair.stored, clock, report)]
-    kept = {(_seed(p), p.stored.identity.rehearsal): p for p in (*chosen, *rehearsed)}
-    worlds = [(_seed(pair), pair.again.world) for pair in chosen]
-    for batch in perform(task.assignment, worlds):
-        for performance in batch:
-            _compare(performance, kept, report)
-            report.counts["rerun"] += 1
+Installed = Mapping[str, tuple[Entry | None, str]]  # by label: `installed`
 
 
-def _seed(pair: Pair) -> int:
-    return pair.stored.identity.seed
+@dataclass(frozen=True)
+class Rerun:
+    """Parts to be run again.
 
-
-def _asks_a_clock(episode: Episode) -> bool:
-    """Whether it claims so, and can be run again to see whether that is true."""
-    return not episode.reproducible and _may_fail_again(episode)
-
-
-def _may_fail_again(episode: Episode) -> bool:
-    return not episode.failure or episode.failure.startswith(_TOLD)
-
-
-def _is_reproducible(task: PartCheck, pair: Pair) -> bool:
-    """Whether the navigators that are installed here ask no clock: an episode of theirs tells.
-
-    What is stored is not asked: it may have been written to keep them from being run.
+    ``folder`` is where, and ``limits`` are those of the run.
     """
-    ((performance,),) = perform(task.assignment, [(_seed(pair), pair.again.world)])
-    return performance.episode.reproducible
+
+    folder: Path
+    limits: Limits
+    report: Report
+    progress: Progress
+    tasks: list[Task] = field(default_factory=list)
+    stored: dict[tuple[str, int], PartCheck] = field(default_factory=dict)  # by cell and seed
+
+    def add(self, check: PartCheck, entry: tuple[Entry | None, str]) -> None:
+        """Plan what can be run again of a part."""
+        found, why = entry
+        seeds = list(check.part.seeds)
+        if found is None:
+            self._leave_out(seeds, why)
+            return
+        try:
+            failures = {e.identity.seed: e.failure for e in check.part.episodes()}
+        except CorruptPartError:
+            self._leave_out(seeds, "its part cannot be read")
+            return
+        for seed in seeds:
+            failure = failures.get(seed, "")
+            if not _may_fail_again(failure):
+                self._leave_out([seed], f"it failed because {failure}")
+        again = [seed for seed in seeds if _may_fail_again(failures.get(seed, ""))]
+        folder = self.folder / check.cell.key
+        for first, stop in chunks(again, check.cell.effort):
+            self.tasks.append(Task(check.cell, folder, first, stop, salt=check.salt))
+        self.stored.update(((check.cell.key, seed), check) for seed in again)
+
+    def run(self, workers: int) -> None:
+        """Run, and report every episode that is not repeated to the last bit."""
+        tasks = sorted(self.tasks, key=lambda task: -task.cell.effort * len(task.seeds))
+        self.progress.expect(task.load for task in tasks)
+        if not tasks:
+            return
+        with closing(execute(tasks, workers, self.progress, self.limits)) as finished:
+            for task, outcome in finished:
+                if outcome.lacks:
+                    self._leave_out(task.seeds, outcome.lacks, counted=True)
+                else:
+                    self._compare(task)
+
+    def _leave_out(self, seeds: Sequence[int], why: str, counted: bool = False) -> None:
+        self.report.notes[f"episode not run again: {why}"] += len(seeds)
+        if not counted:
+            self.progress.advance(len(seeds))
+
+    def _compare(self, task: Task) -> None:
+        check = self.stored[task.cell.key, task.first]
+        part = Part(task.folder, task.first, task.stop)
+        new = {_place(episode): episode for episode in _episodes(part)}
+        for old in _episodes(check.part):
+            if _place(old) not in new:
+                continue  # of another task; what a rehearsal lacks is found without running anybody
+            again = new[_place(old)]
+            if not (old.reproducible or again.reproducible):
+                why = "a clock decides what its navigator does"
+                self.report.notes[f"episode not run again: {why}"] += not old.identity.rehearsal
+                continue
+            self.report.counts["rerun"] += not old.identity.rehearsal
+            for name in ("digest", "failure", "reproducible", "remarks"):
+                left, right = getattr(old, name), getattr(again, name)
+                if left != right:
+                    text = f"{name} is {_short(left)}, run again {_short(right)}"
+                    self.report.find("rerun", check.place(old), text)
+        for suffix in (*FILES, SEAL):
+            part.path(suffix).unlink(missing_ok=True)
 
 
-def _repeatable(episode: Episode, clock: bool, report: Report) -> bool:
-    """``clock``: a clock decides what the navigators of the cell do, as they are installed."""
-    if clock and not episode.reproducible:
-        report.notes["episode not run again: a clock decides what its navigator does"] += 1
-        return False
-    if not _may_fail_again(episode):
-        report.notes[f"episode not run again: it failed because {episode.failure}"] += 1
-        return False
-    return True
+def _episodes(part: Part) -> Iterator[Episode]:
+    yield from part.episodes()
+    yield from part.rehearsals()
 
 
-def _compare(
-    performance: Performance, kept: Mapping[tuple[int, int], Pair], report: Report
-) -> None:
-    for new in (performance.episode, *performance.rehearsed.episodes):
-        pair = kept.get((new.identity.seed, new.identity.rehearsal))
-        if pair is None:
-            continue  # that a rehearsal lacks is found without running anybody
-        old = pair.stored
-        for name in ("digest", "failure", "reproducible", "remarks"):
-            left, right = getattr(old, name), getattr(new, name)
-            if left != right:
-                text = f"{name} is {_short(left)}, run again {_short(right)}"
-                report.find("rerun", pair.where, text)
+def _place(episode: Episode) -> tuple[int, int]:
+    return episode.identity.seed, episode.identity.rehearsal
+
+
+def _may_fail_again(failure: str) -> bool:
+    return not failure or failure.startswith(_TOLD)
 
 
 def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry | None, str]:
@@ -113,14 +148,20 @@ def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry 
     return found, ""
 
 
-def check_reasons(run: RunFolder, cells: Sequence[Cell], report: Report) -> None:
+def all_installed(run: RunFolder, cells: Sequence[Cell]) -> Installed:
+    """Who of a run is installed here, and why others are not."""
+    packed = run.packed is not None
+    entries = {cell.entry.label: cell.entry for cell in cells}
+    return {label: installed(entry, packed, cells) for label, entry in entries.items()}
+
+
+def check_reasons(
+    run: RunFolder, cells: Sequence[Cell], entries: Installed, report: Report
+) -> None:
     """Report cells that are n/a and need not be, or the other way round."""
-    entries: dict[str, tuple[Entry | None, str]] = {}
     said = {str(c["key"]): str(c.get("reason", "")) for c in run.manifest.cells}
     for cell in cells:
         label = cell.entry.label
-        if label not in entries:
-            entries[label] = installed(cell.entry, run.packed is not None, cells)
         entry, why = entries[label]
         stored = said.get(cell.key, "")
         if entry is None:
@@ -135,7 +176,7 @@ def check_reasons(run: RunFolder, cells: Sequence[Cell], report: Report) -> None
             where = f"{cell.scenario.identity}, {label}"
             what = f"training is {cell.entry.training}, but the navigator says {entry.training}"
             report.find("rerun", where, what)
-        right = replace(cell, entry=entry).reason
+        right = dataclasses.replace(cell, entry=entry).reason
         report.counts["rerun n/a"] += bool(stored)
         if right != stored:
             where = f"{cell.scenario.identity}, {cell.track}, {label}"

@@ -1,38 +1,55 @@
 """The values that a run holds beside those measured on the re-simulated episodes."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from benchnav.episode.episode import Episode
-from benchnav.errors import PluginError
 from benchnav.metrics.measure import is_own, load_metric, measure
-from benchnav.metrics.metric import Metric
 from benchnav.plugins import METRICS
+from benchnav.runner.guest_metrics import guest_rows
+from benchnav.runner.task import Measuring
 from benchnav.runner.verify.finding import Report
 
 TOLERANCE = 1e-9  # of a value; of its size where that is more than 1
 Rows = Mapping[int, list[dict[str, Any]]]  # of `benchnav.store.results.RESULTS`, by seed
 
 
+def measured_again(
+    episodes: Sequence[Episode], names: Sequence[str], measuring: Measuring | None
+) -> list[list[dict[str, Any]]]:
+    """For each episode the rows that metrics of these names give.
+
+    Those of plugins are measured in processes of their own; where ``measuring`` is None, in
+    this one.
+    """
+    if measuring is None:
+        return [measure(episode, [load_metric(name) for name in names]) for episode in episodes]
+    own = [load_metric(name) for name in names if is_own(name)]
+    rows = [measure(episode, own) for episode in episodes]
+    for name in (name for name in names if not is_own(name)):
+        guests = guest_rows(
+            name, episodes, measuring.registrations, measuring.main, measuring.timeout
+        )
+        for mine, theirs in zip(rows, guests, strict=True):
+            mine += theirs
+    return rows
+
+
 def check_values(
     stored: Sequence[Mapping[str, Any]],
-    again: Episode,
-    metrics: Sequence[Metric],
+    right: Sequence[Mapping[str, Any]],
+    known: Mapping[str, bool],
     where: str,
     report: Report,
 ) -> None:
-    """Report every row that is not what ``metrics`` measure on the episode ``again``.
+    """Report every row that is not one of ``right``, those of the episode made again.
 
-    Values of metrics that are not installed here are counted, and not checked. A timing's
-    value must follow from the stored timings; that these are true, nobody can verify.
+    Values of metrics that are not ``known`` here, each with whether it is verifiable, are
+    counted, and not checked. A timing's value must follow from the stored timings; that these
+    are true, nobody can verify.
     """
-    known = {metric.name: metric for metric in metrics}
-    try:
-        expected = {(r["role"], r["metric"]): r for r in measure(again, metrics)}
-    except PluginError as error:
-        report.find("metric", where, f"cannot be measured: {error}")
-        return
+    expected = {(row["role"], row["metric"]): row for row in right}
     seen: set[tuple[str, str]] = set()
     for row in stored:
         key = row["role"], row["metric"]
@@ -46,7 +63,7 @@ def check_values(
             report.find("metric", where, f"{_named(key)} must not be there")
         else:
             _check_row(row, expected[key], where, report)
-            kind = "values" if known[row["metric"]].verifiable else "values of timings"
+            kind = "values" if known[row["metric"]] else "values of timings"
             report.counts[kind] += 1
     for key in sorted(expected.keys() - seen):
         report.find("metric", where, f"{_named(key)} lacks")
@@ -78,25 +95,15 @@ def _named(key: tuple[str, str]) -> str:
     return f"{key[1]} of {key[0]}s"
 
 
-def expected_metrics(stored: set[str], version: str) -> tuple[Metric, ...]:
-    """What must have been measured: what is stored and installed here, and all that shipped.
+def expected_metrics(stored: set[str], version: str, known: Iterable[str]) -> tuple[str, ...]:
+    """What must have been measured: what is stored and known here, and all that shipped.
 
     ``version`` is that of the benchnav that made the run: if it is this one, none of the
     metrics that ship with it may lack.
     """
     ours = f"benchnav {version}"
     return tuple(
-        metric
-        for metric in _usable()
-        if metric.name in stored or METRICS.source(metric.name).distribution == ours
+        name
+        for name in sorted(known)
+        if name in stored or METRICS.source(name).distribution == ours
     )
-
-
-def _usable() -> Iterator[Metric]:
-    """All installed metrics but those of plugins that cannot be loaded."""
-    for name in METRICS.names():
-        try:
-            yield load_metric(name)
-        except PluginError:
-            if is_own(name):
-                raise

@@ -10,17 +10,21 @@ from multiprocessing import active_children, get_context
 from pathlib import Path
 
 from benchnav.errors import BenchnavError, StoreError
+from benchnav.metrics.declared import declared_metrics
+from benchnav.plugins import registrations
+from benchnav.processes.main_module import main_module
 from benchnav.processes.process_tree import end_with_parent
 from benchnav.runner.caveat import caveats_of
 from benchnav.runner.limits import Limits
 from benchnav.runner.progress import Progress
+from benchnav.runner.task import Measuring
 from benchnav.runner.verify.coverage import covered
 from benchnav.runner.verify.examine import Examination, examine
 from benchnav.runner.verify.finding import Report
 from benchnav.runner.verify.installed_source import compare_source
 from benchnav.runner.verify.part_check import PartCheck
 from benchnav.runner.verify.referee import require_referee
-from benchnav.runner.verify.rerun import check_reasons
+from benchnav.runner.verify.rerun import Rerun, all_installed, check_reasons
 from benchnav.runner.verify.restored import restore
 from benchnav.runner.verify.sampled import sampled
 from benchnav.store.manifest import Manifest, versions
@@ -66,13 +70,14 @@ def verify(
     run = pinned(run)
     report = Report(content=pinned_digest(run))
     with TemporaryFolder("verify") as root:
-        tasks = tasks_of(run, root.path, wanted, report)
+        count = core_count() if workers is None else workers
+        tasks = tasks_of(run, root.path, wanted, report, guarded=count > 0)
         episodes = sum(len(task.check.part.seeds) for task in tasks)
-        told.begin(episodes, 0)
+        told.begin(episodes * (2 if wanted.rerun else 1), 0)
         try:
-            for task, part in _done(tasks, core_count() if workers is None else workers):
-                report.add(part)
-                told.advance(len(task.check.part.seeds))
+            fit = _examined(tasks, count, report, told)
+            if wanted.rerun:
+                _rerun(run, fit, root.path / "rerun", count, report, told)
         finally:
             told.end()
     changed = changed_since(run)
@@ -87,8 +92,37 @@ def verify(
     return report
 
 
-def tasks_of(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list[Examination]:
-    """Return what is to be examined of a pinned run; what its manifest shows goes to the report."""
+def _examined(
+    tasks: Sequence[Examination], workers: int, report: Report, told: Progress
+) -> list[PartCheck]:
+    """The parts whose worlds could be drawn and read, after everything went to the report."""
+    fit = []
+    for task, part in _done(tasks, workers):
+        report.add(part)
+        told.advance(len(task.check.part.seeds))
+        if all(finding.kind not in ("seal", "world") for finding in part.findings):
+            fit.append(task.check)
+    return fit
+
+
+def _rerun(
+    run: RunFolder, checks: Sequence[PartCheck], folder: Path, workers: int, report: Report,
+    told: Progress,
+) -> None:  # fmt: skip
+    again = Rerun(folder, Limits.of(run.manifest.limits), report, told)
+    entries = all_installed(run, [check.cell for check in checks])
+    for check in checks:
+        again.add(check, entries[check.cell.entry.label])
+    again.run(workers)
+
+
+def tasks_of(
+    run: RunFolder, root: Path, wanted: Wanted, report: Report, *, guarded: bool = True
+) -> list[Examination]:
+    """Return what is to be examined of a pinned run; what its manifest shows goes to the report.
+
+    ``guarded``: metrics of plugins are measured in processes of their own.
+    """
     if run.manifest.schema < VERIFIABLE:
         raise StoreError(
             f"A run must be of schema {VERIFIABLE} or later to be verified. {run.shown} is of"
@@ -103,19 +137,25 @@ def tasks_of(run: RunFolder, root: Path, wanted: Wanted, report: Report) -> list
     entries = {cell.entry.label: cell.entry for cell in suite.cells}
     report.sources += [compare_source(e, run.packed is not None) for e in entries.values()]
     if wanted.rerun:
-        check_reasons(run, suite.cells, report)
+        check_reasons(run, suite.cells, all_installed(run, suite.cells), report)
     version = str(run.manifest.versions.get("benchnav", ""))
+    metrics = {name: metric.verifiable for name, metric in declared_metrics()[0].items()}
+    measuring = _measuring(run) if guarded else None
     checks = [
-        PartCheck(cell, part, run.manifest.salt, suite.seeds.start, version)
+        PartCheck(cell, part, run.manifest.salt, suite.seeds.start, version, metrics, measuring)
         for cell, part in covered(run, suite, report)
     ]
     checks.sort(key=lambda c: (c.cell.scenario.identity, c.part.first))  # they share worlds
     chosen = sampled(checks, wanted.twin)
-    packed = run.packed is not None
     return [
-        Examination(check, tuple(seeds), wanted.referee, wanted.rerun, packed)
+        Examination(check, tuple(seeds), wanted.referee)
         for check, seeds in zip(checks, chosen, strict=True)
     ]
+
+
+def _measuring(run: RunFolder) -> Measuring:
+    timeout = Limits.of(run.manifest.limits).timeout
+    return Measuring((), tuple(registrations()), main_module(), timeout)
 
 
 def _claims(manifest: Manifest) -> str:
