@@ -12,6 +12,7 @@ from pydantic import Field, PrivateAttr, model_validator
 from benchnav.errors import did_you_mean
 from benchnav.plain_file import open_file
 from benchnav.scenario.base import MAX_NAME, NAME_PATTERN, Bounds, Spec, inside
+from benchnav.scenario.canonical import canonical
 from benchnav.scenario.document import PathKey, dotted
 from benchnav.scenario.law import RecordedTrack
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
@@ -111,10 +112,14 @@ class Scenario(Spec):
 
     @cached_property
     def hash(self) -> str:
-        """16 hex digits of what decides the worlds: everything but prose, and all files' bytes."""
+        """16 hex digits over everything that affects the worlds, including the bytes of files.
+
+        Titles, descriptions and the list of parameters are left out. `canonical` says how the
+        keys enter.
+        """
         digest = hashlib.sha256()
-        resolved = self.model_dump(mode="json", exclude=_PROSE)
-        digest.update(json.dumps(resolved, sort_keys=True, separators=(",", ":")).encode())
+        form = canonical(self, exclude=_PROSE)
+        digest.update(json.dumps(form, sort_keys=True, separators=(",", ":")).encode())
         for _, path in self.files():
             with open_file(path) as file:
                 digest.update(hashlib.file_digest(file, "sha256").digest())
