@@ -39,7 +39,7 @@ validation: {worlds: 5}
 READ = """\
 from pathlib import Path
 import numpy
-from benchnav.store.reading import read_episodes
+from benchnav.store.runs.reading import read_episodes
 episodes = list(read_episodes(Path("run")))
 assert len(episodes) == 4, len(episodes)
 for episode in episodes:

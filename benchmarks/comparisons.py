@@ -3,8 +3,8 @@
     python -m benchmarks.comparisons [--tables N] [--part PART]
 
 docs/statistics.md keeps the output for 2,000 tables. The inference is that of
-`benchnav.leaderboard.difference`; power is compared with sign flips of all worlds on the same
-simulated values.
+`benchnav.leaderboard.statistics.difference`; power is compared with sign flips of all worlds
+on the same simulated values.
 """
 
 from collections.abc import Iterator
@@ -14,12 +14,12 @@ from itertools import product
 import numpy as np
 
 from benchmarks.markdown_tables import print_parts
-from benchmarks.simulated_tables import CROWDS, EACH_FOR_ITSELF, Crowd, unit_rates, world_rates
 from benchnav.arrays import FloatArray
-from benchnav.leaderboard.compare import holm, pairs
-from benchnav.leaderboard.difference import Moments, difference
-from benchnav.leaderboard.estimate import Column
-from benchnav.leaderboard.interval import ALPHA
+from benchnav.leaderboard.statistics.difference import Moments, difference
+from benchnav.leaderboard.statistics.estimate import Column
+from benchnav.leaderboard.statistics.interval import ALPHA
+from benchnav.leaderboard.statistics.significance import holm, pairs
+from studies.simulated_tables import CROWDS, EACH_FOR_ITSELF, Crowd, unit_rates, world_rates
 
 TABLES = 2000
 CHANCES = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99)

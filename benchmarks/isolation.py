@@ -7,10 +7,10 @@ the simulation is in both. The best of several turns each: the rest is other pro
 from dataclasses import replace
 from time import perf_counter
 
-from benchnav.isolation import pool
-from benchnav.runner.rollout import Assignment, Seeded, rollout
+from benchnav.generation.build import build
+from benchnav.isolation import process_pool
+from benchnav.runner.rollouts.rollout import Assignment, Seeded, rollout
 from benchnav.scenario.catalogue import find
-from benchnav.world.build import build
 
 TURNS = 5
 CASES = (  # navigator, scenario, worlds, least share of the rate in-process that is wanted
@@ -34,7 +34,7 @@ def measure() -> list[dict[str, object]]:
         modes = (here, replace(here, isolated=True))
         turns = [[rate(mode, worlds) for mode in modes] for _ in range(TURNS + 1)][1:]
         inside, apart = (max(column) for column in zip(*turns, strict=True))
-        pool.dismiss()
+        process_pool.dismiss()
         worlds_ = f"{count} worlds" if count > 1 else "one world"
         rows.append(
             {

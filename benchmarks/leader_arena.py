@@ -11,9 +11,9 @@ from time import perf_counter
 import numpy as np
 
 from benchnav.arena.world import ContactRule, World
+from benchnav.generation.build import build
 from benchnav.scenario.catalogue import find
 from benchnav.sensors.sense import sense
-from benchnav.world.build import build
 from benchnav.world.simulation import Simulation
 
 WORLDS, DRAWN, STEPS, ROUNDS = 1024, 128, 25, 7

@@ -41,9 +41,9 @@ def benchnav() -> float:
     """Seconds of STEPS steps."""
     import numpy as np
 
-    from benchnav.navigation.configure import make
+    from benchnav.navigation.plugin.configure import make
     from benchnav.plugins import NAVIGATORS
-    from benchnav.runner.driver import Driver
+    from benchnav.runner.rollouts.navigator_driver import Driver
     from benchnav.world.simulation import Simulation
 
     simulation = Simulation([crowd_world()])

@@ -17,8 +17,8 @@ from time import process_time
 for name in ("BENCHNAV", "NUMBA_NUM", "OMP_NUM", "OPENBLAS_NUM", "MKL_NUM"):
     os.environ[f"{name}_THREADS"] = "1"  # before anything reads it
 
+from benchnav.runner.plan.suite import Selection, load_suite  # noqa: E402
 from benchnav.runner.run import run_suite  # noqa: E402
-from benchnav.runner.suite import Selection, load_suite  # noqa: E402
 
 EPISODES = 1e9
 HOURS = 3600.0

@@ -25,7 +25,7 @@ from numba import njit
 from numba.core import config
 
 from benchnav.kernel_cache import KernelCache, drop_unfinished
-from benchnav.user_folders import UserFolder, user_cache
+from benchnav.system.user_folders import UserFolder, user_cache
 
 F = TypeVar("F", bound=Callable[..., Any])
 _HERE = Path(__file__).parent

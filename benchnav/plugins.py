@@ -216,7 +216,7 @@ def _owner(dist: Distribution) -> str:
     return f"{dist.name} {dist.version}"
 
 
-_CLASSES = "benchnav.navigation.contract"
+_CLASSES = "benchnav.navigation.plugin.contract"
 
 NAVIGATORS = Registry("benchnav.navigators", "navigator", f"{_CLASSES}:navigator_rule")
 PLANNERS = Registry("benchnav.planners", "planner", f"{_CLASSES}:planner_rule")

@@ -20,7 +20,7 @@ from benchnav.arrays import FloatArray
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.encoders.surround import DIRECTIONS, FADE, OTHERS, SurroundEncoder
-from benchnav.envs.making import make_batch
+from benchnav.envs.factory import make_batch
 from benchnav.navigation.navigator import Need
 from benchnav.sensors.sense import sense
 

@@ -9,9 +9,9 @@ docs/learning/checkpoints holds an early and a middle checkpoint, the late one s
 from pathlib import Path
 
 import numpy as np
-from benchnav_baselines.recurrent_ppo.log import read_rows
-from benchnav_baselines.recurrent_ppo.policy_pilot import SHIPPED
-from benchnav_baselines.recurrent_ppo.weights import read_weights
+from benchnav_baselines.learned.recurrent_ppo.learning.log import read_rows
+from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED
+from benchnav_baselines.learned.recurrent_ppo.weights import read_weights
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Polygon
@@ -19,9 +19,9 @@ from matplotlib.patches import Circle, Polygon
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import World
 from benchnav.episode.episode import Episode, Status
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.generation.build import build
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
-from benchnav.world.build import build
 
 HERE = Path(__file__).parent
 CURVES, CHECKPOINTS = HERE / "learning" / "curves", HERE / "learning" / "checkpoints"

@@ -20,9 +20,9 @@ from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode, Status
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.generation.build import build
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
-from benchnav.world.build import build
 
 IMAGES = Path(__file__).parent / "images"
 NAVIGATOR = "ompl-orca"

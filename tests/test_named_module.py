@@ -8,7 +8,7 @@ from benchnav.errors import BrokenPluginError
 from benchnav.plugins import NAVIGATORS
 
 MODULE = """
-from benchnav_baselines.straight_line import StraightLine
+from benchnav_baselines.navigators.straight_line import StraightLine
 {imports}
 
 class Mine(StraightLine):

@@ -102,7 +102,7 @@ def test_all_that_ships_fulfils_its_contract():
 ENTRIES = """
 [benchnav.navigators]
 draws = random:Random
-planner = benchnav_baselines.visibility:Visibility
+planner = benchnav_baselines.planners.visibility:Visibility
 leaves = plugin_that_leaves:Navigator
 [benchnav.metrics]
 odd = benchnav.metrics.success:success

@@ -1,4 +1,4 @@
-from benchnav.plural import counted
+from benchnav.text.plural import counted
 
 
 def test_one_of_a_thing_is_singular():

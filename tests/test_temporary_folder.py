@@ -8,12 +8,12 @@ import tempfile
 
 import pytest
 
-from benchnav import temporary_folder
-from benchnav.temporary_folder import TemporaryFolder, drop_abandoned
+from benchnav.system import temporary_folder
+from benchnav.system.temporary_folder import TemporaryFolder, drop_abandoned
 
 MAKES = """
 import sys
-from benchnav.temporary_folder import TemporaryFolder
+from benchnav.system.temporary_folder import TemporaryFolder
 folder = TemporaryFolder("test")
 (folder.path / "big").write_text("x")
 print(folder.path, flush=True)
@@ -78,7 +78,7 @@ def test_nothing_else_is_removed(root):
 
 def test_many_processes_at_once_never_take_each_others(root):
     code = (
-        "from benchnav.temporary_folder import TemporaryFolder, drop_abandoned\n"
+        "from benchnav.system.temporary_folder import TemporaryFolder, drop_abandoned\n"
         "for k in range(100):\n"
         "    drop_abandoned()\n"
         "    with TemporaryFolder('test') as folder:\n"

@@ -8,7 +8,7 @@ import tempfile
 
 import pytest
 
-from benchnav.user_folders import user_cache, user_state
+from benchnav.system.user_folders import user_cache, user_state
 
 USER = os.geteuid()
 

@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from benchnav.errors import StoreError, UsageError, did_you_mean
-from benchnav.plain_file import require_writable
-from benchnav.streams import drop
-from benchnav.visible import visible_lines
+from benchnav.system.plain_file import require_writable
+from benchnav.system.streams import drop
+from benchnav.text.visible import visible_lines
 
 if TYPE_CHECKING:
-    from benchnav.store.spans import Span
+    from benchnav.store.runs.spans import Span
 
 E = TypeVar("E", bound=StrEnum)
 

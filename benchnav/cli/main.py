@@ -7,23 +7,23 @@ from typing import Annotated, Any
 import typer
 
 import benchnav
-from benchnav.cli.compare import compare
+from benchnav.cli.authoring.import_map import import_app
+from benchnav.cli.authoring.new import new_app
+from benchnav.cli.authoring.schema import schema
+from benchnav.cli.authoring.validate import validate
 from benchnav.cli.console import put, say
-from benchnav.cli.doctor import doctor
-from benchnav.cli.imports import import_app
-from benchnav.cli.leaderboard import leaderboard
-from benchnav.cli.listing import list_
 from benchnav.cli.machine_fault import machine_fault
-from benchnav.cli.merge import merge
-from benchnav.cli.new import new_app
-from benchnav.cli.pack import pack
-from benchnav.cli.run import run
-from benchnav.cli.schema import schema
-from benchnav.cli.show import show
+from benchnav.cli.running.merge import merge
+from benchnav.cli.running.pack import pack
+from benchnav.cli.running.run import run
+from benchnav.cli.running.train import train
+from benchnav.cli.running.verify import verify
 from benchnav.cli.stopping import stop_on_signals, stoppable, tell
-from benchnav.cli.train import train
-from benchnav.cli.validate import validate
-from benchnav.cli.verify import verify
+from benchnav.cli.tables.compare import compare
+from benchnav.cli.tables.leaderboard import leaderboard
+from benchnav.cli.viewing.doctor import doctor
+from benchnav.cli.viewing.list import list_
+from benchnav.cli.viewing.show import show
 from benchnav.errors import (
     BenchnavError,
     InputError,
@@ -33,8 +33,8 @@ from benchnav.errors import (
     UnsolvableError,
     UsageError,
 )
-from benchnav.navigation.trace import notes, trace
-from benchnav.streams import drop, prepare_streams
+from benchnav.navigation.plugin.trace import notes, trace
+from benchnav.system.streams import drop, prepare_streams
 
 DEBUG = "--debug"
 _Usage: type[Any] = typer.BadParameter.mro()[2]  # click's, which typers carry in changing places

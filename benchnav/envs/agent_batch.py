@@ -13,16 +13,16 @@ import numpy as np
 
 from benchnav.arena.world import Afterwards, ContactRule, World
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
-from benchnav.envs.collision import collision_probability
+from benchnav.envs.autoreset import Relay
+from benchnav.envs.background_agents import Instead, Others
+from benchnav.envs.collision_probability import collision_probability
 from benchnav.envs.encoders.encoder import Bodies, Encoder, Float32Array
-from benchnav.envs.others import Instead, Others
-from benchnav.envs.relay import Relay
 from benchnav.envs.reward import RewardTerms, RewardWeights, reward_terms
 from benchnav.episode.episode import Status
 from benchnav.errors import UsageError
-from benchnav.navigation.configure import Spec
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.observation import Observation
+from benchnav.navigation.plugin.configure import Spec
 from benchnav.sensors.sense import sense
 
 

@@ -7,10 +7,10 @@ from gymnasium.utils.seeding import np_random
 from pettingzoo import ParallelEnv  # type: ignore[import-untyped]
 
 from benchnav.envs.encoders.encoder import Float32Array
+from benchnav.envs.factory import Reward, drawn_index, make_batch, refuse_rendering
+from benchnav.envs.gym.spaces import Space, action_space, last_seen, observation_space, terms
 from benchnav.envs.learner_slots import LearnerSlots
-from benchnav.envs.making import Reward, drawn_index, make_batch, refuse_rendering
 from benchnav.envs.seeding import plain_seed
-from benchnav.envs.spaces import Space, action_space, last_seen, observation_space, terms
 from benchnav.errors import UsageError
 
 Told = dict[str, dict[str, Any]]

@@ -15,15 +15,15 @@ from pydantic import TypeAdapter
 
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import BenchnavError, MissingExtraError
+from benchnav.isolation.briefing_codec import briefings_of
 from benchnav.isolation.frame import HEAD, decode, encode, head
-from benchnav.isolation.seen import maps_changed, observation_of
-from benchnav.isolation.told import briefings_of
+from benchnav.isolation.observation_codec import maps_changed, observation_of
 from benchnav.named_module import search_in
-from benchnav.navigation.answer import CallFailed, checked, remarks_of, said
-from benchnav.navigation.introduction import meet
+from benchnav.navigation.command_check import CallFailed, checked, remarks_of, said
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Navigator
-from benchnav.navigation.trace import plain, trace
+from benchnav.navigation.plugin.capabilities import meet
+from benchnav.navigation.plugin.trace import plain, trace
 
 Answer = tuple[str, dict[str, Any]]
 _SENSINGS = TypeAdapter(list[Sensing])

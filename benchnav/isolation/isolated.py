@@ -8,12 +8,12 @@ from typing import Any
 
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import BrokenPluginError, NavigatorError, UsageError
-from benchnav.isolation import fence, pool
-from benchnav.isolation.process import Process
-from benchnav.isolation.remote import Remote, python_path, say_hello
+from benchnav.isolation import process_pool, sandbox
+from benchnav.isolation.navigator_process import Process
+from benchnav.isolation.remote_navigator import Remote, python_path, say_hello
 from benchnav.named_module import current_folder
-from benchnav.navigation.configure import Spec, split
-from benchnav.navigation.introduction import Introduction
+from benchnav.navigation.plugin.capabilities import Introduction
+from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.plugins import NAVIGATORS
 from benchnav.source.parts import names_known_here
 
@@ -29,8 +29,8 @@ class Isolated(Remote):
         self._cell = (json.dumps(self._spec, sort_keys=True), cell)
 
     def start(self) -> Process:
-        fence.require_fence()
-        return pool.lend(self._cell, lambda: Process(HOST))
+        sandbox.require_fence()
+        return process_pool.lend(self._cell, lambda: Process(HOST))
 
     @property
     def hello(self) -> Mapping[str, Any]:
@@ -38,7 +38,7 @@ class Isolated(Remote):
 
 
 def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "") -> Introduction:
-    """As `benchnav.navigation.introduction.introduction`, in a process of its own.
+    """As `benchnav.navigation.plugin.capabilities.introduction`, in a process of its own.
 
     Nothing of the navigator is imported in this one. Raises also BrokenPluginError where the
     process dies, and UsageError where no other process can host it.
@@ -50,7 +50,7 @@ def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "
             f" or named as module:Class. Got {local!r} instead, which is registered in this"
             " process alone."
         )
-    fence.require_fence()
+    sandbox.require_fence()
     process = Process(HOST)
     try:
         asked = {"where": where, "sensings": [asdict(sensing) for sensing in sensings]}

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.marks import labels_of
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Record
-from benchnav.runner.caveat import Caveat, caveats_of
-from benchnav.store.run_folder import RunFolder
+from benchnav.runner.plan.installed_differences import Caveat, caveats_of
+from benchnav.store.runs.run_folder import RunFolder
 
 if TYPE_CHECKING:
     import pyarrow as pa

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 
 from benchnav.errors import UsageError, did_you_mean
-from benchnav.leaderboard.cell import Cell, rank, rehearsal, training, verified
 from benchnav.leaderboard.record import Record
+from benchnav.leaderboard.rendering.cell import Cell, rank, rehearsal, training, verified
 
 DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
 FEW = 4  # metrics that are shown where none of the default ones is held

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 
 import pyarrow as pa
 
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.runs.run_folder import RunFolder
 
 
 def labels_of(results: pa.Table) -> set[str]:
-    """Return the labels that rows of `benchnav.store.results.RESULTS` hold."""
+    """Return the labels that rows of `benchnav.store.parts.results.RESULTS` hold."""
     return set(results["navigator"].unique().to_pylist())
 
 

@@ -11,19 +11,8 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.leaderboard.caveats import with_caveats
-from benchnav.leaderboard.estimate import (
-    Estimate,
-    Sample,
-    columns_of,
-    estimate,
-    interquartile_mean_over,
-    mean_over,
-)
-from benchnav.leaderboard.fault import faults, with_fault
-from benchnav.leaderboard.grid import Stratum, align, strata
-from benchnav.leaderboard.interval import resample
 from benchnav.leaderboard.label import require_one_navigator_per_label
-from benchnav.leaderboard.price import prices
+from benchnav.leaderboard.metric_faults import faults, with_fault
 from benchnav.leaderboard.record import (
     ALL,
     ALL_INTERQUARTILE,
@@ -32,10 +21,21 @@ from benchnav.leaderboard.record import (
     NotApplicable,
     Record,
 )
-from benchnav.leaderboard.remark import failures, remarks, with_texts
-from benchnav.leaderboard.standing import Standing, standings
+from benchnav.leaderboard.remarks import failures, remarks, with_texts
+from benchnav.leaderboard.statistics.estimate import (
+    Estimate,
+    Sample,
+    columns_of,
+    estimate,
+    interquartile_mean_over,
+    mean_over,
+)
+from benchnav.leaderboard.statistics.interval import resample
+from benchnav.leaderboard.statistics.knowledge_gap import prices
+from benchnav.leaderboard.statistics.ranking import Standing, standings
+from benchnav.leaderboard.statistics.strata import Stratum, align, strata
 from benchnav.metrics.metric import Metric
-from benchnav.runner.caveat import Caveat
+from benchnav.runner.plan.installed_differences import Caveat
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -56,7 +56,7 @@ def leaderboard(
     """Every navigator × scenario × track × role × metric, with interval and rank.
 
     Entries that were granted different numbers of rehearsals are never ranked together.
-    ``results`` has the schema `benchnav.store.results.RESULTS` and may join several
+    ``results`` has the schema `benchnav.store.parts.results.RESULTS` and may join several
     runs; the order of its rows changes nothing. ``metrics`` maps names to definitions;
     a metric that it lacks is shown and not ranked. ``not_applicable`` are cells that
     were not run. ``training`` maps labels to the decisions and seconds of their training;

@@ -11,11 +11,11 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.analysis import Analysis, analyse
-from benchnav.metrics.density import frame_times
 from benchnav.metrics.metric import Metric
+from benchnav.metrics.quantities.density import frame_times
+from benchnav.metrics.quantities.episode_analysis import Analysis, analyse
+from benchnav.metrics.quantities.trajectory import positions_at, present_at
 from benchnav.metrics.success import OWN
-from benchnav.metrics.trajectory import positions_at, present_at
 
 SLOW = 0.2  # of the preferred speed
 CELL = 0.5  # [m] of the velocity field of the congestion level

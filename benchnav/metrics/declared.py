@@ -7,8 +7,8 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, StrictBool, Validati
 from benchnav.errors import BenchnavError, PluginError
 from benchnav.metrics.measure import is_own, load_metric
 from benchnav.metrics.metric import Metric
-from benchnav.navigation.answer import short
-from benchnav.navigation.guarded import IMPORT, Plugin, Stepping, ask_plugins, tell
+from benchnav.navigation.command_check import short
+from benchnav.navigation.plugin.plugin_process import IMPORT, Plugin, Stepping, ask_plugins, tell
 from benchnav.plugins import METRICS
 from benchnav.processes.channel import Channel
 
@@ -36,7 +36,8 @@ class _Declaration(BaseModel):
 def declared_metrics() -> tuple[dict[str, Metric], list[str]]:
     """(metrics by name, why others cannot be used).
 
-    A metric of a plugin has no function here. `benchnav.runner.recomputed` measures with it.
+    A metric of a plugin has no function here; `benchnav.runner.execute.remeasurement` measures
+    with it.
     """
     found: dict[str, Metric | BenchnavError] = {}
     groups: dict[str, list[Plugin]] = {}

@@ -6,8 +6,8 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.analysis import analyse
 from benchnav.metrics.metric import Metric
+from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.success import OWN
 
 

@@ -16,10 +16,10 @@ from benchnav.arena.agents import Role
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode
 from benchnav.kernels import kernel
-from benchnav.metrics.analysis import Analysis, analyse
-from benchnav.metrics.density import FRAME_RATE
 from benchnav.metrics.groups import label_parts
 from benchnav.metrics.metric import Metric
+from benchnav.metrics.quantities.density import FRAME_RATE
+from benchnav.metrics.quantities.episode_analysis import Analysis, analyse
 from benchnav.metrics.success import OWN
 
 

@@ -13,8 +13,8 @@ import numpy as np
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode
 from benchnav.kernels import kernel
-from benchnav.metrics.analysis import analyse
 from benchnav.metrics.metric import Metric
+from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.success import OWN
 
 LINK = 3.0  # diameters between centres that hold a group together

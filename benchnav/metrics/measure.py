@@ -10,8 +10,8 @@ from benchnav.arrays import BoolArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import PluginError
 from benchnav.metrics.metric import Metric, evaluate
-from benchnav.navigation.answer import said
-from benchnav.navigation.trace import trace
+from benchnav.navigation.command_check import said
+from benchnav.navigation.plugin.trace import trace
 from benchnav.plugins import METRICS
 
 
@@ -46,7 +46,7 @@ def _no_metrics_twice(names: tuple[str, ...]) -> None:
 
 
 def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]:
-    """Rows of `benchnav.store.results.RESULTS`: each metric for each role that is evaluated.
+    """Rows of `benchnav.store.parts.results.RESULTS`: each metric for each role that is evaluated.
 
     Background agents are in the world, but never scored. A metric that raises or answers
     another shape costs its own value: it is missing (NaN), with the reason.

@@ -10,9 +10,9 @@ from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.analysis import analyse
-from benchnav.metrics.encounters import TTC_CAP
 from benchnav.metrics.metric import Metric
+from benchnav.metrics.quantities.encounters import TTC_CAP
+from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.success import OWN, rate
 
 INTIMATE = 0.45  # [m] Hall 1966: the far edge of intimate distance

@@ -13,9 +13,9 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.analysis import analyse
-from benchnav.metrics.filter import CUTOFF, RATE
 from benchnav.metrics.metric import Metric
+from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.metrics.quantities.lowpass import CUTOFF, RATE
 
 THRESHOLD = 0.05  # of the spectrum's peak: SPARC's amplitude threshold
 EVERY = 2  # samples: the spectrum of speed needs no more than 10 Hz

@@ -12,9 +12,9 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.analysis import analyse
 from benchnav.metrics.metric import Metric
-from benchnav.metrics.trajectory import positions_at
+from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.metrics.quantities.trajectory import positions_at
 
 STUCK_WINDOW = 10.0  # [s]
 OWN = "own definition"

@@ -18,8 +18,8 @@ from pydantic import BaseModel, ConfigDict
 from benchnav.arena.sensing import Sensing
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.configure import Spec
 from benchnav.navigation.observation import Observation
+from benchnav.navigation.plugin.configure import Spec
 from benchnav.plugins import Source
 
 

@@ -20,8 +20,8 @@ from benchnav.errors import BenchnavError
 from benchnav.processes.channel import Channel, ChannelError
 from benchnav.processes.process_tree import kill
 
-LIGHT = "benchnav.navigation.introduction"  # what plugins are made of; imported at once
-WARM = "benchnav.runner.warm:warm"  # what runs them: imports, and compiles where it must
+LIGHT = "benchnav.navigation.plugin.capabilities"  # what plugins are made of; imported at once
+WARM = "benchnav.runner.execute.preload:warm"  # what runs them: imports, and compiles where it must
 PREPARE, START = b"\1", b"\0"  # what a message on the socket asks for
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 

@@ -6,22 +6,22 @@ from contextlib import closing, suppress
 from dataclasses import dataclass, field, replace
 
 from benchnav.errors import UsageError
-from benchnav.isolation import pool
+from benchnav.isolation import process_pool
 from benchnav.plugins import METRICS
-from benchnav.runner.cell import Cell
-from benchnav.runner.executor import Finished, execute
-from benchnav.runner.in_process import bound_here, refuse_edited, refuse_limits_here
-from benchnav.runner.limits import Limits
-from benchnav.runner.progress import Progress
-from benchnav.runner.renewal import Renewal
-from benchnav.runner.shard import Shard
-from benchnav.runner.start import planned, refuse_limits, start
-from benchnav.runner.suite import Suite
-from benchnav.runner.task import Outcome, Task, chunks
-from benchnav.store.run_folder import RunFolder
-from benchnav.store.run_path import RunPath, run_path
-from benchnav.store.scenario_files import keep_files
-from benchnav.temporary_folder import drop_abandoned
+from benchnav.runner.execute.executor import Finished, execute
+from benchnav.runner.execute.in_process import bound_here, refuse_edited, refuse_limits_here
+from benchnav.runner.execute.progress import Progress
+from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.limits import Limits
+from benchnav.runner.plan.prepare import planned, refuse_limits, start
+from benchnav.runner.plan.renewal import Renewal
+from benchnav.runner.plan.shard import Shard
+from benchnav.runner.plan.suite import Suite
+from benchnav.runner.plan.task import Outcome, Task, chunks
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.run_path import RunPath, run_path
+from benchnav.store.runs.scenario_files import keep_files
+from benchnav.system.temporary_folder import drop_abandoned
 from benchnav.threads import core_count
 
 Executor = Callable[[Sequence[Task], int | None, Progress, Limits], Generator[Finished, None, None]]
@@ -149,7 +149,7 @@ def run_suite(
                     summary.count(task, outcome)
         finally:
             told.end()
-            pool.dismiss()
+            process_pool.dismiss()
             with suppress(OSError):
                 drop_abandoned()  # of workers that were killed
             not_run = {cell.key: why for cell, why in summary.not_applicable}

@@ -5,9 +5,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Coordinate, Length, Point, Spec
-from benchnav.scenario.sampler import NonNegativeScalar, PositiveScalar, Scalar, Uniform
-from benchnav.scenario.validation import FieldError
+from benchnav.scenario.sampling.sampler import NonNegativeScalar, PositiveScalar, Scalar, Uniform
 
 _ANY_PHASE = Uniform(uniform=(0.0, 1.0))
 Time = Annotated[float, Field(ge=0, le=1e6)]

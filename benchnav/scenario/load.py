@@ -3,12 +3,12 @@
 from pathlib import Path
 from typing import Any
 
+from benchnav.config.document import Document, PathKey
+from benchnav.config.validation import validate
+from benchnav.config.yaml_reader import read_yaml, read_yaml_text
 from benchnav.errors import ScenarioError
-from benchnav.scenario.document import Document, PathKey
 from benchnav.scenario.parameters import Given, Reference, resolve
 from benchnav.scenario.scenario import Scenario
-from benchnav.scenario.validation import validate
-from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text
 
 
 def load_scenario(path: Path | str, given: Given | None = None) -> Scenario:

@@ -2,12 +2,12 @@
 
 from pydantic import Field, model_validator
 
+from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Distance, Places, Point, Spec, listed
 from benchnav.scenario.law import Law, RecordedTrack
-from benchnav.scenario.region import Region
-from benchnav.scenario.sampler import Count, NonNegativeScalar, Scalar, fixed
+from benchnav.scenario.sampling.region import Region
+from benchnav.scenario.sampling.sampler import Count, NonNegativeScalar, Scalar, fixed
 from benchnav.scenario.shape import Movable, Shape, shape_is_fixed
-from benchnav.scenario.validation import FieldError
 
 
 class StaticGroup(Spec):

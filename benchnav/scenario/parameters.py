@@ -13,10 +13,10 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
+from benchnav.config.document import Document, PathKey, shown
+from benchnav.config.validation import FieldError, validate
 from benchnav.errors import ScenarioError, UsageError, did_you_mean
 from benchnav.scenario.base import Name, Spec
-from benchnav.scenario.document import Document, PathKey, shown
-from benchnav.scenario.validation import FieldError, validate
 
 Given = Mapping[str, float]
 LARGEST = 1e9

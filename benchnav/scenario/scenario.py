@@ -9,17 +9,17 @@ from typing import Annotated, Any
 
 from pydantic import Field, PrivateAttr, model_validator
 
+from benchnav.config.document import PathKey, dotted
+from benchnav.config.validation import FieldError
 from benchnav.errors import did_you_mean
-from benchnav.plain_file import open_file
 from benchnav.scenario.base import MAX_NAME, NAME_PATTERN, Bounds, Spec, inside
 from benchnav.scenario.canonical import canonical
-from benchnav.scenario.document import PathKey, dotted
 from benchnav.scenario.law import RecordedTrack
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
-from benchnav.scenario.packing import lattice, most_that_fit
 from benchnav.scenario.parameters import Parameters, joined_parameters
-from benchnav.scenario.region import region_problem
-from benchnav.scenario.sampler import support
+from benchnav.scenario.sampling.packing import lattice, most_that_fit
+from benchnav.scenario.sampling.region import region_problem
+from benchnav.scenario.sampling.sampler import support
 from benchnav.scenario.shape import Mesh, Occupancy, Shape
 from benchnav.scenario.team import (
     Driver,
@@ -31,8 +31,8 @@ from benchnav.scenario.team import (
     Team,
 )
 from benchnav.scenario.terms import Clock, Rules, Sensing, Track
-from benchnav.scenario.validation import FieldError
 from benchnav.scenario.wall import Layout, Wall, layout_problem
+from benchnav.system.plain_file import open_file
 
 MAX_AGENTS = 5000
 MAX_OBSTACLES = 2000
@@ -136,7 +136,7 @@ class Scenario(Spec):
 
     @property
     def driver_specs(self) -> tuple[dict[str, Any], ...]:
-        """What `benchnav.navigation.configure.make` takes for each of `drivers`."""
+        """What `benchnav.navigation.plugin.configure.make` takes for each of `drivers`."""
         return tuple({"type": d.type, **d.params} for d in self.drivers)
 
     @property
@@ -189,8 +189,8 @@ Problem = tuple[tuple[PathKey, ...], str]
 
 def _image_of(path: Path) -> Path | None:
     """The image that a ROS map's YAML names."""
+    from benchnav.config.yaml_reader import read_yaml
     from benchnav.errors import ScenarioError
-    from benchnav.scenario.yaml_reader import read_yaml
 
     try:
         data: Any = read_yaml(path).data

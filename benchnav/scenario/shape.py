@@ -4,9 +4,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Coordinate, Distance, Length, Point, Spec
-from benchnav.scenario.sampler import PositiveScalar, fixed, support
-from benchnav.scenario.validation import FieldError
+from benchnav.scenario.sampling.sampler import PositiveScalar, fixed, support
 
 Axis = Literal["x", "y", "z"]
 

@@ -4,10 +4,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
+from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Distance, Length, Name, Point, Spec
-from benchnav.scenario.region import Region
-from benchnav.scenario.sampler import Count, PositiveScalar, Scalar, support
-from benchnav.scenario.validation import FieldError
+from benchnav.scenario.sampling.region import Region
+from benchnav.scenario.sampling.sampler import Count, PositiveScalar, Scalar, support
 
 
 class RegionStart(Spec):

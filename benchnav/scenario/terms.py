@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Length, Spec
-from benchnav.scenario.validation import FieldError
 
 Track = Literal["known", "stale", "partial", "unknown"]
 MAX_STEPS = 100_000

@@ -4,10 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Tag, model_validator
 
+from benchnav.config.validation import FieldError
 from benchnav.scenario.base import ONE_OR_MORE, Length, Spec
-from benchnav.scenario.sampler import Scalar, fixed
+from benchnav.scenario.sampling.sampler import Scalar, fixed
 from benchnav.scenario.shape import Mesh, Occupancy, Shape, shape_is_fixed
-from benchnav.scenario.validation import FieldError
 
 Place = tuple[Scalar, Scalar]  # [m]
 Share = Annotated[float, Field(ge=0, le=1)]

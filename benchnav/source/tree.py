@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 
-from benchnav.plain_file import open_file
+from benchnav.system.plain_file import open_file
 
 MOST_FILES = 5_000  # of a folder
 MOST_BYTES = 4 << 30  # of a file; of a larger one its size and this much count

@@ -13,7 +13,7 @@ import numpy as np
 
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import World
-from benchnav.navigation.answer import said, short
+from benchnav.navigation.command_check import said, short
 from benchnav.navigation.navigator import Navigator, Need
 from benchnav.plugins import NAVIGATORS
 from benchnav.testing.observations import (

@@ -14,8 +14,8 @@ import numpy as np
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
-from benchnav.navigation.answer import said
 from benchnav.navigation.briefing import Briefing, brief
+from benchnav.navigation.command_check import said
 from benchnav.navigation.navigator import Navigator, Need
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.tracks import granted_map

@@ -5,8 +5,8 @@ import math
 import numpy as np
 
 from benchnav.arena.world import World
+from benchnav.generation.rehearsal_world import leaders_of
 from benchnav.navigation.rehearsal import Rehearsal
-from benchnav.world.draw_rehearsal import leaders_of
 
 STEPS = 40
 

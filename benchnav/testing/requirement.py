@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import BaseModel, ValidationError
 
 from benchnav.arrays import FloatArray
-from benchnav.navigation.configure import make
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import Registry
 
 Subject = str | Mapping[str, Any] | Callable[[], Any]

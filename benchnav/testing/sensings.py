@@ -7,11 +7,11 @@ from itertools import product
 
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.errors import BenchnavError
+from benchnav.generation.build import sensing_of
 from benchnav.navigation.navigator import Navigator
 from benchnav.plugins import SCENARIOS
 from benchnav.scenario.catalogue import find
 from benchnav.testing.scenes import SENSING, USUAL
-from benchnav.world.build import sensing_of
 
 COUNTS = (*range(1, 65), 72, 90, 100, 120, 128, 180, 181, 256, 270, 360, 361, 512, 720, 1080, 1081)
 FANS = (math.pi, 2.0 * math.pi, 0.5 * math.pi, 1.5 * math.pi, 2.0 / 3.0 * math.pi)  # [rad]

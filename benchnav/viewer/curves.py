@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchnav.leaderboard.curve import HORIZON, Point, panels
-from benchnav.leaderboard.curve_table import titled
+from benchnav.leaderboard.rendering.curve_table import titled
+from benchnav.leaderboard.statistics.curve import HORIZON, Point, panels
 from benchnav.navigation.tracks import TRACKS
 from benchnav.viewer.picture import COLOURS, DASHES, blank, plain
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from benchnav.leaderboard.comparison import Comparison
-from benchnav.leaderboard.duel import Duel
 from benchnav.leaderboard.record import ALL
-from benchnav.leaderboard.words import scaled
+from benchnav.leaderboard.rendering.prose import scaled
+from benchnav.leaderboard.statistics.comparison import Comparison
+from benchnav.leaderboard.statistics.head_to_head import Duel
 from benchnav.metrics.metric import Metric
 from benchnav.viewer.picture import BLUE, GREY, RED, blank, plain
 

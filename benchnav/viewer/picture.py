@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeGuard
 
 from benchnav.errors import MissingExtraError, StoreError
-from benchnav.plain_file import require_writable
-from benchnav.user_folders import home_is_usable, user_cache
+from benchnav.system.plain_file import require_writable
+from benchnav.system.user_folders import home_is_usable, user_cache
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,15 +7,15 @@ import numpy as np
 
 import benchnav
 from benchnav.arena.solid import Kind, Solid
+from benchnav.generation.build import build
 from benchnav.geometry.geodesic import FreeSpace
 from benchnav.geometry.sweep import inside_solid, motion_is_free, solid_index
-from benchnav.navigation.configure import make
 from benchnav.navigation.map import Map
 from benchnav.navigation.planner import Plan
+from benchnav.navigation.plugin.configure import make
 from benchnav.navigation.tracks import granted_map
 from benchnav.plugins import PLANNERS
 from benchnav.scenario.load import load_scenario
-from benchnav.world.build import build
 
 RADIUS, TOLERANCE = 0.3, 0.3
 START, GOAL = np.array([1.0, 1.0]), np.array([19.0, 19.0])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from benchnav.navigation.configure import make
 from benchnav.navigation.map import Map
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import PLANNERS
 from tests.baselines.planning import (
     GOAL,

@@ -3,9 +3,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.dwa.clearance import CREEP, along_arc, arc_clearance, meeting_time
-from benchnav_baselines.dwa.controller import DynamicWindow
-from benchnav_baselines.dwa.kernel import admissible, facing, window
+from benchnav_baselines.controllers.dwa.clearance import (
+    CREEP,
+    along_arc,
+    arc_clearance,
+    meeting_time,
+)
+from benchnav_baselines.controllers.dwa.controller import DynamicWindow
+from benchnav_baselines.controllers.dwa.kernel import admissible, facing, window
 
 from benchnav.arena.solid import Kind
 from benchnav.geometry.capsule import nearest_on_segment

@@ -3,17 +3,17 @@ from functools import lru_cache
 
 import numpy as np
 import pytest
-from benchnav_baselines.checker import PlanarChecker
-from benchnav_baselines.disc_planner import Query, frame_of
-from benchnav_baselines.grid.lattice import joined, lattice
-from benchnav_baselines.grid.planner import straightened
-from benchnav_baselines.grid.search import Ends, search
+from benchnav_baselines.common.disc_planner import Query, frame_of
+from benchnav_baselines.common.validity_checker import PlanarChecker
+from benchnav_baselines.planners.grid.lattice import joined, lattice
+from benchnav_baselines.planners.grid.planner import straightened
+from benchnav_baselines.planners.grid.search import Ends, search
 
 from benchnav.geometry.sweep import motion_is_free
 from benchnav.navigation.map import Map
+from benchnav.scenario.files.occupancy import trace
 from benchnav.scenario.importers import movingai
 from benchnav.scenario.importers.grid import Occupancy
-from benchnav.scenario.occupancy import trace
 from tests.baselines.planning import (
     GOAL,
     RADIUS,

@@ -7,30 +7,34 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from benchnav_baselines.guided_crowd.group import groups_of, places_in_corridor, turn_offs
-from benchnav_baselines.guided_crowd.guiding_path import (
+from benchnav_baselines.navigators.guided_crowd.group import (
+    groups_of,
+    places_in_corridor,
+    turn_offs,
+)
+from benchnav_baselines.navigators.guided_crowd.guiding_path import (
     GuidingPath,
     arc_length,
     best_path,
     simplified,
     turning,
 )
-from benchnav_baselines.guided_crowd.march import advanced, aim, at, clear, direction
-from benchnav_baselines.guided_crowd.path_file import read_paths, write_paths
-from benchnav_baselines.guided_crowd.recorded import draw_paths, paths_of
+from benchnav_baselines.navigators.guided_crowd.march import advanced, aim, at, clear, direction
+from benchnav_baselines.navigators.guided_crowd.path_file import read_paths, write_paths
+from benchnav_baselines.navigators.guided_crowd.recorded import draw_paths, paths_of
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.arena.agents import Role
 from benchnav.arena.solid import Kind
 from benchnav.errors import ConfigError, InputError
-from benchnav.navigation.configure import make
+from benchnav.navigation.plugin.configure import make
 from benchnav.navigation.rehearsal import Rehearsal
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner.recorder import Recorder
-from benchnav.runner.rehearsal import perform
-from benchnav.runner.rollout import Assignment, drive, drivers_of
-from benchnav.runner.suite import load_suite
+from benchnav.runner.plan.suite import load_suite
+from benchnav.runner.rollouts.recorder import Recorder
+from benchnav.runner.rollouts.rehearsal import perform
+from benchnav.runner.rollouts.rollout import Assignment, drive, drivers_of
 from benchnav.world.simulation import Simulation
 from tests import worlds
 from tests.baselines.crowds import briefing

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from benchnav.envs.encoders.encoder import Bodies
+from benchnav.generation.build import build
 from benchnav.metrics.success import success
-from benchnav.navigation.configure import make
 from benchnav.navigation.controller import Guide
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import CONTROLLERS, NAVIGATORS
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
 from benchnav.testing.observations import briefings_of, observations_of
 from benchnav.testing.scenes import USUAL, scene
-from benchnav.world.build import build
 
 LEARNED = ("recurrent-ppo", "recurrent-ppo-plus", "q-learning")
 
@@ -87,7 +87,7 @@ def test_a_waypoint_is_encoded_as_the_goal_while_rays_see_the_real_one(name, mon
 
 def test_what_is_behind_a_waypoint_matters_to_foresight():
     """At full speed, 1 m before a wall: a goal before it excuses that, a waypoint does not."""
-    from benchnav_baselines.recurrent_ppo.foresight import foresee
+    from benchnav_baselines.learned.recurrent_ppo.foresight import foresee
 
     _, seen = views(frozenset({"neighbours", "edges"}))
     one = seen[0]

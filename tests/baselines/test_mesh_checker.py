@@ -9,15 +9,15 @@ import pytest
 
 from benchnav.arena.mesh import Mesh
 from benchnav.arena.solid import Kind, Solid
-from benchnav.navigation.configure import make
 from benchnav.navigation.map import Map
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import PLANNERS
-from benchnav.scenario.mesh_section import SIMPLIFY, THIN, mesh_solids
+from benchnav.scenario.files.mesh_section import SIMPLIFY, THIN, mesh_solids
 
 pytest.importorskip("fcl")
 trimesh = pytest.importorskip("trimesh")
-from benchnav_baselines.checker import PlanarChecker  # noqa: E402
-from benchnav_baselines.mesh_checker import MeshChecker, winding_number  # noqa: E402
+from benchnav_baselines.common.mesh_checker import MeshChecker, winding_number  # noqa: E402
+from benchnav_baselines.common.validity_checker import PlanarChecker  # noqa: E402
 
 DATA = Path(os.environ.get("BENCHNAV_DATA", Path(__file__).parents[2] / ".." / "shared" / "data"))
 EXACT = 2e-5  # [m] what FCL's solver leaves open

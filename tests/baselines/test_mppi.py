@@ -3,10 +3,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.mppi.controller import Mppi
-from benchnav_baselines.mppi.cost import cost_of, edge_distances
-from benchnav_baselines.mppi.kernel import control
-from benchnav_baselines.mppi.weights import disturbed, moved_on, weigh
+from benchnav_baselines.controllers.mppi.controller import Mppi
+from benchnav_baselines.controllers.mppi.cost import cost_of, edge_distances
+from benchnav_baselines.controllers.mppi.kernel import control
+from benchnav_baselines.controllers.mppi.weights import disturbed, moved_on, weigh
 
 from benchnav.arena.solid import Kind
 from benchnav.navigation.controller import Guide

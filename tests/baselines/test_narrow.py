@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from benchnav.arena.solid import Kind, Solid
+from benchnav.generation.build import build
 from benchnav.metrics.measure import load_metric
 from benchnav.metrics.metric import evaluate
-from benchnav.navigation.configure import make
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import PLANNERS
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.load import scenario_from_text
-from benchnav.world.build import build
 from tests.baselines.planning import arena, box
 
 RADIUS = 0.3

@@ -4,21 +4,21 @@ import sys
 import numpy as np
 import pytest
 import shapely
-from benchnav_baselines.checker import PlanarChecker
-from benchnav_baselines.disc_planner import Query, frame_of
-from benchnav_baselines.navmesh.free_polygon import capsule_polygons, free_polygons
-from benchnav_baselines.navmesh.funnel import pulled
-from benchnav_baselines.navmesh.mesh import mesh_of
+from benchnav_baselines.common.disc_planner import Query, frame_of
+from benchnav_baselines.common.validity_checker import PlanarChecker
+from benchnav_baselines.planners.navmesh.free_polygon import capsule_polygons, free_polygons
+from benchnav_baselines.planners.navmesh.funnel import pulled
+from benchnav_baselines.planners.navmesh.mesh import mesh_of
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from benchnav.errors import MissingExtraError
 from benchnav.geometry.sweep import inside_solid, solid_index
-from benchnav.navigation.configure import make
 from benchnav.navigation.map import Map
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import PLANNERS
+from benchnav.scenario.files.occupancy import trace
 from benchnav.scenario.importers import movingai
-from benchnav.scenario.occupancy import trace
 from tests.baselines.planning import (
     GOAL,
     RADIUS,

@@ -11,9 +11,9 @@ from pydantic import ValidationError
 from benchnav.arena.solid import Kind, Solid
 from benchnav.geometry.geodesic import FreeSpace
 from benchnav.geometry.sweep import motion_is_free
-from benchnav.navigation.configure import make
 from benchnav.navigation.map import Map
 from benchnav.navigation.planner import Plan
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import PLANNERS
 
 pytest.importorskip("ompl")
@@ -187,7 +187,7 @@ def test_a_process_that_plans_says_nothing_and_ends():
     program = f"""
         import numpy as np
         from benchnav.arena.solid import Kind, Solid
-        from benchnav.navigation.configure import make
+        from benchnav.navigation.plugin.configure import make
         from benchnav.navigation.map import Map
         from benchnav.plugins import PLANNERS
         square = np.array([(4.0, 4.0), (6.0, 4.0), (6.0, 6.0), (4.0, 6.0)])

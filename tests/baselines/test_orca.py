@@ -3,10 +3,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchnav_baselines.orca.half_plane import edge_half_plane, neighbour_half_plane
-from benchnav_baselines.orca.kernel import avoid
-from benchnav_baselines.orca.navigator import Orca
-from benchnav_baselines.orca.program import least_excess, nearest_permitted
+from benchnav_baselines.controllers.orca.half_plane import edge_half_plane, neighbour_half_plane
+from benchnav_baselines.controllers.orca.kernel import avoid
+from benchnav_baselines.controllers.orca.navigator import Orca
+from benchnav_baselines.controllers.orca.program import least_excess, nearest_permitted
 from hypothesis import given, settings
 from hypothesis import strategies as st
 

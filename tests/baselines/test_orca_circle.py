@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from benchnav_baselines.orca.kernel import avoid
+from benchnav_baselines.controllers.orca.kernel import avoid
 
 DATA = Path(os.environ.get("BENCHNAV_DATA", Path(__file__).parents[3] / "shared" / "data"))
 

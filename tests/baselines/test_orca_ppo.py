@@ -4,21 +4,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.as_velocity import CREEP, as_velocity
+from benchnav_baselines.common.twist_conversion import CREEP, as_velocity
 from hypothesis import given
 from hypothesis import strategies as st
 
 from benchnav.arena.agents import Dynamics
 from benchnav.arena.solid import Kind
+from benchnav.generation.build import build
 from benchnav.metrics.success import success
-from benchnav.navigation.configure import make
 from benchnav.navigation.controller import Guide
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import CONTROLLERS, NAVIGATORS
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
 from benchnav.testing.observations import briefings_of, observations_of
 from benchnav.testing.scenes import USUAL, scene
-from benchnav.world.build import build
 from benchnav.world.dynamics import limited
 
 ROWS = np.arange(2)

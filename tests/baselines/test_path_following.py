@@ -1,8 +1,8 @@
 from dataclasses import replace
 
 import numpy as np
-from benchnav_baselines.orca.controller import OrcaController
-from benchnav_baselines.path_following import PathFollowing
+from benchnav_baselines.controllers.orca.controller import OrcaController
+from benchnav_baselines.controllers.path_following import PathFollowing
 
 from benchnav.navigation.controller import Guide
 from tests.baselines.crowds import DT, briefing, joined, one_world

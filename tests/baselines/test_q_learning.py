@@ -2,25 +2,25 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.q_learning.encoder import (
+from benchnav_baselines.common.tensor_file import read_tensors, write_tensors
+from benchnav_baselines.learned.q_learning.encoder import (
     DIRECTIONS,
     LEVELS,
     SITUATIONS,
     pick_rays,
     situations,
 )
-from benchnav_baselines.q_learning.learner import Learner, chosen
-from benchnav_baselines.q_learning.moves import MOVES, twists
-from benchnav_baselines.q_learning.navigator import QLearning
-from benchnav_baselines.q_learning.table import Table, load, save
-from benchnav_baselines.q_learning.table_pilot import SHIPPED
-from benchnav_baselines.q_learning.train import Recipe, main, train
-from benchnav_baselines.tensor_file import read_tensors, write_tensors
+from benchnav_baselines.learned.q_learning.learner import Learner, chosen
+from benchnav_baselines.learned.q_learning.moves import MOVES, twists
+from benchnav_baselines.learned.q_learning.navigator import QLearning
+from benchnav_baselines.learned.q_learning.table import Table, load, save
+from benchnav_baselines.learned.q_learning.table_pilot import SHIPPED
+from benchnav_baselines.learned.q_learning.train import Recipe, main, train
 
 from benchnav.arena.solid import Kind
 from benchnav.errors import BenchnavError, ConfigError, PluginError
-from benchnav.navigation.configure import make
 from benchnav.navigation.observation import Observation
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
 from benchnav.sensors.readings import Rays
 from benchnav.testing.check_navigator import check_navigator
@@ -251,7 +251,7 @@ def test_situations_that_there_are_not_are_refused(situation, tmp_path):
 
 
 def test_a_missing_table_and_a_wrong_parameter_are_mistakes_of_the_user(tmp_path):
-    spec = {"type": "benchnav_baselines.q_learning.navigator:QLearning"}
+    spec = {"type": "benchnav_baselines.learned.q_learning.navigator:QLearning"}
     with pytest.raises(BenchnavError, match="cannot be read"):
         make(NAVIGATORS, {**spec, "table": str(tmp_path / "none.safetensors")})
     with pytest.raises(ConfigError, match="'tabel'"):

@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.q_learning.cells import STEPS, lay_cells
-from benchnav_baselines.q_learning.grid import QLearningGrid
-from benchnav_baselines.q_learning.grid_learner import (
+from benchnav_baselines.learned.q_learning.cells import STEPS, lay_cells
+from benchnav_baselines.learned.q_learning.grid import QLearningGrid
+from benchnav_baselines.learned.q_learning.grid_learner import (
     Schooling,
     episodes,
     first_values,
@@ -15,9 +15,9 @@ from benchnav_baselines.q_learning.grid_learner import (
 from benchnav.arena.solid import Kind, Solid
 from benchnav.errors import ConfigError
 from benchnav.geometry.sweep import clearance, motion_is_free
-from benchnav.navigation.configure import make
 from benchnav.navigation.map import Map
 from benchnav.navigation.observation import Observation
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
 from benchnav.testing.check_navigator import check_navigator
 from tests.baselines.crowds import answers, briefing
@@ -183,6 +183,6 @@ def test_a_narrow_gap_is_taken_with_less_clearance():
 
 
 def test_wrong_parameters_are_refused():
-    spec = {"type": "benchnav_baselines.q_learning.grid:QLearningGrid", "cell": 0}
+    spec = {"type": "benchnav_baselines.learned.q_learning.grid:QLearningGrid", "cell": 0}
     with pytest.raises(ConfigError, match="'cell'"):
         make(NAVIGATORS, spec)

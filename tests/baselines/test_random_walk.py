@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.random_walk import RandomWalk
+from benchnav_baselines.navigators.random_walk import RandomWalk
 
 from tests.baselines.crowds import DT, answers, briefing, joined, keyed, one_world, permuted
 

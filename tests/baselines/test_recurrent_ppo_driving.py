@@ -5,16 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.recurrent_ppo import detour
-from benchnav_baselines.recurrent_ppo.detour import Detours
-from benchnav_baselines.recurrent_ppo.foresight import foresee
-from benchnav_baselines.recurrent_ppo.policy_pilot import SHIPPED, PolicyPilot
-from benchnav_baselines.recurrent_ppo.sightings import MEMORY, Sightings
+from benchnav_baselines.learned.recurrent_ppo import detour
+from benchnav_baselines.learned.recurrent_ppo.detour import Detours
+from benchnav_baselines.learned.recurrent_ppo.foresight import foresee
+from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED, PolicyPilot
+from benchnav_baselines.learned.recurrent_ppo.ray_memory import MEMORY, Sightings
 
 from benchnav.arena.solid import Kind
 from benchnav.envs.encoders.encoder import Bodies
-from benchnav.navigation.configure import make
 from benchnav.navigation.navigator import Need
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
 from benchnav.testing.observations import briefings_of, observations_of
 from benchnav.testing.scenes import USUAL, scene

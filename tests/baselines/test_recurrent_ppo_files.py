@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import torch
-from benchnav_baselines.recurrent_ppo import checkpoint
-from benchnav_baselines.recurrent_ppo.checkpoint import Progress
-from benchnav_baselines.recurrent_ppo.weights import FORMAT, read_weights, write_weights
+from benchnav_baselines.learned.recurrent_ppo.learning import checkpoint
+from benchnav_baselines.learned.recurrent_ppo.learning.checkpoint import Progress
+from benchnav_baselines.learned.recurrent_ppo.weights import FORMAT, read_weights, write_weights
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from safetensors.numpy import save

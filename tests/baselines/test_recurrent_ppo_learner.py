@@ -5,18 +5,18 @@ from functools import cache
 import numpy as np
 import pytest
 import torch
-from benchnav_baselines.recurrent_ppo.actor import Actor
-from benchnav_baselines.recurrent_ppo.buffer import LiveBuffer, SequenceBuffer
-from benchnav_baselines.recurrent_ppo.courses import make_env, training_pools
-from benchnav_baselines.recurrent_ppo.learner import (
+from benchnav_baselines.learned.recurrent_ppo.actor import Actor
+from benchnav_baselines.learned.recurrent_ppo.learning.buffer import LiveBuffer, SequenceBuffer
+from benchnav_baselines.learned.recurrent_ppo.learning.courses import make_env, training_pools
+from benchnav_baselines.learned.recurrent_ppo.learning.learner import (
     actor_tensors,
     buffer_of,
     enter,
     make_learner,
     reseed,
 )
-from benchnav_baselines.recurrent_ppo.policy import FusedPolicy
-from benchnav_baselines.recurrent_ppo.recipe import Network, Recipe
+from benchnav_baselines.learned.recurrent_ppo.learning.recipe import Network, Recipe
+from benchnav_baselines.learned.recurrent_ppo.policy import FusedPolicy
 from gymnasium import spaces
 from hypothesis import given, settings
 from hypothesis import strategies as st

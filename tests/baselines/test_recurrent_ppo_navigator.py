@@ -1,18 +1,18 @@
 import numpy as np
 import pytest
 import yaml
-from benchnav_baselines.recurrent_ppo.foresight import foresee
-from benchnav_baselines.recurrent_ppo.navigator import RecurrentPPO
-from benchnav_baselines.recurrent_ppo.policy_pilot import SHIPPED
+from benchnav_baselines.learned.recurrent_ppo.foresight import foresee
+from benchnav_baselines.learned.recurrent_ppo.navigator import RecurrentPPO
+from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED
 
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.encoders.encoder import Bodies
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import PluginError
-from benchnav.runner.suite import Selection, load_suite
+from benchnav.generation.build import build
+from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.scenario.catalogue import find
-from benchnav.world.build import build
 from tests.reference.foresight import corrected
 
 

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import torch
 import yaml
-from benchnav_baselines.recurrent_ppo import checkpoint
-from benchnav_baselines.recurrent_ppo.recipe import Course, Recipe
-from benchnav_baselines.recurrent_ppo.training import WEIGHTS, Training
-from benchnav_baselines.recurrent_ppo.weights import read_weights
+from benchnav_baselines.learned.recurrent_ppo.learning import checkpoint
+from benchnav_baselines.learned.recurrent_ppo.learning.recipe import Course, Recipe
+from benchnav_baselines.learned.recurrent_ppo.learning.segments import WEIGHTS, Training
+from benchnav_baselines.learned.recurrent_ppo.weights import read_weights
 from safetensors import safe_open
 from safetensors.numpy import load_file
 

@@ -2,8 +2,8 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from benchnav_baselines.social_force.controller import SocialForce
-from benchnav_baselines.social_force.force import border_force, pedestrian_force, sight
+from benchnav_baselines.controllers.social_force.controller import SocialForce
+from benchnav_baselines.controllers.social_force.force import border_force, pedestrian_force, sight
 
 from benchnav.navigation.controller import Guide
 from benchnav.navigation.observation import Observation

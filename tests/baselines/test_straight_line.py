@@ -1,8 +1,8 @@
 from dataclasses import replace
 
 import numpy as np
-from benchnav_baselines.approach import approach
-from benchnav_baselines.straight_line import StraightLine
+from benchnav_baselines.common.approach import approach
+from benchnav_baselines.navigators.straight_line import StraightLine
 from hypothesis import given
 from hypothesis import strategies as st
 

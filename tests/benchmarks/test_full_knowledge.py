@@ -5,16 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.full_knowledge.measure import driven, execute, measure, outcome, summary
-from benchmarks.full_knowledge.plan import plans
-from benchmarks.full_knowledge.scene import scene
 from benchnav.arena.agents import Dynamics
 from benchnav.arena.world import ContactRule
 from benchnav.episode.episode import Status
 from benchnav.errors import UsageError
+from benchnav.generation.build import build
 from benchnav.scenario.catalogue import find
-from benchnav.world.build import build
 from benchnav.world.simulation import Simulation
+from studies.full_knowledge.measure import driven, execute, measure, outcome, summary
+from studies.full_knowledge.plan import plans
+from studies.full_knowledge.scene import scene
 
 ARRIVED = int(Status.ARRIVED)
 

@@ -2,8 +2,8 @@
 
 import pytest
 
-from benchmarks.kill_nine import courses, survive
 from benchnav.processes.process_tree import tells_memory
+from studies.kill_nine import courses, survive
 
 SCENARIO = """
 name: tiny/open

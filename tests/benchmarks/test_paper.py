@@ -6,17 +6,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.paper import cast, claims
-from benchmarks.paper.encounters import TURN, behaviour
-from benchmarks.paper.evidence import Difference, Evidence, Value
-from benchmarks.paper.page import page
-from benchmarks.paper.pictures import Pictures
-from benchmarks.paper.table_2 import ROWS, commands
 from benchnav.arena.solid import Kind
 from benchnav.errors import UsageError
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
+from studies.paper import cast, claims
+from studies.paper.encounters import TURN, behaviour
+from studies.paper.evidence import Difference, Evidence, Value
+from studies.paper.page import page
+from studies.paper.pictures import Pictures
+from studies.paper.table_2 import ROWS, commands
 from tests.worlds import agents, back_and_forth, box, world
 
 DOCS = Path(__file__).parents[2] / "docs"

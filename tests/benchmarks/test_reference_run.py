@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from benchmarks.reference_run import DIGITS, METRICS, SAMPLE, SUITE, digests
+from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.runner.verify.verify import Wanted, verify
-from benchnav.store.run_folder import RunFolder
-from benchnav.store.unpack import opened
+from benchnav.store.packs.unpack import opened
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.verify.verify import Wanted, verify
+from studies.reference_run import DIGITS, METRICS, SAMPLE, SUITE, digests
 
 KEPT = Path(__file__).parents[2] / "docs" / "leaderboard"
 NAME = "standard-1"

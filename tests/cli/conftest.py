@@ -45,8 +45,8 @@ def suite(tmp_path):
 
 @pytest.fixture(scope="session")
 def made(tmp_path_factory):
+    from benchnav.runner.plan.suite import Selection, load_suite
     from benchnav.runner.run import run_suite
-    from benchnav.runner.suite import Selection, load_suite
 
     folder = tmp_path_factory.mktemp("made")
     (folder / "open.yaml").write_text(TINY)

@@ -4,10 +4,10 @@ import json
 
 import pytest
 
-from benchnav.cli import inspection
+from benchnav.cli.viewing import inspection
 from benchnav.metrics import declared
 from benchnav.metrics.measure import own_metrics
-from benchnav.navigation import guarded
+from benchnav.navigation.plugin import plugin_process
 from benchnav.plugins import NAVIGATORS
 from tests.installed import install
 
@@ -34,7 +34,7 @@ lies = replace(SUCCESS, name="lies", low="low")
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch):
-    monkeypatch.setattr(guarded, "_IMPORTING", 1.0)
+    monkeypatch.setattr(plugin_process, "_IMPORTING", 1.0)
     for module in (inspection, declared):
         monkeypatch.setattr(module, "_TIMEOUT", 1.0)
 

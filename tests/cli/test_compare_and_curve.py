@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from benchnav.cli import board
+from benchnav.cli.tables import board
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from benchnav.store.lock import LOCK
-from benchnav.store.part import SEAL
+from benchnav.store.parts.part import SEAL
+from benchnav.store.runs.lock import LOCK
 
 UNSHARE = ("unshare", "--mount", "--map-root-user")
 

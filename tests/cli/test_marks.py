@@ -7,10 +7,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from benchnav.runner.progress import Progress
-from benchnav.runner.verify.verify import Wanted, verify
-from benchnav.store.part import RESULTS_FILE
-from benchnav.store.run_folder import RunFolder
+from benchnav.runner.execute.progress import Progress
+from benchnav.store.parts.part import RESULTS_FILE
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.verify.verify import Wanted, verify
 from tests.conformance.refit import refit_seal
 from tests.runner.verify.forge import Forger
 
@@ -42,8 +42,8 @@ def test_rows_under_the_label_of_a_verified_entry_are_refused(call, runs):
 
 
 def test_a_label_with_rows_of_one_unverified_run_is_not_marked(call, runs, made, tmp_path):
+    from benchnav.runner.plan.suite import Selection, load_suite
     from benchnav.runner.run import run_suite
-    from benchnav.runner.suite import Selection, load_suite
 
     more = load_suite(
         str(made / "suite.yaml"), Selection(navigators=("straight-line",), seeds="2:4")
@@ -105,7 +105,7 @@ def test_a_receipt_is_for_what_was_read_and_not_for_what_lies_there_afterwards(
             put(forged)
 
     put(forged)
-    monkeypatch.setattr("benchnav.runner.progress.progress", lambda quiet: Swap())
+    monkeypatch.setattr("benchnav.runner.execute.progress.progress", lambda quiet: Swap())
     code, stdout, _ = call("verify", runs[0], "--workers", 0, "--twin", 0)
     assert (code, "NOT verified" in stdout) == (1, True)
     monkeypatch.undo()
@@ -114,8 +114,8 @@ def test_a_receipt_is_for_what_was_read_and_not_for_what_lies_there_afterwards(
 
 @pytest.mark.parametrize("key", ["name", "version"])
 def test_an_easy_world_under_the_name_of_a_hard_one_is_named(call, runs, made, tmp_path, key):
+    from benchnav.runner.plan.suite import load_suite
     from benchnav.runner.run import run_suite
-    from benchnav.runner.suite import load_suite
 
     text = (made / "open.yaml").read_text()
     text = text.replace("name: tiny/open", "name: trap/u" + ("\nversion: 9" * (key == "version")))

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 MODULE = """
-from benchnav_baselines.straight_line import StraightLine
+from benchnav_baselines.navigators.straight_line import StraightLine
 from neighbour_of_mine import SPEED
 
 

@@ -5,8 +5,8 @@ import json
 
 import pytest
 
-from benchnav.cli.leaderboard import FORMATS
 from benchnav.cli.main import status
+from benchnav.cli.tables.leaderboard import FORMATS
 from tests.cli.conftest import TINY
 
 BEGINNINGS = {

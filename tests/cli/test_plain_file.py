@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from benchnav.plain_file import open_file, read_file, require_writable
+from benchnav.system.plain_file import open_file, read_file, require_writable
 
 KINDS = {"pipe": "a pipe", "folder": "a folder", "socket": "a socket", "device": "a device"}
 

@@ -9,8 +9,8 @@ import pytest
 
 from benchnav.metrics.metric import Metric
 from benchnav.plugins import METRICS
-from benchnav.store.part import RESULTS_FILE
-from benchnav.store.reading import read_episodes
+from benchnav.store.parts.part import RESULTS_FILE
+from benchnav.store.runs.reading import read_episodes
 
 
 @pytest.fixture

@@ -86,7 +86,7 @@ def ends_soon(pid):
 
 @pytest.mark.parametrize("number", STATUS)
 def test_every_signal_is_told_in_a_sentence_and_has_its_status(number, run, begin, tmp_path):
-    process = begin("pack", "run", "--out", "a.bnrun", hangs="benchnav.store.pack:_copy")
+    process = begin("pack", "run", "--out", "a.bnrun", hangs="benchnav.store.packs.pack:_copy")
     assert stopped(process, number) == (
         STATUS[number],
         f"Interrupted by {number.name}: the work is not finished. Give the same command again.\n",
@@ -96,13 +96,14 @@ def test_every_signal_is_told_in_a_sentence_and_has_its_status(number, run, begi
 
 
 VERBS = {
-    "run": (["run", "{suite}", "--out", "new", "--workers", "0"], "benchnav.runner.executor:work",
+    "run": (["run", "{suite}", "--out", "new", "--workers", "0"],
+            "benchnav.runner.execute.executor:work",
             "0 of 4 episodes stored. The same command with --out new continues there."),
-    "merge": (["merge", "run", "--out", "new"], "benchnav.store.merge:_copy",
+    "merge": (["merge", "run", "--out", "new"], "benchnav.store.runs.merge:_copy",
               "what was copied is kept. The same command continues in new."),
-    "verify": (["verify", "run.bnrun", "--workers", "0"], "benchnav.runner.verify.verify:examine",
+    "verify": (["verify", "run.bnrun", "--workers", "0"], "benchnav.verify.verify:examine",
                "the work is not finished. Give the same command again."),
-    "leaderboard": (["leaderboard", "run.bnrun"], "benchnav.cli.board:table",
+    "leaderboard": (["leaderboard", "run.bnrun"], "benchnav.cli.tables.board:table",
                     "the work is not finished. Give the same command again."),
 }  # fmt: skip
 
@@ -122,7 +123,7 @@ def test_every_verb_says_what_is_kept_and_leaves_nothing(
 
 
 def test_ctrl_c_twice_is_as_once(run, begin, tmp_path):
-    process = begin("pack", "run", "--out", "a.bnrun", hangs="benchnav.store.pack:_copy")
+    process = begin("pack", "run", "--out", "a.bnrun", hangs="benchnav.store.packs.pack:_copy")
     code, stderr = stopped(process, signal.SIGINT, signal.SIGINT, signal.SIGTERM)
     assert code in (130, 143)  # who comes first is the system's to decide
     assert stderr.count("\n") == 1
@@ -130,7 +131,7 @@ def test_ctrl_c_twice_is_as_once(run, begin, tmp_path):
 
 
 def test_a_signal_that_is_ignored_stays_ignored(run, begin):
-    hangs = "benchnav.store.pack:_copy"
+    hangs = "benchnav.store.packs.pack:_copy"
     process = begin("pack", "run", "--out", "a.bnrun", hangs=hangs, ignored=signal.SIGHUP)
     process.send_signal(signal.SIGHUP)
     time.sleep(0.3)
@@ -140,7 +141,7 @@ def test_a_signal_that_is_ignored_stays_ignored(run, begin):
 
 SLEEPS = """
 import sys, time
-from benchnav_baselines.straight_line import StraightLine
+from benchnav_baselines.navigators.straight_line import StraightLine
 
 class Sleeps(StraightLine):
     def act(self, observation):

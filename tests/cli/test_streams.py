@@ -127,7 +127,7 @@ def test_a_reader_that_leaves_early_changes_nothing_of_the_exit_status(verb):
 def test_a_run_is_kept_though_its_streams_fail(suite):
     """What its navigators print cannot be written either, and costs them nothing."""
     (suite.parent / "talks.py").write_text(
-        "from benchnav_baselines.straight_line import StraightLine\n\n\n"
+        "from benchnav_baselines.navigators.straight_line import StraightLine\n\n\n"
         "class Talks(StraightLine):\n"
         "    def act(self, observation):\n"
         "        print('↑' * 10_000, flush=True)\n"

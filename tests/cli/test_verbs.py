@@ -102,7 +102,7 @@ def test_show_says_parameters_units_needs_and_source(call):
     assert "time_horizon" in stdout
     assert "[s]" in stdout
     assert "edges, neighbours" in stdout
-    assert "baselines/orca/navigator.py:" in stdout
+    assert "baselines/controllers/orca/navigator.py:" in stdout
 
 
 def test_show_describes_a_navigator_named_by_its_parts(call):

@@ -7,8 +7,8 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
 
-from benchnav.store import receipt
-from benchnav.store.part import RESULTS_FILE
+from benchnav.store.parts.part import RESULTS_FILE
+from benchnav.store.runs import receipt
 from tests.runner.verify.forge import Forger
 
 

@@ -20,20 +20,20 @@ import pyarrow.parquet as pq
 
 from benchnav.errors import BenchnavError
 from benchnav.metrics.measure import all_metrics
-from benchnav.runner.measured import measured
+from benchnav.runner.execute.measurement import measured
+from benchnav.runner.plan.suite import load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import load_suite
-from benchnav.runner.verify.examine import examine
-from benchnav.runner.verify.finding import Report
-from benchnav.runner.verify.verify import Wanted, tasks_of
-from benchnav.store import checked_json
-from benchnav.store.digest import digest
-from benchnav.store.episodes import EPISODES, from_table, to_table
-from benchnav.store.manifest import MANIFEST
-from benchnav.store.part import EPISODES_FILE, REHEARSALS_FILE, RESULTS_FILE, SEAL
-from benchnav.store.pinned import pinned
-from benchnav.store.results import RESULTS
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.parts.digest import digest
+from benchnav.store.parts.episodes import EPISODES, from_table, to_table
+from benchnav.store.parts.part import EPISODES_FILE, REHEARSALS_FILE, RESULTS_FILE, SEAL
+from benchnav.store.parts.results import RESULTS
+from benchnav.store.runs import checked_json
+from benchnav.store.runs.manifest import MANIFEST
+from benchnav.store.runs.pinned_run import pinned
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.verify.examination import examine
+from benchnav.verify.finding import Report
+from benchnav.verify.verify import Wanted, tasks_of
 from tests.conformance.refit import refit_manifest, refit_seal, write_manifest
 
 SCENARIO = """

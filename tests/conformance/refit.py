@@ -9,13 +9,13 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from benchnav.errors import BenchnavError
-from benchnav.runner.cell import Cell
-from benchnav.runner.verify.finding import Report
-from benchnav.runner.verify.restored import restore
-from benchnav.store import checked_json
-from benchnav.store.manifest import MANIFEST
-from benchnav.store.part import FILES, SEAL
-from benchnav.store.run_folder import RunFolder
+from benchnav.runner.plan.job import Cell
+from benchnav.store.parts.part import FILES, SEAL
+from benchnav.store.runs import checked_json
+from benchnav.store.runs.manifest import MANIFEST
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.verify.finding import Report
+from benchnav.verify.rebuilt_suite import restore
 
 
 def refit_seal(stem: str) -> None:

@@ -2,10 +2,10 @@
 
 import pytest
 
+from benchnav.generation.build import build
 from benchnav.metrics.success import arrival, success
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
-from benchnav.world.build import build
 
 pytest.importorskip("ompl")
 SEEDS = range(10)

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from benchnav.store.episodes import EPISODES
-from benchnav.store.results import RESULTS
+from benchnav.store.parts.episodes import EPISODES
+from benchnav.store.parts.results import RESULTS
 from tests.conformance.attacks import attack, by_design, honest_run, is_by_design
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"

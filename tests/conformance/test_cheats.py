@@ -14,11 +14,11 @@ import sys
 import pytest
 import yaml
 
+from benchnav.generation.build import build
+from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
 from benchnav.scenario.load import load_scenario
-from benchnav.store.reading import read_episodes
-from benchnav.world.build import build
+from benchnav.store.runs.reading import read_episodes
 from tests.conformance import cheats
 
 SCENARIO = """
@@ -52,7 +52,7 @@ ONLY_APART = ["Tracer"]  # elsewhere it would trace strangers
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the means are those of Linux")
 PATCHED = {
     "Patches": "benchnav.world.simulation.Simulation.step",
-    "PatchesModules": "benchnav.runner.driver.sense",
+    "PatchesModules": "benchnav.runner.rollouts.navigator_driver.sense",
     "PatchesCode": "benchnav.world.simulation.Simulation.step",
 }
 

@@ -4,22 +4,22 @@ from functools import cache
 
 import numpy as np
 import pytest
-from benchnav_baselines.recurrent_ppo.actor import Actor
-from benchnav_baselines.recurrent_ppo.evaluate import evaluate
-from benchnav_baselines.recurrent_ppo.weights import write_weights
+from benchnav_baselines.learned.recurrent_ppo.actor import Actor
+from benchnav_baselines.learned.recurrent_ppo.learning.evaluate import evaluate
+from benchnav_baselines.learned.recurrent_ppo.weights import write_weights
 
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
 from benchnav.envs.agent_batch import AgentBatch
+from benchnav.envs.autoreset import KINDS, Relay
+from benchnav.envs.background_agents import Instead
 from benchnav.envs.encoders.catalogue import encoder
-from benchnav.envs.others import Instead
-from benchnav.envs.relay import KINDS, Relay
 from benchnav.envs.reward import RewardWeights
 from benchnav.episode.episode import Status
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.generation.build import build
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
 from benchnav.sensors.sense import sense
-from benchnav.world.build import build
 from benchnav.world.simulation import Simulation
 from tests.worlds import agents, random_world, walls, world
 

@@ -7,12 +7,12 @@ from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.vec_env import VecFrameStack, VecMonitor, VecNormalize
 
-from benchnav.envs.agent_vec_env import AgentVecEnv
-from benchnav.envs.attempt_monitor import AttemptMonitor
-from benchnav.envs.attempt_ppo import AttemptPPO
-from benchnav.envs.leader_env import LeaderEnv
-from benchnav.envs.making import make_batch
-from benchnav.envs.registration import LEADER
+from benchnav.envs.factory import make_batch
+from benchnav.envs.gym.leader_env import LeaderEnv
+from benchnav.envs.gym.registration import LEADER
+from benchnav.envs.sb3.agent_vec_env import AgentVecEnv
+from benchnav.envs.sb3.attempt_monitor import AttemptMonitor
+from benchnav.envs.sb3.attempt_ppo import AttemptPPO
 from benchnav.errors import UsageError
 from tests.envs.recorder import Recorder
 

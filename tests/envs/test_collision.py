@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from benchnav.arena.solid import Kind
-from benchnav.envs.collision import collision_probability, probability
+from benchnav.envs.collision_probability import collision_probability, probability
 from benchnav.sensors.readings import Neighbours
 from tests.reference import collision as slow
 

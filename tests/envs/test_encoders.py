@@ -11,12 +11,12 @@ from benchnav.arena.solid import Kind
 from benchnav.envs.encoders.catalogue import ENCODERS, encoder
 from benchnav.envs.encoders.encoder import Bodies
 from benchnav.errors import UsageError
+from benchnav.generation.build import build
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.observation import Observation
 from benchnav.scenario.catalogue import find
 from benchnav.sensors.readings import Edges, Neighbours, Rays
 from benchnav.testing.observations import observations_of
-from benchnav.world.build import build
 from tests.reference import encoders as slow
 
 SENSORS = frozenset({Need.RAYS, Need.NEIGHBOURS, Need.EDGES})

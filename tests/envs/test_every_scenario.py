@@ -14,14 +14,14 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.vec_env import VecMonitor
 
-from benchnav.envs.agent_vec_env import AgentVecEnv
-from benchnav.envs.attempt_statistics import AttemptStatistics
-from benchnav.envs.leader_env import LeaderEnv
-from benchnav.envs.leader_vector_env import LeaderVectorEnv
-from benchnav.envs.making import make_batch
+from benchnav.envs.factory import make_batch
+from benchnav.envs.gym.attempt_statistics import AttemptStatistics
+from benchnav.envs.gym.leader_env import LeaderEnv
+from benchnav.envs.gym.leader_vector_env import LeaderVectorEnv
 from benchnav.envs.parallel_env import LeadersEnv
+from benchnav.envs.sb3.agent_vec_env import AgentVecEnv
+from benchnav.generation.build import build
 from benchnav.scenario.catalogue import find, names
-from benchnav.world.build import build
 from tests.envs.recorder import Recorder
 
 DOCS = Path(__file__).parents[2] / "docs" / "environments.md"

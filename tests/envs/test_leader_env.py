@@ -4,14 +4,14 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from stable_baselines3.common.env_checker import check_env as check_env_sb3
 
-from benchnav.envs.leader_env import LeaderEnv
-from benchnav.envs.registration import LEADER, register_envs
+from benchnav.envs.gym.leader_env import LeaderEnv
+from benchnav.envs.gym.registration import LEADER, register_envs
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import BenchnavError, NavigatorError
+from benchnav.generation.build import build
 from benchnav.navigation.navigator import Navigator
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
-from benchnav.world.build import build
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +45,7 @@ def test_the_check_of_stable_baselines3(env):
 
 def test_it_can_be_made_by_importing_on_the_way():
     register_envs()  # once more does nothing
-    made = gymnasium.make(f"benchnav.envs.registration:{LEADER}", worlds=1, reward={"goal": 7})
+    made = gymnasium.make(f"benchnav.envs.gym.registration:{LEADER}", worlds=1, reward={"goal": 7})
     assert made.unwrapped.batch.weights == RewardWeights(goal=7)
 
 

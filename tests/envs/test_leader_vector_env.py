@@ -6,9 +6,9 @@ import pytest
 from gymnasium.vector import AutoresetMode
 from gymnasium.wrappers.vector import RecordEpisodeStatistics
 
-from benchnav.envs.leader_vector_env import LeaderVectorEnv
-from benchnav.envs.making import make_batch
-from benchnav.envs.registration import LEADER
+from benchnav.envs.factory import make_batch
+from benchnav.envs.gym.leader_vector_env import LeaderVectorEnv
+from benchnav.envs.gym.registration import LEADER
 from benchnav.errors import BenchnavError
 
 STEPS = 260  # longer than an episode of the scenario

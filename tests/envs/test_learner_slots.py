@@ -8,15 +8,15 @@ from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.vec_env import VecMonitor
 
 from benchnav.envs.agent_batch import AgentBatch
-from benchnav.envs.agent_vec_env import AgentVecEnv
 from benchnav.envs.encoders.catalogue import encoder
-from benchnav.envs.leader_env import LeaderEnv
-from benchnav.envs.leader_vector_env import LeaderVectorEnv
+from benchnav.envs.factory import make_batch
+from benchnav.envs.gym.leader_env import LeaderEnv
+from benchnav.envs.gym.leader_vector_env import LeaderVectorEnv
+from benchnav.envs.gym.registration import LEADER
 from benchnav.envs.learner_slots import LearnerSlots
-from benchnav.envs.making import make_batch
 from benchnav.envs.parallel_env import LeadersEnv
-from benchnav.envs.registration import LEADER
 from benchnav.envs.reward import RewardWeights
+from benchnav.envs.sb3.agent_vec_env import AgentVecEnv
 from benchnav.errors import UsageError
 from tests.envs.recorder import Recorder
 from tests.worlds import agents, world

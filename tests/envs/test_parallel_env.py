@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from pettingzoo.test import parallel_api_test, parallel_seed_test
 
-from benchnav.envs.making import make_batch
+from benchnav.envs.factory import make_batch
 from benchnav.envs.parallel_env import LeadersEnv
 from benchnav.errors import BenchnavError
 

@@ -12,7 +12,7 @@ from benchnav.arena.agents import Role
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards
 from benchnav.metrics import efficiency, following, safety, smoothness, success
-from benchnav.metrics.filter import SIGMA
+from benchnav.metrics.quantities.lowpass import SIGMA
 from benchnav.testing.episodes import (
     RULES,
     Hit,

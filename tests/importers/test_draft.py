@@ -6,7 +6,9 @@ import pytest
 import yaml
 
 from benchnav.errors import MapError, UsageError
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.generation.build import build
+from benchnav.runner.rollouts.rollout import Assignment, rollout
+from benchnav.scenario.files.occupancy import occupancy_solids, read_occupancy
 from benchnav.scenario.importers import (
     default_name,
     import_movingai,
@@ -14,8 +16,6 @@ from benchnav.scenario.importers import (
     write_scenario,
 )
 from benchnav.scenario.load import load_scenario
-from benchnav.scenario.occupancy import occupancy_solids, read_occupancy
-from benchnav.world.build import build
 from tests.importers.data import published
 
 MAP = "type octile\nheight 4\nwidth 5\nmap\n.....\n.@T..\nG.OW.\n@...S\n"

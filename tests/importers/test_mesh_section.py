@@ -6,7 +6,7 @@ import pytest
 
 from benchnav.arena.solid import Kind
 from benchnav.errors import MeshError, MissingExtraError
-from benchnav.scenario.mesh_section import mesh_solids
+from benchnav.scenario.files.mesh_section import mesh_solids
 from tests.importers.data import published
 
 trimesh = pytest.importorskip("trimesh", reason="needs the extra [plan]")

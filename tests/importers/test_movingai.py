@@ -5,8 +5,8 @@ import pytest
 
 from benchnav.errors import MapError
 from benchnav.geometry.geodesic import FreeSpace
+from benchnav.scenario.files.occupancy import trace
 from benchnav.scenario.importers import movingai
-from benchnav.scenario.occupancy import trace
 from tests.importers.data import published
 from tests.reference import octile
 

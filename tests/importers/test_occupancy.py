@@ -10,8 +10,8 @@ from hypothesis.extra.numpy import arrays
 from benchnav.arena.solid import Kind
 from benchnav.errors import MapError
 from benchnav.geometry.geodesic import FreeSpace
+from benchnav.scenario.files.occupancy import occupancy_solids, read_occupancy, trace
 from benchnav.scenario.importers.grid import Occupancy
-from benchnav.scenario.occupancy import occupancy_solids, read_occupancy, trace
 from tests.importers.data import published
 
 MAP = "type octile\nheight 3\nwidth 4\nmap\n....\n.@@.\n....\n"

@@ -6,7 +6,7 @@ import yaml
 
 from benchnav.cli.main import status
 from benchnav.scenario.load import load_scenario
-from benchnav.store.reading import read_results
+from benchnav.store.runs.reading import read_results
 from tests.importers.data import published
 
 pytest.importorskip("ompl")

@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from benchnav.generation.build import build
 from benchnav.metrics.success import success
-from benchnav.navigation.configure import make
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
 from benchnav.testing.check_navigator import check_navigator
-from benchnav.world.build import build
 
 SOURCE = Path(__file__).parents[2] / "examples" / "c_navigator" / "seeker.c"
 COMPILER = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")

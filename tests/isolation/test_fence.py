@@ -8,7 +8,7 @@ import sys
 import pytest
 
 from benchnav.errors import UsageError
-from benchnav.isolation import fence
+from benchnav.isolation import sandbox
 
 LOOK = """
 import ctypes, json, os, socket
@@ -49,14 +49,14 @@ PATHS = [
 NAMESPACES = ["user", "pid", "net", "ipc", "uts", "mnt", "cgroup"]
 
 enclosed = pytest.mark.skipif(
-    "--keep-caps" not in fence.prefix(), reason="the system lets nobody make such namespaces"
+    "--keep-caps" not in sandbox.prefix(), reason="the system lets nobody make such namespaces"
 )
 
 
 @pytest.fixture(scope="module")
 def seen():
     code = f"PATHS, NAMESPACES = {PATHS!r}, {NAMESPACES!r}\n{LOOK}"
-    command = [*fence.prefix(), sys.executable, "-I", "-S", "-c", code]
+    command = [*sandbox.prefix(), sys.executable, "-I", "-S", "-c", code]
     return json.loads(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
 
 
@@ -91,7 +91,7 @@ def test_its_devices_do_no_harm(seen):
 @enclosed
 def test_a_program_that_cannot_be_started_ends_with_its_cause():
     done = subprocess.run(
-        [*fence.prefix(), "/nothing"], capture_output=True, text=True, check=False
+        [*sandbox.prefix(), "/nothing"], capture_output=True, text=True, check=False
     )
     assert done.returncode != 0
     assert "No such file or directory" in done.stderr
@@ -101,9 +101,9 @@ def test_a_program_that_cannot_be_started_ends_with_its_cause():
     not sys.platform.startswith("linux") or os.geteuid() != 0, reason="only root may do everything"
 )
 def test_root_without_a_fence_is_refused(monkeypatch):
-    monkeypatch.setattr(fence, "prefix", lambda: ())
+    monkeypatch.setattr(sandbox, "prefix", lambda: ())
     with pytest.raises(UsageError, match=r"Here they could .*Run as an ordinary user"):
-        fence.require_fence.__wrapped__()
-    monkeypatch.setattr(fence, "prefix", lambda: fence._NAMESPACES)
+        sandbox.require_fence.__wrapped__()
+    monkeypatch.setattr(sandbox, "prefix", lambda: sandbox._NAMESPACES)
     with pytest.raises(UsageError, match=r"Here they could write settings of the machine"):
-        fence.require_fence.__wrapped__()
+        sandbox.require_fence.__wrapped__()

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from benchnav.errors import BrokenPluginError, ConfigError, NavigatorError
-from benchnav.navigation.configure import make
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner.rollout import Assignment, rollout
-from benchnav.runner.suite import Selection, load_suite
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.testing.check_navigator import check_navigator
 from tests.worlds import agents, world
 

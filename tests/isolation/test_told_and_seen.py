@@ -7,15 +7,15 @@ import pytest
 
 from benchnav.arena.mesh import Mesh
 from benchnav.arena.solid import Kind
+from benchnav.isolation.briefing_codec import briefings_of, told
 from benchnav.isolation.frame import HEAD, decode, encode, head
-from benchnav.isolation.seen import maps_changed, observation_of, seen
-from benchnav.isolation.told import briefings_of, told
+from benchnav.isolation.observation_codec import maps_changed, observation_of, seen
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Need
+from benchnav.navigation.randomness.agent_streams import agent_streams
+from benchnav.navigation.randomness.briefing_seed import hashed_generator, seed_bytes
 from benchnav.navigation.rehearsal import Rehearsal
-from benchnav.navigation.seeds import hashed_generator, seed_bytes
-from benchnav.navigation.streams import agent_streams
-from benchnav.runner.generators import generator
+from benchnav.runner.rollouts.seeding import generator
 from benchnav.testing.observations import briefings_of as scene_briefings
 from benchnav.testing.observations import observations_of
 from benchnav.testing.scenes import scene

@@ -6,7 +6,7 @@ import numpy as np
 import pyarrow as pa
 
 from benchnav.metrics.metric import Metric
-from benchnav.store.results import RESULTS
+from benchnav.store.parts.results import RESULTS
 
 
 def _nothing(episode):

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchnav.leaderboard.compare import comparable, holm, pairs, ranks
+from benchnav.leaderboard.statistics.significance import comparable, holm, pairs, ranks
 
 
 def test_holm_by_hand():

@@ -1,12 +1,12 @@
 """How often 95 % intervals hold the truth.
 
-Smaller than `python -m benchmarks.interval_coverage`, whose output docs/statistics.md keeps:
+Smaller than `python -m studies.interval_coverage`, whose output docs/statistics.md keeps:
 1,000 tables tell a share of 0.95 to ± 0.014 (two standard errors), by which the limits are wider.
 """
 
 import pytest
 
-from benchmarks.interval_coverage import (
+from studies.interval_coverage import (
     APART,
     CORRELATIONS,
     asked,
@@ -15,7 +15,7 @@ from benchmarks.interval_coverage import (
     mean_coverage,
     rate_coverage,
 )
-from benchmarks.simulated_tables import CROWDS
+from studies.simulated_tables import CROWDS
 
 pytestmark = pytest.mark.slow
 TABLES = 1000

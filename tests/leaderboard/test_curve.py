@@ -10,8 +10,8 @@ import pytest
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import leaderboard
-from benchnav.leaderboard.curve import Setting, horizon_curves, parameter_curves
-from benchnav.leaderboard.curve_table import render_curves
+from benchnav.leaderboard.rendering.curve_table import render_curves
+from benchnav.leaderboard.statistics.curve import Setting, horizon_curves, parameter_curves
 from benchnav.testing import episodes as made
 from benchnav.testing.episodes import Hit, Walk, record, straight
 from tests.leaderboard.tables import METRICS, scores, table

@@ -8,8 +8,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from benchnav.leaderboard.difference import Moments, difference, least_p
-from benchnav.leaderboard.estimate import columns_of
+from benchnav.leaderboard.statistics.difference import Moments, difference, least_p
+from benchnav.leaderboard.statistics.estimate import columns_of
 from tests.leaderboard.tables import METRICS
 from tests.reference.paired_difference import inference
 

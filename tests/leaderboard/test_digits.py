@@ -6,7 +6,14 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from benchnav.leaderboard.digits import LARGEST, NARROWEST, figure, figures, number, signed
+from benchnav.leaderboard.rendering.digits import (
+    LARGEST,
+    NARROWEST,
+    figure,
+    figures,
+    number,
+    signed,
+)
 
 RATES = st.floats(0.0, 1.0)
 NUMBERS = st.floats(-1e9, 1e9)

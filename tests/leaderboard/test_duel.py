@@ -12,9 +12,9 @@ from hypothesis import strategies as st
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import NotApplicable, comparisons
-from benchnav.leaderboard.compare import holm
-from benchnav.leaderboard.duel import duel
-from benchnav.leaderboard.words import render_duel
+from benchnav.leaderboard.rendering.prose import render_duel
+from benchnav.leaderboard.statistics.head_to_head import duel
+from benchnav.leaderboard.statistics.significance import holm
 from tests.leaderboard.tables import METRICS, scores, simulated, table
 
 GOOD, FAIR, BAD = [1.0] * 20, [1.0] * 10 + [0.0] * 10, [0.0] * 20

@@ -19,9 +19,9 @@ from benchmarks.comparisons import (
     sign_flips,
     table_alarms,
 )
-from benchmarks.simulated_tables import CROWDS, unit_rates, world_rates
 from benchnav.leaderboard import leaderboard
-from benchnav.leaderboard.duel import duel
+from benchnav.leaderboard.statistics.head_to_head import duel
+from studies.simulated_tables import CROWDS, unit_rates, world_rates
 from tests.leaderboard.tables import METRICS, scores, table
 
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from benchnav.leaderboard.interval import (
+from benchnav.leaderboard.statistics.interval import (
     bca,
     cumulants,
     effective_size,

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchnav.leaderboard import NotApplicable, leaderboard, render
-from benchnav.leaderboard.latex import TEXT_WIDTH
-from benchnav.leaderboard.latex_text import breakable, latex, width
+from benchnav.leaderboard.rendering.latex import TEXT_WIDTH
+from benchnav.leaderboard.rendering.latex_text import breakable, latex, width
 from tests.leaderboard.tables import METRICS, scores, simulated, table
 
 NASTY = (

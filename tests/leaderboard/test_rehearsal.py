@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from benchnav.leaderboard import NotApplicable, comparisons, leaderboard, render
-from benchnav.leaderboard.duel import duel
-from benchnav.leaderboard.words import render_duel
+from benchnav.leaderboard.rendering.prose import render_duel
+from benchnav.leaderboard.statistics.head_to_head import duel
 from tests.leaderboard.tables import METRICS, row, scores, table
 
 GRANT = {"rehearsal": 5, "rehearsal_decisions": 800, "rehearsal_seconds": 0.0032}

@@ -7,9 +7,9 @@ from itertools import product
 
 import pytest
 
-from benchnav.leaderboard.render import render
+from benchnav.leaderboard.rendering.formats import render
 from benchnav.leaderboard.table import leaderboard
-from benchnav.store.results import RESULTS, completed
+from benchnav.store.parts.results import RESULTS, completed
 from tests.leaderboard.tables import METRICS, row, table
 
 LOST = "the planner found no path: no path was found within the budget"

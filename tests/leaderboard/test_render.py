@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.errors import UsageError
-from benchnav.leaderboard import Leaderboard, NotApplicable, escape, leaderboard, render
-from benchnav.leaderboard.digits import number
+from benchnav.leaderboard import Leaderboard, NotApplicable, leaderboard, render
+from benchnav.leaderboard.rendering import escape
+from benchnav.leaderboard.rendering.digits import number
 from tests.leaderboard.tables import METRICS, metric, row, scores, simulated, table
 
 FORMATS = ("markdown", "csv", "latex", "html", "json")

@@ -9,9 +9,9 @@ from scipy import stats
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import Leaderboard, NotApplicable, comparisons, leaderboard
-from benchnav.leaderboard.duel import duel
 from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE
+from benchnav.leaderboard.statistics.head_to_head import duel
 from tests.leaderboard.tables import METRICS, metric, row, scores, simulated, table
 
 HASH = "navigator_hash"

@@ -2,20 +2,20 @@
 
 import numpy as np
 import pytest
-from benchnav_baselines.recurrent_ppo.actor import Actor
-from benchnav_baselines.recurrent_ppo.courses import make_env, training_pools
-from benchnav_baselines.recurrent_ppo.evaluate import evaluate
-from benchnav_baselines.recurrent_ppo.learner import actor_tensors, make_learner
-from benchnav_baselines.recurrent_ppo.recipe import Course, Recipe
-from benchnav_baselines.recurrent_ppo.training import WEIGHTS, Training
-from benchnav_baselines.recurrent_ppo.weights import read_weights
+from benchnav_baselines.learned.recurrent_ppo.actor import Actor
+from benchnav_baselines.learned.recurrent_ppo.learning.courses import make_env, training_pools
+from benchnav_baselines.learned.recurrent_ppo.learning.evaluate import evaluate
+from benchnav_baselines.learned.recurrent_ppo.learning.learner import actor_tensors, make_learner
+from benchnav_baselines.learned.recurrent_ppo.learning.recipe import Course, Recipe
+from benchnav_baselines.learned.recurrent_ppo.learning.segments import WEIGHTS, Training
+from benchnav_baselines.learned.recurrent_ppo.weights import read_weights
 from scipy.stats import ttest_rel
 
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.reward import RewardWeights
+from benchnav.generation.build import build
 from benchnav.scenario.catalogue import find
-from benchnav.world.build import build
 
 RECIPE = Recipe.model_validate(
     {

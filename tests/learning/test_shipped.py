@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
+from benchnav.generation.build import build
 from benchnav.metrics.success import success
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
-from benchnav.world.build import build
 
 WORLDS = 50  # of four agents: 200 episodes of an agent
 

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from benchnav.metrics.analysis import analyse
 from benchnav.metrics.measure import load_metric
 from benchnav.metrics.metric import Metric
+from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.plugins import METRICS
 from benchnav.testing.check_metric import CHECKS, check_metric, values
 from benchnav.testing.zoo import zoo

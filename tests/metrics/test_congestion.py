@@ -9,9 +9,10 @@ import pytest
 import shapely
 
 from benchnav.arena.solid import Kind, Solid
-from benchnav.metrics import congestion, density, groups
-from benchnav.metrics.analysis import analyse
-from benchnav.metrics.density import walkable_area
+from benchnav.metrics import congestion, groups
+from benchnav.metrics.quantities import density
+from benchnav.metrics.quantities.density import walkable_area
+from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.testing.episodes import Setting, Walk, box, record, room, straight
 from benchnav.testing.zoo import AREA, ROOM, crowd, zoo
 

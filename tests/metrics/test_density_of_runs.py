@@ -9,14 +9,15 @@ import pandas as pd
 import pytest
 import shapely
 
-from benchnav.metrics import congestion, density
-from benchnav.metrics.analysis import analyse
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.generation.build import build
+from benchnav.metrics import congestion
+from benchnav.metrics.quantities import density
+from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
+from benchnav.scenario.files.track_file import read_tracks
 from benchnav.scenario.law import RecordedTrack
-from benchnav.scenario.track_file import read_tracks
 from benchnav.testing.episodes import Setting, Walk, record, room
-from benchnav.world.build import build
 
 DATA = Path(os.environ.get("BENCHNAV_DATA", Path(__file__).parents[3] / "shared" / "data"))
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from benchnav.metrics.encounters import RECORDED, TTC_CAP, Things, encounters
-from benchnav.metrics.trajectory import Trajectories
+from benchnav.metrics.quantities.encounters import RECORDED, TTC_CAP, Things, encounters
+from benchnav.metrics.quantities.trajectory import Trajectories
 from tests.reference import encounters as slow
 
 

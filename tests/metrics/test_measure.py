@@ -13,11 +13,11 @@ import pytest
 from benchnav.arena.agents import Role
 from benchnav.errors import PluginError
 from benchnav.geometry import geodesic
-from benchnav.metrics.analysis import analyse
 from benchnav.metrics.measure import all_metrics, load_metric, measure
 from benchnav.metrics.metric import Metric
+from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.plugins import METRICS
-from benchnav.store.results import RESULTS
+from benchnav.store.parts.results import RESULTS
 from benchnav.testing.episodes import Setting, Walk, record, straight
 from benchnav.testing.zoo import smooth, zoo
 

@@ -9,8 +9,8 @@ from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import Afterwards
 from benchnav.episode.episode import Contacts, Episode, Identity, Status, Timings
-from benchnav.metrics.analysis import analyse
 from benchnav.metrics.measure import all_metrics, measure
+from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.safety import min_time_to_collision
 from benchnav.testing.check_metric import values
 from benchnav.testing.episodes import RULES, Setting, Walk, box, record, room, straight

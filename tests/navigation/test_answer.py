@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from benchnav.navigation.answer import MOST_REMARKS, CallFailed, checked, remarks_of
+from benchnav.navigation.command_check import MOST_REMARKS, CallFailed, checked, remarks_of
 
 ACTIVE = np.array([[True, True], [True, False]])
 

@@ -4,8 +4,8 @@ import pytest
 from pydantic import Field
 
 from benchnav.errors import BrokenPluginError, ConfigError, MissingExtraError, UnknownPluginError
-from benchnav.navigation.configure import configure, make, split
 from benchnav.navigation.navigator import PluginConfig
+from benchnav.navigation.plugin.configure import configure, make, split
 from benchnav.plugins import Registry
 
 

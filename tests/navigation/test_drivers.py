@@ -3,8 +3,8 @@
 import pytest
 
 from benchnav.errors import ScenarioError
-from benchnav.navigation.drivers import check_drivers
-from benchnav.runner.suite import load_suite
+from benchnav.navigation.plugin.background_navigators import check_drivers
+from benchnav.runner.plan.suite import load_suite
 from benchnav.scenario.catalogue import find, names
 from benchnav.scenario.load import scenario_from_text
 from tests.plain_scenario import PLAIN

@@ -6,15 +6,15 @@ import pytest
 
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import BrokenPluginError
-from benchnav.navigation import guarded
-from benchnav.navigation.guarded_introduction import introductions
-from benchnav.navigation.introduction import Introduction
+from benchnav.navigation.plugin import plugin_process
+from benchnav.navigation.plugin.capabilities import Introduction
+from benchnav.navigation.plugin.guarded_capabilities import introductions
 from benchnav.processes.fork_server import fork_server
 
 HEAD = """
 import ctypes, os, signal, sys, threading, time
 from pydantic import field_validator
-from benchnav_baselines.straight_line import StraightLine
+from benchnav_baselines.navigators.straight_line import StraightLine
 
 class Silent(Exception):
     def __str__(self):
@@ -74,7 +74,7 @@ SENSINGS = [Sensing(None, None, None)]
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch):
-    monkeypatch.setattr(guarded, "_IMPORTING", 2.0)
+    monkeypatch.setattr(plugin_process, "_IMPORTING", 2.0)
 
 
 def asked(folder, monkeypatch, modules, specs, timeout=1.0):

@@ -2,17 +2,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.ompl.pairs import OmplOrca, OmplPure
+from benchnav_baselines.planners.ompl.pairs import OmplOrca, OmplPure
 from pydantic import Field
 
 from benchnav.arena.solid import Kind, Solid
 from benchnav.errors import ConfigError, UnknownPluginError
-from benchnav.navigation.configure import make
 from benchnav.navigation.controller import Controller
-from benchnav.navigation.hierarchical import Hierarchical
+from benchnav.navigation.hierarchy.hierarchical import Hierarchical
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Need, PluginConfig
 from benchnav.navigation.planner import UNSOLVED, Plan, Planner
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import CONTROLLERS, NAVIGATORS, PLANNERS
 from tests.baselines.crowds import answers, briefing, joined, keyed, one_world, permuted
 

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.geometry.sweep import clearance
-from benchnav.navigation.learned_map import (
+from benchnav.navigation.hierarchy.learned_map import (
     DOUBT,
     GUESSED,
     TOLD,

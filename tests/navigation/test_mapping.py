@@ -4,24 +4,24 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.orca.controller import OrcaController
+from benchnav_baselines.controllers.orca.controller import OrcaController
 
 from benchnav.arena.solid import Kind, Solid
+from benchnav.generation.build import build
 from benchnav.geometry.sweep import clearance
 from benchnav.metrics.success import success
-from benchnav.navigation.configure import make
-from benchnav.navigation.learned_map import DOT, GUESSED, way_is_free
+from benchnav.navigation.hierarchy.learned_map import DOT, GUESSED, way_is_free
+from benchnav.navigation.hierarchy.mapping import Mapping, MappingConfig
 from benchnav.navigation.map import Map
-from benchnav.navigation.mapping import Mapping, MappingConfig
+from benchnav.navigation.plugin.configure import make
 from benchnav.navigation.tracks import granted_map
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner import rollout as runner
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.runner.rollouts import rollout as runner
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
 from benchnav.sensors.readings import Edges, Rays
 from benchnav.testing.check_navigator import check_navigator
 from benchnav.testing.scenes import SENSING, USUAL
-from benchnav.world.build import build
 from benchnav.world.simulation import Simulation
 from tests.baselines.crowds import briefing, joined, one_world
 

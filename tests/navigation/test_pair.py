@@ -3,11 +3,11 @@
 import pytest
 
 from benchnav.errors import ConfigError, PluginError, UnknownPluginError
-from benchnav.navigation.configure import configure, make, split
-from benchnav.navigation.hierarchical import Hierarchical
+from benchnav.navigation.hierarchy.hierarchical import Hierarchical
 from benchnav.navigation.navigator import Need
+from benchnav.navigation.plugin.configure import configure, make, split
 from benchnav.plugins import CONTROLLERS, NAVIGATORS
-from benchnav.runner.suite import Selection, load_suite
+from benchnav.runner.plan.suite import Selection, load_suite
 
 FORM = (
     "A navigator named by its parts must be PLANNER+CONTROLLER, none+CONTROLLER or"
@@ -50,7 +50,10 @@ def test_without_a_planner_or_with_mapping_no_map_is_needed():
 
 
 def test_parts_may_be_named_by_module():
-    name = "benchnav_baselines.ompl.planners:PRM+benchnav_baselines.path_following:PathFollowing"
+    name = (
+        "benchnav_baselines.planners.ompl.planners:PRM"
+        "+benchnav_baselines.controllers.path_following:PathFollowing"
+    )
     assert type(make(NAVIGATORS, name).controller).__name__ == "PathFollowing"
 
 

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchnav.navigation.hierarchy.path_tracker import PathTracker, advanced
 from benchnav.navigation.observation import Observation
-from benchnav.navigation.path_tracker import PathTracker, advanced
 from tests.reference import path_tracker as slow
 
 STEP = 0.1

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from benchnav.navigation.answer import CallFailed
-from benchnav.navigation.configure import make
+from benchnav.navigation.command_check import CallFailed
+from benchnav.navigation.hierarchy.plan_log import PlanLog, checked_plan
 from benchnav.navigation.navigator import PluginConfig
-from benchnav.navigation.plan_log import PlanLog, checked_plan
 from benchnav.navigation.planner import UNSOLVED, Plan, Planner
+from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS, PLANNERS
 from tests.navigation.test_hierarchical import BOUNDS, Map, answers, stand
 

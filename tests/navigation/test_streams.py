@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchnav.navigation.streams import agent_streams, canonical_order
+from benchnav.navigation.randomness.agent_streams import agent_streams, canonical_order
 from tests.baselines.crowds import briefing, keyed
 
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from benchnav.errors import BrokenPluginError
-from benchnav.navigation.answer import grouped, kind_of, said, short
-from benchnav.navigation.trace import MOST, bounded, location, plain, trace
+from benchnav.navigation.command_check import grouped, kind_of, said, short
+from benchnav.navigation.plugin.trace import MOST, bounded, location, plain, trace
 
 PLUGIN = """
 import json

@@ -1,9 +1,9 @@
-"""The slow, obvious twin of `benchnav_baselines.recurrent_ppo.detour`."""
+"""The slow, obvious twin of `benchnav_baselines.learned.recurrent_ppo.detour`."""
 
 import math
 
 import numpy as np
-from benchnav_baselines.recurrent_ppo import detour as d
+from benchnav_baselines.learned.recurrent_ppo import detour as d
 from shapely import LineString, Point
 
 

@@ -1,4 +1,4 @@
-"""Slow twin of `benchnav.metrics.encounters`: every pair, every step, nothing skipped.
+"""Slow twin of `benchnav.metrics.quantities.encounters`: every pair, every step, nothing skipped.
 
 Distances within a step are found by minimising over a fine grid of instants and then
 by ternary search, which needs no formula for segments: the gap to a convex partner is

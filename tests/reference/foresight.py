@@ -1,9 +1,9 @@
-"""The slow, obvious twin of `benchnav_baselines.recurrent_ppo.foresight`."""
+"""The slow, obvious twin of `benchnav_baselines.learned.recurrent_ppo.foresight`."""
 
 import math
 
 import numpy as np
-from benchnav_baselines.recurrent_ppo import foresight as f
+from benchnav_baselines.learned.recurrent_ppo import foresight as f
 from shapely import LineString, Point
 
 from benchnav.arena.solid import Kind

@@ -1,6 +1,6 @@
 """The inference of paired differences over fixed scenarios, one number at a time.
 
-The slow twin of `benchnav.leaderboard.difference`. It reads like docs/statistics.md.
+The slow twin of `benchnav.leaderboard.statistics.difference`. It reads like docs/statistics.md.
 """
 
 import math

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchnav.runner.rollout import Assignment, rollout
+from benchnav.generation.build import build
+from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.load import load_scenario
-from benchnav.world.build import build
 
 SCENARIO = """
 name: tiny/crossing
@@ -147,7 +147,7 @@ class NotThere(Walk):
 
     def __init__(self, config=None):
         super().__init__(config)
-        if "benchnav.runner.worker" in sys.modules:
+        if "benchnav.runner.execute.worker" in sys.modules:
             raise OSError("not there")
 
 

@@ -5,8 +5,8 @@ import re
 import numpy as np
 import pytest
 
-from benchnav.runner.estimate import Estimate, Load
-from benchnav.runner.progress import UNKNOWN, Lines
+from benchnav.runner.execute.progress import UNKNOWN, Lines
+from benchnav.runner.plan.estimate import Estimate, Load
 
 
 class Clock:

@@ -8,14 +8,14 @@ from dataclasses import replace
 import pytest
 
 from benchnav.errors import CorruptPartError
-from benchnav.runner.foreman import Foreman, Refusal
-from benchnav.runner.limits import Limits
+from benchnav.runner.plan.limits import Limits
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.plan.task import Task
+from benchnav.runner.ray.ray_worker import Foreman, Refusal
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.runner.task import Task
-from benchnav.store.part import SEAL, Part
-from benchnav.store.part_writer import receive
-from benchnav.store.reading import read_episodes
+from benchnav.store.parts.part import SEAL, Part
+from benchnav.store.parts.part_writer import receive
+from benchnav.store.runs.reading import read_episodes
 
 MAPPED = """
 name: tiny/mapped

@@ -6,7 +6,7 @@ import pickle
 import numpy as np
 import pytest
 
-from benchnav.runner.generators import check_salt, draw_salt, generator, place
+from benchnav.runner.rollouts.seeding import check_salt, draw_salt, generator, place
 
 WORLDS = list(itertools.product(["a" * 16, "b" * 16], ["train", "test"], range(20), range(3)))
 SALT = "5a" * 16

@@ -5,8 +5,8 @@ import builtins
 import numpy as np
 import pytest
 
-from benchnav.runner import driver
-from benchnav.runner.guard import Guard
+from benchnav.runner.rollouts import navigator_driver
+from benchnav.runner.rollouts.tamper_guard import Guard
 from benchnav.world.simulation import Simulation
 
 
@@ -19,7 +19,7 @@ def other(*_):
     [
         (Simulation, "step", "benchnav.world.simulation.Simulation.step"),
         (Simulation, "B", "benchnav.world.simulation.Simulation.B"),
-        (driver, "sense", "benchnav.runner.driver.sense"),
+        (navigator_driver, "sense", "benchnav.runner.rollouts.navigator_driver.sense"),
         (np, "zeros_like", "numpy.zeros_like"),
         (builtins, "sorted", "builtins.sorted"),
     ],

@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 from benchnav.metrics.measure import own_metrics
 from benchnav.processes.process_tree import tells_memory
+from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.store.reading import read_episodes, read_results
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.runs.reading import read_episodes, read_results
+from benchnav.store.runs.run_folder import RunFolder
 
 HOSTILE = """
 import math, os, resource, signal, subprocess, sys, threading, time

@@ -10,24 +10,24 @@ from pathlib import Path
 import pytest
 
 from benchnav.errors import MissingExtraError, UsageError
-from benchnav.isolation import fence, isolated, pool
+from benchnav.generation.build import build
+from benchnav.isolation import isolated, process_pool, sandbox
 from benchnav.navigation.navigator import AgentNavigator
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner import rollout
-from benchnav.runner.latency import latency, peak_memory
-from benchnav.runner.rehearsal import perform
-from benchnav.runner.rollout import Assignment
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.rollouts import rollout
+from benchnav.runner.rollouts.latency import latency, peak_memory
+from benchnav.runner.rollouts.rehearsal import perform
+from benchnav.runner.rollouts.rollout import Assignment
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
 from benchnav.scenario.catalogue import find
-from benchnav.store.reading import read_episodes
-from benchnav.world.build import build
+from benchnav.store.runs.reading import read_episodes
 
 
 @pytest.fixture(autouse=True)
 def nobody_stays():
     yield
-    pool.dismiss()
+    process_pool.dismiss()
 
 
 def told(episodes):
@@ -158,7 +158,7 @@ def test_latency_and_memory_are_those_of_its_process(scenario):
         scenario.driver_specs, salt="0a", isolated=True,
     )  # fmt: skip
     assert (latency(assignment, (0, world)) > 0).all()
-    (process,) = pool._KEPT.values()
+    (process,) = process_pool._KEPT.values()
     assert process.peak_memory() > 10 << 20
     assert peak_memory() > process.peak_memory()
 
@@ -193,7 +193,7 @@ def test_what_another_process_cannot_import_is_refused():
 def test_it_ends_with_a_runner_that_is_killed(tmp_path):
     script = (
         "import os, sys, time\n"
-        "from benchnav.isolation.process import Process\n"
+        "from benchnav.isolation.navigator_process import Process\n"
         "p = Process([sys.executable, '-c', 'import time; time.sleep(60)'])\n"
         "time.sleep(0.5); print(p._popen.pid, flush=True); time.sleep(60)\n"
     )
@@ -202,7 +202,7 @@ def test_it_ends_with_a_runner_that_is_killed(tmp_path):
     os.kill(runner.pid, signal.SIGKILL)
     runner.wait()
     runner.stdout.close()
-    if not fence.prefix():
+    if not sandbox.prefix():
         pytest.skip("nothing here ends a process with its parent")
     until = time.monotonic() + 10
     while time.monotonic() < until:

@@ -4,14 +4,14 @@ import sys
 
 import pytest
 
-from benchnav.runner import latency as module
-from benchnav.runner import task as task_module
-from benchnav.runner.latency import latency, peak_memory
-from benchnav.runner.rollout import Assignment
+from benchnav.generation.build import build
+from benchnav.runner.plan import task as task_module
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.rollouts import latency as module
+from benchnav.runner.rollouts.latency import latency, peak_memory
+from benchnav.runner.rollouts.rollout import Assignment
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.store.reading import read_episodes
-from benchnav.world.build import build
+from benchnav.store.runs.reading import read_episodes
 
 
 @pytest.fixture

@@ -13,16 +13,16 @@ import pytest
 
 from benchnav.errors import RunConflictError, UsageError
 from benchnav.metrics.metric import Metric
-from benchnav.navigation.answer import kind_of
+from benchnav.navigation.command_check import kind_of
 from benchnav.plugins import METRICS
 from benchnav.processes.process_tree import tells_memory, tree
-from benchnav.runner import start as start_module
-from benchnav.runner import task as task_module
-from benchnav.runner.limits import Limits
+from benchnav.runner.plan import prepare as start_module
+from benchnav.runner.plan import task as task_module
+from benchnav.runner.plan.limits import Limits
+from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.store.manifest import load_manifest
-from benchnav.store.reading import read_episodes, read_results
+from benchnav.store.runs.manifest import load_manifest
+from benchnav.store.runs.reading import read_episodes, read_results
 
 SEEDS = range(3, 5)  # guilty, innocent
 needs_memory = pytest.mark.skipif(not tells_memory(), reason="the system does not tell memory")

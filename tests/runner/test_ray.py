@@ -6,16 +6,16 @@ from collections import Counter
 import pytest
 
 from benchnav.errors import BenchnavError, MissingExtraError
-from benchnav.runner import ray_executor
-from benchnav.runner import task as task_module
-from benchnav.runner.limits import Limits
-from benchnav.runner.progress import Progress
-from benchnav.runner.ray_executor import execute_on_ray
+from benchnav.runner.execute.progress import Progress
+from benchnav.runner.plan import task as task_module
+from benchnav.runner.plan.limits import Limits
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.ray import ray_executor
+from benchnav.runner.ray.ray_executor import execute_on_ray
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.store.part import SEAL
-from benchnav.store.reading import read_episodes, read_results
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.parts.part import SEAL
+from benchnav.store.runs.reading import read_episodes, read_results
+from benchnav.store.runs.run_folder import RunFolder
 
 TIMINGS = ("decision_time", "planning_time", "latency", "peak_memory")
 

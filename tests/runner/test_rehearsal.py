@@ -9,13 +9,13 @@ import pytest
 from benchnav.arena.agents import Role
 from benchnav.errors import ScenarioError
 from benchnav.navigation.navigator import Navigator
-from benchnav.runner import task as task_module
-from benchnav.runner.generators import generator, phases
+from benchnav.runner.plan import task as task_module
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.rollouts.seeding import generator, phases
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.store.manifest import load_manifest
-from benchnav.store.part import REHEARSALS_FILE, SEAL
-from benchnav.store.reading import read_episodes, read_rehearsals, read_results
+from benchnav.store.parts.part import REHEARSALS_FILE, SEAL
+from benchnav.store.runs.manifest import load_manifest
+from benchnav.store.runs.reading import read_episodes, read_rehearsals, read_results
 from benchnav.world.simulation import Simulation
 
 SCENARIO = """

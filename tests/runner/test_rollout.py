@@ -9,10 +9,10 @@ import pytest
 
 from benchnav.arena.solid import Kind
 from benchnav.episode.episode import Status
-from benchnav.runner import rollout as module
+from benchnav.generation.build import build
+from benchnav.runner.rollouts import rollout as module
 from benchnav.scenario.load import load_scenario
-from benchnav.store.digest import digest
-from benchnav.world.build import build
+from benchnav.store.parts.digest import digest
 
 
 def digests(episodes):

@@ -17,17 +17,17 @@ from benchnav.errors import (
 from benchnav.metrics.measure import all_metrics
 from benchnav.plugins import METRICS, register_navigator
 from benchnav.processes import fork_server
-from benchnav.runner import task as task_module
-from benchnav.runner.measured import measure_again
-from benchnav.runner.progress import Progress
+from benchnav.runner.execute.measurement import measure_again
+from benchnav.runner.execute.progress import Progress
+from benchnav.runner.plan import task as task_module
+from benchnav.runner.plan.shard import Shard
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.plan.task import chunks
 from benchnav.runner.run import run_suite
-from benchnav.runner.shard import Shard
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.runner.task import chunks
-from benchnav.store.manifest import load_manifest
-from benchnav.store.part import SEAL
-from benchnav.store.reading import read_episodes, read_results
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.parts.part import SEAL
+from benchnav.store.runs.manifest import load_manifest
+from benchnav.store.runs.reading import read_episodes, read_results
+from benchnav.store.runs.run_folder import RunFolder
 
 
 @pytest.fixture

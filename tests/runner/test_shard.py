@@ -3,15 +3,15 @@
 import pytest
 
 from benchnav.errors import RunConflictError, UsageError
-from benchnav.runner import task as task_module
+from benchnav.runner.plan import task as task_module
+from benchnav.runner.plan.shard import Shard
+from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.shard import Shard
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.store.manifest import load_manifest
-from benchnav.store.merge import merge
-from benchnav.store.reading import read_episodes, read_results
-from benchnav.store.run_folder import RunFolder
-from benchnav.store.spans import count
+from benchnav.store.runs.manifest import load_manifest
+from benchnav.store.runs.merge import merge
+from benchnav.store.runs.reading import read_episodes, read_results
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.spans import count
 
 SALT = "5a" * 16
 

@@ -13,19 +13,19 @@ import pytest
 from benchnav.errors import RunConflictError, UsageError
 from benchnav.leaderboard.label import require_one_navigator_per_label
 from benchnav.plugins import CONTROLLERS, NAVIGATORS, register_controller, register_navigator
-from benchnav.runner import entry as entry_module
-from benchnav.runner import task as task_module
+from benchnav.runner.plan import contestant as entry_module
+from benchnav.runner.plan import task as task_module
+from benchnav.runner.plan.shard import Shard
+from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.shard import Shard
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.runner.verify.verify import Wanted, verify
 from benchnav.source.digest import FoundSource
-from benchnav.store.manifest import load_manifest
-from benchnav.store.merge import merge
-from benchnav.store.part import SEAL
-from benchnav.store.reading import read_episodes, read_results
-from benchnav.store.results import RESULTS
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.parts.part import SEAL
+from benchnav.store.parts.results import RESULTS
+from benchnav.store.runs.manifest import load_manifest
+from benchnav.store.runs.merge import merge
+from benchnav.store.runs.reading import read_episodes, read_results
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.verify.verify import Wanted, verify
 
 MODULE = """
 from pathlib import Path
@@ -151,7 +151,7 @@ def stopped(monkeypatch, after):
             raise _Stop
         return genuine(task, tick)
 
-    monkeypatch.setattr("benchnav.runner.executor.work", work)
+    monkeypatch.setattr("benchnav.runner.execute.executor.work", work)
 
 
 def test_an_interrupted_again_keeps_the_old_whole_and_goes_on(
@@ -385,7 +385,7 @@ print(summary.stored, summary.in_process, dict(summary.failures))
     script.write_text(
         "from pathlib import Path\nimport benchnav\nfrom edited_navigators import Drifts\n"
         "from benchnav.runner.run import run_suite\n"
-        "from benchnav.runner.suite import Selection, load_suite\n"
+        "from benchnav.runner.plan.suite import Selection, load_suite\n"
         + ("" if guarded else define)
         + "if __name__ == '__main__':\n"
         + "".join(f"    {line}\n" for line in inner.splitlines())

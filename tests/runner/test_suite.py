@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 
 from benchnav.errors import ConfigError, ScenarioError, UnknownPluginError, UsageError
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.runner.suite_file import suite_names
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.plan.suite_file import suite_names
 from benchnav.scenario.catalogue import names
 
 STANDARD_1 = "2924b1be7b8dcdae"

@@ -2,9 +2,9 @@
 
 import pytest
 
+from benchnav.config.yaml_reader import read_yaml_text, validate
 from benchnav.errors import ScenarioError, UsageError
-from benchnav.runner.suite_file import SuiteFile, parse_seeds, suite_names, suite_path
-from benchnav.scenario.yaml_reader import read_yaml_text, validate
+from benchnav.runner.plan.suite_file import SuiteFile, parse_seeds, suite_names, suite_path
 
 GOOD = """
 name: mine

@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchnav.runner.watch import SIZE, Watch, calling, write_to
+from benchnav.runner.execute.call_timer import SIZE, Watch, calling, write_to
 
 
 @pytest.fixture

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchnav.config.yaml_reader import read_yaml
 from benchnav.errors import ScenarioError
 from benchnav.scenario.load import load_scenario, scenario_from_text
-from benchnav.scenario.yaml_reader import read_yaml
 from tests.scenario.files import SHIPPED, SMALL
 from tests.scenario.mutations import mutate, text_of
 

@@ -7,9 +7,9 @@ import pytest
 
 from benchnav.arena.agents import Role
 from benchnav.errors import ScenarioError
+from benchnav.generation.build import build
 from benchnav.scenario.catalogue import find
 from benchnav.scenario.load import scenario_from_text
-from benchnav.world.build import build
 from tests.scenario.files import SMALL
 
 NAMES = ("diagonal", "crossing", "crossing-four", "bottleneck", "bottleneck-opposed")

@@ -3,10 +3,10 @@
 import pytest
 from pydantic import BaseModel, Field
 
+from benchnav.config.yaml_reader import read_yaml_text, validate
 from benchnav.errors import ScenarioError
-from benchnav.runner.suite_file import SuiteFile
+from benchnav.runner.plan.suite_file import SuiteFile
 from benchnav.scenario.load import scenario_from_text
-from benchnav.scenario.yaml_reader import read_yaml_text, validate
 from tests.plain_scenario import PLAIN
 
 SUITE = "name: q\nscenarios: [trap/u]\nnavigators: [orca]\n"

@@ -8,8 +8,8 @@ import pytest
 import yaml
 
 from benchnav.errors import ScenarioError
+from benchnav.generation.build import build
 from benchnav.scenario.load import json_schema, scenario_from_text
-from benchnav.world.build import build
 from tests.plain_scenario import PLAIN
 
 DISC = "shape: {type: disc, radius: 0.3}"

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from benchnav.errors import ScenarioError, UnsolvableError
+from benchnav.generation.build import build
 from benchnav.scenario.load import scenario_from_text
-from benchnav.scenario.packing import inside_region, lattice, most_that_fit
-from benchnav.scenario.region import Anywhere, DiscRegion, Points, Rectangle, Ring
-from benchnav.world.build import build
+from benchnav.scenario.sampling.packing import inside_region, lattice, most_that_fit
+from benchnav.scenario.sampling.region import Anywhere, DiscRegion, Points, Rectangle, Ring
 
 ARENA = (-50.0, -50.0, 50.0, 50.0)
 REGIONS = [

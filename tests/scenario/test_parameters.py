@@ -3,13 +3,13 @@
 import jsonschema
 import pytest
 
+from benchnav.config.yaml_reader import read_yaml_text
 from benchnav.errors import ScenarioError, UsageError
 from benchnav.plugins import SCENARIOS
-from benchnav.runner.suite import load_suite
+from benchnav.runner.plan.suite import load_suite
 from benchnav.scenario.catalogue import find
 from benchnav.scenario.load import json_schema, load_scenario, scenario_from_text
 from benchnav.scenario.parameters import joined_parameters, split_parameters
-from benchnav.scenario.yaml_reader import read_yaml_text
 from tests.scenario.files import SMALL
 
 OPEN = (

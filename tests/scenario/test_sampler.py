@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
-from benchnav.scenario.sampler import (
+from benchnav.scenario.sampling.sampler import (
     Choice,
     Integers,
     Normal,

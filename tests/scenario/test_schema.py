@@ -1,8 +1,8 @@
 import jsonschema
 import pytest
 
+from benchnav.config.yaml_reader import read_yaml, read_yaml_text
 from benchnav.scenario.load import json_schema
-from benchnav.scenario.yaml_reader import read_yaml, read_yaml_text
 from tests.scenario.files import SHIPPED, SMALL
 
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from benchnav.errors import ScenarioError
+from benchnav.scenario.files.track_file import read_tracks
 from benchnav.scenario.law import RecordedTrack
-from benchnav.scenario.track_file import read_tracks
 
 DATA = Path(os.environ.get("BENCHNAV_DATA", Path(__file__).parents[3] / "shared" / "data"))
 

@@ -7,15 +7,15 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from benchnav.errors import ScenarioError
-from benchnav.scenario import yaml_reader
-from benchnav.scenario.yaml_reader import (
+from benchnav.config import yaml_reader
+from benchnav.config.yaml_reader import (
     MAX_BYTES,
     MAX_DEPTH,
     MAX_NODES,
     read_yaml,
     read_yaml_text,
 )
+from benchnav.errors import ScenarioError
 from tests.scenario.files import SHIPPED
 
 

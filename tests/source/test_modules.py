@@ -210,7 +210,7 @@ def test_what_ships_is_told_apart():
 
 
 def test_the_simulator_is_its_versions_business():
-    assert closure_of({"type": "benchnav.navigation.hierarchical:Hierarchical"}) == set()
+    assert closure_of({"type": "benchnav.navigation.hierarchy.hierarchical:Hierarchical"}) == set()
 
 
 @pytest.mark.parametrize("command", [["{file}"], ["python3", "{file}"], ["sh", "{file}", "--fast"]])

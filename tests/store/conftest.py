@@ -14,10 +14,10 @@ from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensi
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
 from benchnav.episode.episode import Contacts, Episode, Identity, Timings
-from benchnav.store.digest import digest
-from benchnav.store.manifest import Manifest
-from benchnav.store.navigator_hash import hash_of_entry
-from benchnav.store.results import RESULTS
+from benchnav.store.parts.digest import digest
+from benchnav.store.parts.results import RESULTS
+from benchnav.store.runs.manifest import Manifest
+from benchnav.store.runs.navigator_hash import hash_of_entry
 
 ORCA = {"label": "orca", "says": {"type": "orca"}, "source": "benchnav"}
 HASH = hash_of_entry(ORCA)

@@ -20,9 +20,9 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from benchnav.cli.main import status
-from benchnav.store.pack import INDEX, members
-from benchnav.store.part import SEAL
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.packs.pack import INDEX, members
+from benchnav.store.parts.part import SEAL
+from benchnav.store.runs.run_folder import RunFolder
 
 SECONDS = 5.0
 MEMORY = 1 << 30  # [bytes] beyond what a process holds that has read the pack once

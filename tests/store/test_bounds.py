@@ -11,16 +11,17 @@ import pyarrow.parquet as pq
 import pytest
 
 from benchnav.errors import CorruptPartError, StoreError
-from benchnav.store import bounded_json, bounded_parquet, checked_json
-from benchnav.store.manifest import MANIFEST, load_manifest
-from benchnav.store.part import RESULTS_FILE, SEAL, Part
-from benchnav.store.part_writer import PartWriter
-from benchnav.store.reading import in_every_track, read_results
-from benchnav.store.results import RESULTS
-from benchnav.store.run_folder import RunFolder
-from benchnav.store.seal import read_seal
-from benchnav.store.spans import count, twice, union, without
-from benchnav.store.unpack import opened
+from benchnav.store.bounded import bounded_json, bounded_parquet
+from benchnav.store.packs.unpack import opened
+from benchnav.store.parts.part import RESULTS_FILE, SEAL, Part
+from benchnav.store.parts.part_writer import PartWriter
+from benchnav.store.parts.results import RESULTS
+from benchnav.store.parts.seal import read_seal
+from benchnav.store.runs import checked_json
+from benchnav.store.runs.manifest import MANIFEST, load_manifest
+from benchnav.store.runs.reading import in_every_track, read_results
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.spans import count, twice, union, without
 from tests.store.hostile import resealed
 
 SCHEMA = pa.schema([("n", pa.int64()), ("text", pa.string()), ("list", pa.list_(pa.string()))])
@@ -80,7 +81,7 @@ def test_small_files_that_decode_to_gigabytes_are_refused(content):
 
 def test_a_page_that_hides_its_size_is_refused():
     """The decoder takes field 2 + 2**16 for field 2: who does not is told another size."""
-    from benchnav.store.page_headers import pages
+    from benchnav.store.bounded.page_headers import pages
 
     honest = bytes.fromhex("1500151015102c15021500150615060000") + b"x" * 8
     assert next(pages(memoryview(honest))).raw == 8

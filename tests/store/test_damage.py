@@ -9,14 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.errors import CorruptPartError, StoreError
-from benchnav.store import checked_json
-from benchnav.store.lock import LOCK
-from benchnav.store.manifest import load_manifest
-from benchnav.store.part import REHEARSALS_FILE, SEAL, Part, parts_of
-from benchnav.store.part_writer import PartWriter
-from benchnav.store.reading import read_episodes, read_rehearsals, read_results
-from benchnav.store.run_folder import RunFolder
-from benchnav.store.spans import without
+from benchnav.store.parts.part import REHEARSALS_FILE, SEAL, Part, parts_of
+from benchnav.store.parts.part_writer import PartWriter
+from benchnav.store.runs import checked_json
+from benchnav.store.runs.lock import LOCK
+from benchnav.store.runs.manifest import load_manifest
+from benchnav.store.runs.reading import read_episodes, read_rehearsals, read_results
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.spans import without
 
 PARTS = ((0, 3), (3, 4))
 

@@ -9,9 +9,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from typing_extensions import TypeAliasType, TypeVar
 
-from benchnav.store.digest import digest
-from benchnav.store.episodes import LATER, from_table, to_table
-from benchnav.store.world_codec import decode, encode, world_from_json, world_to_json
+from benchnav.store.parts.digest import digest
+from benchnav.store.parts.episodes import LATER, from_table, to_table
+from benchnav.store.parts.world_codec import decode, encode, world_from_json, world_to_json
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 # What NDArray is since NumPy 2.5, whichever NumPy is installed.

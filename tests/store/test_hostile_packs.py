@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
 from tests.store import hostile
 
 

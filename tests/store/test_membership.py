@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.errors import CorruptPartError, ForeignRowError
-from benchnav.store.merge import merge
-from benchnav.store.pack import pack
-from benchnav.store.part import EPISODES_FILE, REHEARSALS_FILE, RESULTS_FILE, Part
-from benchnav.store.part_writer import PartWriter
-from benchnav.store.pinned import changed_since, pinned, pinned_digest
-from benchnav.store.reading import read_episodes, read_rehearsals, read_results, results_of
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.packs.pack import pack
+from benchnav.store.parts.part import EPISODES_FILE, REHEARSALS_FILE, RESULTS_FILE, Part
+from benchnav.store.parts.part_writer import PartWriter
+from benchnav.store.runs.merge import merge
+from benchnav.store.runs.pinned_run import changed_since, pinned, pinned_digest
+from benchnav.store.runs.reading import read_episodes, read_rehearsals, read_results, results_of
+from benchnav.store.runs.run_folder import RunFolder
 from tests.conformance.refit import refit_seal
 
 OWN = (

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from benchnav.errors import BenchnavError, RunConflictError, UsageError
-from benchnav.store.lock import LOCK, claimed
-from benchnav.store.manifest import MANIFEST, load_manifest
-from benchnav.store.pack import pack
-from benchnav.store.part import Part
-from benchnav.store.part_writer import PartWriter
-from benchnav.store.run_folder import RunFolder
-from benchnav.store.spans import SEED_END
-from benchnav.store.unpack import opened
+from benchnav.store.packs.pack import pack
+from benchnav.store.packs.unpack import opened
+from benchnav.store.parts.part import Part
+from benchnav.store.parts.part_writer import PartWriter
+from benchnav.store.runs.lock import LOCK, claimed
+from benchnav.store.runs.manifest import MANIFEST, load_manifest
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.spans import SEED_END
 
 
 def together(*actions):

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 from benchnav.errors import CorruptPartError, StoreError, UsageError
-from benchnav.store.pack import INDEX, content_digest, members, pack
-from benchnav.store.part import Part
-from benchnav.store.part_writer import PartWriter
-from benchnav.store.reading import read_episodes
-from benchnav.store.run_folder import RunFolder
-from benchnav.store.scenario_files import keep_files, sha256_of
-from benchnav.store.unpack import opened
+from benchnav.store.packs.pack import INDEX, content_digest, members, pack
+from benchnav.store.packs.unpack import opened
+from benchnav.store.parts.part import Part
+from benchnav.store.parts.part_writer import PartWriter
+from benchnav.store.runs.reading import read_episodes
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.scenario_files import keep_files, sha256_of
 
 
 def scenario(files):

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from benchnav.errors import CorruptPartError
-from benchnav.store.part import REHEARSALS_FILE, SEAL, Part
-from benchnav.store.part_writer import TEMPORARY, PartWriter
-from benchnav.store.reading import read_episodes, read_rehearsals
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.parts.part import REHEARSALS_FILE, SEAL, Part
+from benchnav.store.parts.part_writer import TEMPORARY, PartWriter
+from benchnav.store.runs.reading import read_episodes, read_rehearsals
+from benchnav.store.runs.run_folder import RunFolder
 
 
 def made(tools, seed, rehearsal):

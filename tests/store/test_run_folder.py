@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 
 from benchnav.errors import CorruptPartError, RunConflictError, StoreError
-from benchnav.store import lock, part_writer
-from benchnav.store.manifest import MANIFEST, load_manifest
-from benchnav.store.part import EPISODES_FILE, RESULTS_FILE, SEAL, Part
-from benchnav.store.part_writer import TEMPORARY, PartWriter
-from benchnav.store.reading import read_episodes, read_results
-from benchnav.store.results import RESULTS
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.parts import part_writer
+from benchnav.store.parts.part import EPISODES_FILE, RESULTS_FILE, SEAL, Part
+from benchnav.store.parts.part_writer import TEMPORARY, PartWriter
+from benchnav.store.parts.results import RESULTS
+from benchnav.store.runs import lock
+from benchnav.store.runs.manifest import MANIFEST, load_manifest
+from benchnav.store.runs.reading import read_episodes, read_results
+from benchnav.store.runs.run_folder import RunFolder
 from tests.store.conftest import HASH
 
 

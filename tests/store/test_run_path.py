@@ -5,18 +5,18 @@ from pathlib import Path
 import pytest
 
 from benchnav.errors import StoreError, UsageError
-from benchnav.runner.measured import measure_again
-from benchnav.store.manifest import load_manifest
-from benchnav.store.merge import merge
-from benchnav.store.reading import (
+from benchnav.runner.execute.measurement import measure_again
+from benchnav.store.packs.unpack import opened
+from benchnav.store.runs.manifest import load_manifest
+from benchnav.store.runs.merge import merge
+from benchnav.store.runs.reading import (
     read_episodes,
     read_episodes_in_every_track,
     read_rehearsals,
     read_results,
 )
-from benchnav.store.run_folder import RunFolder
-from benchnav.store.run_path import run_path
-from benchnav.store.unpack import opened
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.run_path import run_path
 
 READERS = (
     read_episodes, read_episodes_in_every_track, read_rehearsals, read_results, load_manifest,

@@ -8,14 +8,14 @@ import pyarrow.parquet as pq
 import pytest
 
 from benchnav.errors import CorruptPartError
-from benchnav.store import bounded_parquet
-from benchnav.store.episodes import from_table
-from benchnav.store.manifest import MANIFEST, load_manifest
-from benchnav.store.part import EPISODES_FILE, Part
-from benchnav.store.part_writer import PartWriter
-from benchnav.store.run_folder import RunFolder
-from benchnav.store.scenario_files import FOLDER, UP, keep_files, sha256_of, stage_files
-from benchnav.store.world_codec import decode, world_from_json, world_to_json
+from benchnav.store.bounded import bounded_parquet
+from benchnav.store.parts.episodes import from_table
+from benchnav.store.parts.part import EPISODES_FILE, Part
+from benchnav.store.parts.part_writer import PartWriter
+from benchnav.store.parts.world_codec import decode, world_from_json, world_to_json
+from benchnav.store.runs.manifest import MANIFEST, load_manifest
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.scenario_files import FOLDER, UP, keep_files, sha256_of, stage_files
 
 
 @pytest.fixture

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from benchnav.errors import MissingExtraError, StoreError
-from benchnav.leaderboard.curve import Setting, parameter_curves
-from benchnav.leaderboard.duel import duel
+from benchnav.leaderboard.statistics.curve import Setting, parameter_curves
+from benchnav.leaderboard.statistics.head_to_head import duel
 from benchnav.viewer.curves import draw_curves
 from benchnav.viewer.forest import draw_duel
 from benchnav.viewer.picture import BLUE, GREY, RED, blank, is_picture, save

@@ -9,16 +9,16 @@ from hypothesis import strategies as st
 
 from benchnav.arena.body import LawKind
 from benchnav.arena.solid import Kind
+from benchnav.config.yaml_reader import read_yaml_text
 from benchnav.errors import InputError, ScenarioError, UnsolvableError, UsageError
+from benchnav.generation import prepared
+from benchnav.generation.build import SPLITS, build
+from benchnav.generation.clearance import barrier, clear
+from benchnav.generation.motion_law import place_at_start, swept
+from benchnav.generation.world_digest import coincidences, is_random, world_digest
 from benchnav.navigation.tracks import TRACKS
 from benchnav.scenario.catalogue import find
 from benchnav.scenario.load import load_scenario, scenario_from_text
-from benchnav.scenario.yaml_reader import read_yaml_text
-from benchnav.world import draw_prepared
-from benchnav.world.build import SPLITS, build
-from benchnav.world.draw_digest import coincidences, is_random, world_digest
-from benchnav.world.draw_gap import barrier, clear
-from benchnav.world.draw_law import place_at_start, swept
 from tests.reference import clearance as slow
 from tests.scenario.files import SHIPPED, SMALL
 from tests.scenario.mutations import mutate, text_of
@@ -102,7 +102,7 @@ def test_a_path_on_a_fine_grid_proves_that_worlds_are_solvable(name, step):
 def test_pure_and_disjoint_between_splits(name):
     one = SCENARIOS[name]
     digests = {s: [world_digest(build(one, s, seed)) for seed in range(6)] for s in SPLITS}
-    draw_prepared._prepared.cache_clear()
+    prepared._prepared.cache_clear()
     again = [world_digest(build(one, "test", seed)) for seed in reversed(range(6))]
     assert again[::-1] == digests["test"]
     assert len({d for of_split in digests.values() for d in of_split}) == 18

@@ -8,9 +8,9 @@ import yaml
 from benchnav.arena.body import LawKind
 from benchnav.arena.solid import Kind
 from benchnav.errors import MapError, MeshError, ScenarioError
+from benchnav.generation.build import build
 from benchnav.navigation.tracks import granted_map
 from benchnav.scenario.load import scenario_from_text
-from benchnav.world.build import build
 from benchnav.world.simulation import Simulation
 from tests.importers.data import published
 from tests.reference import clearance as slow

@@ -5,9 +5,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from benchnav.arena.solid import Kind, Solid
+from benchnav.generation.clearance import barrier, clear, joined, point_shapes, shifted
+from benchnav.generation.solids import bounds_wall
 from benchnav.geometry.rotation import rotated
-from benchnav.world.draw_gap import barrier, clear, joined, point_shapes, shifted
-from benchnav.world.draw_solid import bounds_wall
 from tests.reference import clearance as slow
 
 _PLACE = st.tuples(st.floats(-4, 4), st.floats(-4, 4)).map(np.array)

@@ -5,8 +5,8 @@ from hypothesis import strategies as st
 from pydantic import TypeAdapter
 
 from benchnav.arena.body import LawKind
+from benchnav.generation.motion_law import draw_law, moved_law, place_at_start, recorded_laws, swept
 from benchnav.scenario.law import Law as LawSpec
-from benchnav.world.draw_law import draw_law, moved_law, place_at_start, recorded_laws, swept
 
 _SPEC = TypeAdapter(LawSpec)
 

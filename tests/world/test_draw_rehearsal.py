@@ -8,8 +8,8 @@ import pytest
 from benchnav.arena.agents import Role
 from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind
+from benchnav.generation.rehearsal_world import leaders_of, rehearsal_world
 from benchnav.navigation.tracks import granted_map
-from benchnav.world.draw_rehearsal import leaders_of, rehearsal_world
 from tests import worlds
 
 

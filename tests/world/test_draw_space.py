@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from benchnav.arena.solid import Kind, Solid
+from benchnav.generation.build import build
+from benchnav.generation.clearance import barrier
+from benchnav.generation.free_space import JoinedSpace, PartedSpace
+from benchnav.generation.solids import bounds_wall
 from benchnav.scenario import catalogue
-from benchnav.world.build import build
-from benchnav.world.draw_gap import barrier
-from benchnav.world.draw_solid import bounds_wall
-from benchnav.world.draw_space import JoinedSpace, PartedSpace
 from tests.reference import clearance as slow
 
 BOUNDS = (-10.0, -10.0, 10.0, 10.0)

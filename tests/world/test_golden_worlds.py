@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchnav.generation.build import build
 from benchnav.scenario.load import load_scenario
-from benchnav.world.build import build
 from tests.scenario.files import SHIPPED
 
 GOLDEN = Path(__file__).with_name("golden_worlds.json")

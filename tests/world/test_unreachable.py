@@ -3,8 +3,8 @@
 import pytest
 
 from benchnav.errors import UnsolvableError
+from benchnav.generation.build import build
 from benchnav.scenario.load import scenario_from_text
-from benchnav.world.build import build
 
 TEXT = """\
 name: tests/walled

@@ -13,7 +13,7 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import ByteArray, FloatArray, IntArray
-from benchnav.envs.collision import probability
+from benchnav.envs.collision_probability import probability
 from benchnav.envs.encoders.encoder import Bodies, Encoder, Float32Array, Number, within
 from benchnav.envs.encoders.paper import SPEED, own_frame
 from benchnav.geometry.capsule import capsule_time

@@ -7,10 +7,10 @@ from typing import Any
 
 import yaml
 
+from benchnav.config.yaml_reader import read_yaml
 from benchnav.errors import ScenarioError, UsageError
 from benchnav.scenario.importers import ros_map
 from benchnav.scenario.importers.grid import read_bytes
-from benchnav.scenario.yaml_reader import read_yaml
 
 Mapping = dict[str, Any]
 

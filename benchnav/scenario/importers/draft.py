@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from benchnav.arrays import FloatArray
+from benchnav.config.document import shown
 from benchnav.errors import MapError, UsageError
 from benchnav.scenario.base import MAX_NAME, NAME_PATTERN
-from benchnav.scenario.document import shown
 from benchnav.scenario.importers import journeys, movingai, ros_map
 from benchnav.scenario.importers.grid import Occupancy, demand_free
 from benchnav.scenario.importers.room import Room, largest_room

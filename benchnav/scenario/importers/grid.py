@@ -8,7 +8,7 @@ import numpy as np
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.errors import MapError
 from benchnav.geometry.rotation import rotated
-from benchnav.plain_file import read_file
+from benchnav.system.plain_file import read_file
 
 MAX_CELLS = 16_000_000
 

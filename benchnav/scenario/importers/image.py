@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from benchnav.arrays import BoolArray
 from benchnav.errors import MapError
-from benchnav.plain_file import open_file
 from benchnav.scenario.importers.grid import MAX_CELLS, check_size
+from benchnav.system.plain_file import open_file
 
 if TYPE_CHECKING:
     from PIL.Image import Image

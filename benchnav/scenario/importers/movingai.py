@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.config.document import shown
 from benchnav.errors import MapError
-from benchnav.scenario.document import shown
 from benchnav.scenario.importers.grid import MAX_CELLS, Occupancy, check_size, read_bytes
 
 FREE = ".GS"

@@ -12,12 +12,12 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from benchnav.arrays import BoolArray
+from benchnav.config.document import Document, shown
+from benchnav.config.validation import FieldError, validate
+from benchnav.config.yaml_reader import read_yaml
 from benchnav.errors import MapError, ScenarioError, did_you_mean
-from benchnav.scenario.document import Document, shown
 from benchnav.scenario.importers.grid import Occupancy
 from benchnav.scenario.importers.image import read_levels
-from benchnav.scenario.validation import FieldError, validate
-from benchnav.scenario.yaml_reader import read_yaml
 
 UNKNOWN_GREY = 205  # the level that map_saver writes for unknown cells in its mode trinary
 

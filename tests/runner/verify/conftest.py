@@ -4,10 +4,10 @@ import shutil
 
 import pytest
 
+from benchnav.runner.plan.suite import load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import load_suite
-from benchnav.runner.verify.verify import Wanted, verify
-from benchnav.store.unpack import opened
+from benchnav.store.packs.unpack import opened
+from benchnav.verify.verify import Wanted, verify
 from tests.runner.verify.forge import Forger
 
 SUITE = """

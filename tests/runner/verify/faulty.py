@@ -19,13 +19,13 @@ from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
 from benchnav.episode.episode import Identity
-from benchnav.runner.recorder import Recorder
-from benchnav.runner.verify.compare import compare
-from benchnav.runner.verify.finding import Report
-from benchnav.runner.verify.part_check import Pair
-from benchnav.runner.verify.referee import judge
-from benchnav.runner.verify.resimulate import resimulate
-from benchnav.runner.verify.twin_check import check_twin
+from benchnav.runner.rollouts.recorder import Recorder
+from benchnav.verify.episode_check import compare
+from benchnav.verify.finding import Report
+from benchnav.verify.part_check import Pair
+from benchnav.verify.reference.fcl_check import judge
+from benchnav.verify.reference.reference_check import check_twin
+from benchnav.verify.resimulation import resimulate
 from benchnav.world import contacts, step, touch
 from benchnav.world.simulation import Simulation
 from tests.worlds import agents, back_and_forth, box, random_world, walls, world

@@ -10,11 +10,11 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from benchnav.store import checked_json
-from benchnav.store.digest import digest
-from benchnav.store.episodes import from_table, to_table
-from benchnav.store.manifest import Manifest
-from benchnav.store.part import EPISODES_FILE, FILES, SEAL
+from benchnav.store.parts.digest import digest
+from benchnav.store.parts.episodes import from_table, to_table
+from benchnav.store.parts.part import EPISODES_FILE, FILES, SEAL
+from benchnav.store.runs import checked_json
+from benchnav.store.runs.manifest import Manifest
 
 
 class Forger:

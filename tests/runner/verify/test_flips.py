@@ -13,11 +13,11 @@ import pytest
 
 from benchnav.errors import CorruptPartError
 from benchnav.metrics.measure import all_metrics
-from benchnav.store import checked_json
-from benchnav.store.episodes import EPISODES, from_table
-from benchnav.store.part import EPISODES_FILE, REHEARSALS_FILE, RESULTS_FILE, SEAL
-from benchnav.store.results import RESULTS
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.parts.episodes import EPISODES, from_table
+from benchnav.store.parts.part import EPISODES_FILE, REHEARSALS_FILE, RESULTS_FILE, SEAL
+from benchnav.store.parts.results import RESULTS
+from benchnav.store.runs import checked_json
+from benchnav.store.runs.run_folder import RunFolder
 from tests.runner.verify.forge import flipped, numbers_of
 
 # nothing finds a timing that is a little off, nor another traceback; remarks stand in the results

@@ -7,16 +7,16 @@ import pytest
 
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
-from benchnav.runner.verify.finding import Report
-from benchnav.runner.verify.part_check import Pair
-from benchnav.runner.verify.resimulate import resimulate
+from benchnav.verify.finding import Report
+from benchnav.verify.part_check import Pair
+from benchnav.verify.resimulation import resimulate
 from tests.runner.verify.faulty import play, scenes
 from tests.worlds import agents, disc, random_world, walls, world
 
 pytest.importorskip("fcl")
 
-from benchnav.runner.verify.referee import judge
-from benchnav.runner.verify.referee_scene import Scene
+from benchnav.verify.reference.fcl_check import judge
+from benchnav.verify.reference.fcl_scene import Scene
 
 
 def pair_of(drawn, seed=0):

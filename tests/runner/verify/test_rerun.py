@@ -10,14 +10,14 @@ import pyarrow.parquet as pq
 import pytest
 
 from benchnav.metrics.measure import all_metrics
-from benchnav.runner.measured import measured
+from benchnav.runner.execute.measurement import measured
+from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
-from benchnav.runner.suite import Selection, load_suite
-from benchnav.runner.verify.resimulate import resimulate
-from benchnav.store.episodes import from_table, to_table
-from benchnav.store.pack import pack
-from benchnav.store.part import EPISODES_FILE, RESULTS_FILE
-from benchnav.store.run_folder import RunFolder
+from benchnav.store.packs.pack import pack
+from benchnav.store.parts.episodes import from_table, to_table
+from benchnav.store.parts.part import EPISODES_FILE, RESULTS_FILE
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.verify.resimulation import resimulate
 from tests.runner.verify.forge import Forger
 
 

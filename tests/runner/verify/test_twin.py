@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from benchnav.arena.world import ContactRule
-from benchnav.runner.verify.finding import Report
-from benchnav.runner.verify.part_check import PartCheck
-from benchnav.runner.verify.sampled import sampled
-from benchnav.runner.verify.twin_check import check_twin
+from benchnav.verify.finding import Report
+from benchnav.verify.part_check import PartCheck
+from benchnav.verify.reference.reference_check import check_twin
+from benchnav.verify.reference.sample import sampled
 from tests.runner.verify.faulty import FAULTS, play
 from tests.worlds import random_world
 

@@ -1,0 +1,60 @@
+"""Arrays that were learned, on disk: safetensors and plain text about them, never pickle."""
+
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from safetensors.numpy import load, save
+
+from benchnav.arrays import AnyArray
+from benchnav.errors import PluginError
+from benchnav.system.plain_file import read_file
+
+MOST_BYTES = 1 << 30
+_KEY = "about"
+
+
+@dataclass(frozen=True, eq=False)
+class TensorFile:
+    """What a file holds."""
+
+    tensors: Mapping[str, AnyArray]
+    about: Mapping[str, Any]  # plain data
+    sha256: str  # of its bytes
+
+
+def write_tensors(path: Path, tensors: Mapping[str, AnyArray], about: Mapping[str, Any]) -> None:
+    """Atomically: a reader sees the old file or the new one.
+
+    One key holds all of ``about``: the library writes several in an order that changes.
+    """
+    part = path.with_name(path.name + ".part")
+    part.write_bytes(save(dict(tensors), {_KEY: json.dumps(about, sort_keys=True)}))
+    part.replace(path)
+
+
+def read_tensors(path: Path) -> TensorFile:
+    """Raises PluginError where the file is missing, cut short, or something else."""
+    try:
+        data = read_file(path, MOST_BYTES)
+    except OSError as error:
+        raise PluginError(f"{path}: cannot be read: {error.strerror}.") from None
+    if len(data) > MOST_BYTES:
+        raise PluginError(f"{path}: must have at most {MOST_BYTES} bytes; it is larger.")
+    try:
+        tensors = load(data)
+        header = json.loads(data[8 : 8 + int.from_bytes(data[:8], "little")])
+        about = json.loads(header.get("__metadata__", {}).get(_KEY, "{}"))
+    except Exception as error:
+        raise PluginError(
+            f"{path}: must be a whole safetensors file. It is cut short or something else:"
+            f" {str(error)[:200]}."
+        ) from None
+    if not isinstance(about, dict):
+        raise PluginError(
+            f"{path}: must hold facts about its arrays. Got {str(about)[:80]} instead."
+        )
+    return TensorFile(tensors, about, hashlib.sha256(data).hexdigest())

@@ -1,0 +1,91 @@
+"""The dynamic window approach towards the guide's target."""
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.controller import Controller, Guide
+from benchnav.navigation.navigator import CommandKind, Need, PluginConfig
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.row_table import RowTable
+from benchnav.threads import run_rows
+
+from ...common.kernel_inputs import bodies_of, flat, sensed
+from .kernel import choose
+
+
+class DynamicWindowConfig(PluginConfig):
+    """Parameters of the dynamic window approach."""
+
+    acceleration: float = Field(
+        10.0, gt=0, description="[m/s²] by which the speed is changed, and braked, at most"
+    )
+    turn_acceleration: float = Field(
+        20.0, gt=0, description="[rad/s²] by which the turn rate is changed at most"
+    )
+    heading: float = Field(0.8, ge=0, description="α, weight of facing the target")
+    distance: float = Field(3.0, ge=0, description="β, weight of the way that is free")
+    speed: float = Field(0.2, ge=0, description="γ, weight of driving fast")
+    far: float = Field(
+        1.0, gt=0, description="[m] a way on which nothing stands so far is free enough"
+    )
+    margin: float = Field(0.06, ge=0, description="[m] kept from everything")
+    predict: bool = Field(
+        True,
+        description="neighbours keep their velocities; false: they stand where they are, as in"
+        " the paper",
+    )
+    horizon: float = Field(3.0, gt=0, description="[s] for which they are predicted")
+    hold: float = Field(
+        0.6,
+        gt=0,
+        description="[s] after which a turning agent is predicted to keep its course, when"
+        " neighbours are predicted (not from the paper)",
+    )
+    speeds: int = Field(6, ge=2, description="speeds that are tried in the window")
+    turns: int = Field(15, ge=2, description="turn rates that are tried in the window")
+
+
+class DynamicWindow(Controller):
+    """Drives the best of the arcs that it can reach within a step and on which it can still stop.
+
+    Twists, so that what is checked is what is driven; holonomic bodies obey them too.
+    """
+
+    Config = DynamicWindowConfig
+    needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
+    command: ClassVar[CommandKind] = "twist"
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self._told = RowTable()
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        for row, briefing in zip(rows, briefings, strict=True):
+            body = bodies_of(briefing)
+            self._told.put(int(row), body=body, turn=np.zeros(len(body)))
+
+    def steer(self, observation: Observation, guide: Guide) -> FloatArray:
+        worlds, agents = observation.active.shape
+        rows, c = worlds * agents, self.config
+        body, turn = (self._told.take(name, observation.rows, agents) for name in ("body", "turn"))
+        speed = np.sqrt(np.sum(observation.velocity**2, axis=-1))  # forward: twists drive no other
+        position, velocity, radius, _, count, start, end, _, _, edges = sensed(observation)
+        arrays = (
+            observation.active, observation.position, observation.heading,
+            np.stack([speed, turn], axis=-1), guide.target, guide.remaining, body,
+            position, velocity, radius, count, start, end, edges,
+        )  # fmt: skip
+        answer = np.zeros((rows, 2))
+        run_rows(
+            choose, rows, *flat(rows, arrays), np.array([c.acceleration, c.turn_acceleration]),
+            np.array([c.heading, c.distance, c.speed]), c.margin, c.far, c.horizon, c.hold,
+            c.predict, c.speeds, c.turns, answer,
+        )  # fmt: skip
+        twist = answer.reshape(worlds, agents, 2)
+        self._told.write("turn", observation.rows, twist[..., 1])
+        return twist

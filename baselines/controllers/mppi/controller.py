@@ -1,0 +1,112 @@
+"""Model predictive path integral control towards the guide's target."""
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.controller import Controller, Guide
+from benchnav.navigation.navigator import CommandKind, Need, PluginConfig
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.randomness.agent_streams import agent_streams
+from benchnav.navigation.row_table import RowTable
+from benchnav.threads import run_rows
+
+from ...common.kernel_inputs import bodies_of, flat, sensed
+from .kernel import control
+
+
+class MppiConfig(PluginConfig):
+    """Parameters of model predictive path integral control."""
+
+    samples: int = Field(64, ge=3, description="plans that are tried at each decision")
+    steps: int = Field(10, ge=2, description="twists of a plan")
+    tick: float = Field(0.3, gt=0, description="[s] that each twist of a plan is held")
+    knots: int = Field(6, ge=2, description="times in a plan at which noise is drawn")
+    temperature: float = Field(0.15, gt=0, description="[m] λ: how much worse plans still count")
+    control_cost: float = Field(
+        0.1, ge=0, description="γ / λ: what plans cost that go on with the last one and exceed it"
+    )
+    speed_noise: float = Field(
+        0.5, gt=0, description="standard deviation of speeds, as a share of the preferred one"
+    )
+    turn_noise: float = Field(
+        0.5, gt=0, description="standard deviation of turn rates, as a share of the largest"
+    )
+    margin: float = Field(
+        0.05,
+        ge=0,
+        description="[m] nearer than which a neighbour is touched; half of it for what stands",
+    )
+    contact: float = Field(20.0, ge=0, description="[m] cost of a contact; twice that if at once")
+    probability: float = Field(
+        1.0, ge=0, description="[m] cost of a collision probability (Eq. 24) of 1 all the time"
+    )
+    back: float = Field(
+        1.0, ge=0, description="[m] cost of touching at once a dynamic obstacle if it turned back"
+    )
+    near: float = Field(
+        3.0, ge=0, description="[m] cost of touching a neighbour all the time; nearness costs less"
+    )
+    near_edges: float = Field(0.6, ge=0, description="[m] the same of touching what stands")
+    clearance: float = Field(0.4, gt=0, description="[m] from which on nothing is near")
+    smooth: float = Field(
+        0.1, ge=0, description="[m] cost of a change by the whole preferred speed or turn rate"
+    )
+
+
+class Mppi(Controller):
+    """Tries many disturbances of its last plan, and weighs them by exp(−cost / λ).
+
+    Twists; holonomic bodies obey them too.
+    """
+
+    Config = MppiConfig
+    needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
+    command: ClassVar[CommandKind] = "twist"
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self._told = RowTable()
+        self._streams: dict[int, list[np.random.Generator]] = {}
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        for row, briefing in zip(rows, briefings, strict=True):
+            self._streams[int(row)] = agent_streams(briefing)
+            plan = np.zeros((len(briefing), self.config.steps, 2))
+            self._told.put(int(row), body=bodies_of(briefing), plan=plan)
+
+    def steer(self, observation: Observation, guide: Guide) -> FloatArray:
+        worlds, agents = observation.active.shape
+        rows, c = worlds * agents, self.config
+        body, plan = (self._told.take(name, observation.rows, agents) for name in ("body", "plan"))
+        position, velocity, radius, kind, count, start, end, _, _, edges = sensed(observation)
+        arrays = (
+            observation.active, observation.position, observation.heading, guide.target,
+            guide.remaining, body, plan, position, velocity, radius, kind, count, start, end,
+            edges,
+        )  # fmt: skip
+        new = plan.reshape(rows, *plan.shape[2:]).copy()
+        weights = np.array(
+            [c.contact, c.probability, c.near, c.smooth, c.clearance, c.back, c.near_edges]
+        )
+        run_rows(
+            control, rows, *flat(rows, arrays), self._noise(observation), c.tick,
+            np.array([c.speed_noise, c.turn_noise]), c.temperature, c.control_cost, c.margin,
+            weights, new,
+        )  # fmt: skip
+        plan = new.reshape(plan.shape)
+        self._told.write("plan", observation.rows, plan)
+        return plan[:, :, 0].copy()
+
+    def _noise(self, observation: Observation) -> FloatArray:
+        """(B·A, S, M, 2) standard normal, each active agent's from its own stream."""
+        worlds, agents = observation.active.shape
+        noise = np.zeros((worlds, agents, self.config.samples, self.config.knots, 2))
+        for world, agent in np.argwhere(observation.active):
+            stream = self._streams[int(observation.rows[world])][agent]
+            stream.standard_normal(out=noise[world, agent])
+        return noise.reshape(worlds * agents, *noise.shape[2:])

@@ -1,0 +1,131 @@
+"""What the ORCA navigator and the ORCA controller share: limits per row, and the kernel's call."""
+
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arrays import AnyArray, FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.navigator import PluginConfig
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.randomness.agent_streams import canonical_order
+from benchnav.navigation.row_table import RowTable
+from benchnav.sensors.readings import Edges, Neighbours
+from benchnav.threads import run_rows
+
+from .kernel import OWN, avoid, prepare
+
+LEAST_MARGIN = 1e-3  # [m] among edges: without any, rounding is a contact
+LEAST = 64  # agents below which a second thread costs more than it saves
+
+
+class OrcaConfig(PluginConfig):
+    """Parameters of optimal reciprocal collision avoidance (van den Berg et al. 2011)."""
+
+    time_horizon: float = Field(
+        5.0, gt=0, description="[s] for which velocities are safe with respect to neighbours"
+    )
+    time_horizon_obstacle: float = Field(
+        1.0, gt=0, description="[s] for which velocities are safe with respect to edges"
+    )
+    margin: float = Field(
+        0.05, ge=0, description="[m] by which every disc is taken to be larger among neighbours"
+    )
+    edge_margin: float = Field(
+        0.05,
+        ge=0,
+        description="[m] by which an agent takes itself to be larger among edges; less where its"
+        " path leaves less",
+    )
+    neighbours: int = Field(10, ge=0, description="nearest neighbours that are considered")
+    perturbation: float = Field(
+        0.005,
+        ge=0,
+        lt=1,
+        description="size of a constant random error of the agent's own velocity and preferred"
+        " velocity, as a share of the preferred speed; agents that meet in exact symmetry"
+        " stand for ever without it",
+    )
+
+
+class Avoidance:
+    """Turns targets into velocities that avoid neighbours and edges."""
+
+    def __init__(self, config: OrcaConfig) -> None:
+        self.config = config
+        self._told = RowTable()
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        """Take radii, limits and the symmetry-breaking offsets of the worlds ``rows`` (N,)."""
+        for row, briefing in zip(rows, briefings, strict=True):
+            count = len(briefing)
+            offset = np.empty((count, 2))
+            offset[canonical_order(briefing)] = 2.0 * briefing.rng.random((count, 2)) - 1.0
+            own = np.empty((count, 4))
+            own[:, 0] = briefing.radius
+            own[:, 1] = briefing.max_speed
+            own[:, 2] = briefing.preferred_speed
+            own[:, 3] = briefing.dt
+            self._told.put(int(row), own=own, offset=offset * self.config.perturbation)
+
+    def velocity(
+        self, observation: Observation, target: FloatArray, clearance: FloatArray | None = None
+    ) -> FloatArray:
+        """(B, A, 2) velocity [m/s] near the one that leads to ``target`` (B, A, 2) [m].
+
+        The margin among edges is at most ``clearance`` (B, A) [m], but for `LEAST_MARGIN`.
+        """
+        worlds, agents = observation.active.shape
+        rows = worlds * agents
+        told, offset = (
+            self._told.take(name, observation.rows, agents) for name in ("own", "offset")
+        )
+        whole = (observation.position, observation.velocity, target, told, offset)
+        own, answer = np.empty((rows, OWN)), np.zeros((rows, 2))
+        run_rows(prepare, rows, *_flat(rows, whole), own, least=LEAST)
+        config = self.config
+        edge_margin = np.full(rows, config.edge_margin)
+        if clearance is not None:
+            edge_margin = np.minimum(edge_margin, np.maximum(clearance.ravel(), LEAST_MARGIN))
+        run_rows(
+            avoid, rows, own, *_flat(rows, (observation.active, *_sensed(observation))),
+            config.neighbours, config.margin, edge_margin, 1.0 / config.time_horizon,
+            1.0 / config.time_horizon_obstacle, answer, least=LEAST,
+        )  # fmt: skip
+        return answer.reshape(worlds, agents, 2)
+
+
+def _flat(rows: int, arrays: Iterable[AnyArray]) -> Iterator[AnyArray]:
+    """Each (B, A, …) as contiguous (rows, …)."""
+    for array in arrays:
+        yield np.ascontiguousarray(array).reshape(rows, *array.shape[2:])
+
+
+def _sensed(observation: Observation) -> tuple[AnyArray, ...]:
+    """Neighbours and edges as the kernel takes them."""
+    shape = observation.active.shape
+    seen = observation.neighbours or no_neighbours(*shape)
+    sides = observation.edges or no_edges(*shape)
+    return (
+        seen.position, seen.velocity, seen.radius, seen.kind, seen.count,
+        sides.start, sides.end, sides.before, sides.after,
+        sides.start_convex, sides.end_convex, sides.count,
+    )  # fmt: skip
+
+
+def no_neighbours(worlds: int, agents: int) -> Neighbours:
+    """Nobody in sight."""
+    at = (worlds, agents, 0)
+    return Neighbours(
+        np.zeros((*at, 2)), np.zeros((*at, 2)), np.zeros(at), np.zeros(at, np.int8),
+        np.zeros(at[:2], np.int64),
+    )  # fmt: skip
+
+
+def no_edges(worlds: int, agents: int) -> Edges:
+    """Nothing solid in sight."""
+    at = (worlds, agents, 0)
+    start, end, before, after = (np.zeros((*at, 2)) for _ in range(4))
+    convex = np.zeros(at, np.bool_)
+    return Edges(start, end, before, after, convex, convex, np.zeros(at[:2], np.int64))

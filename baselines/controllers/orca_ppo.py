@@ -1,0 +1,126 @@
+"""Two controllers in one: ORCA where what it assumes holds, a learned policy where it does not."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arena.agents import Dynamics
+from benchnav.arena.sensing import Sensing
+from benchnav.arena.solid import Kind
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.controller import Controller, Guide
+from benchnav.navigation.navigator import Need, PluginConfig, Training
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.row_table import RowTable
+
+from ..common.twist_conversion import as_velocity
+from ..learned.recurrent_ppo.controller import RecurrentPPOPlusController
+from ..learned.recurrent_ppo.policy_at_work import PolicyConfig
+from .orca.avoidance import OrcaConfig
+from .orca.controller import OrcaController
+
+
+class OrcaPpoConfig(PluginConfig):
+    """Parameters of both, and of the choice between them."""
+
+    orca: OrcaConfig = Field(
+        OrcaConfig(time_horizon=3.0, edge_margin=0.02), description="parameters of ORCA"
+    )
+    policy: PolicyConfig = Field(PolicyConfig(), description="parameters of `recurrent-ppo-plus`")
+    memory: float = Field(
+        5.0,
+        ge=0,
+        description="[s] for which the policy drives on after a dynamic obstacle was sensed",
+    )
+    detour: float = Field(
+        0.5,
+        ge=0,
+        description="[m] that a path may be longer than the straight way to the goal for the policy"
+        " to be shown the goal itself; on a longer one it is shown waypoints",
+    )
+
+
+class OrcaPpo(Controller):
+    """Decides for each agent and anew at each step who drives.
+
+    ORCA assumes that a body can do what it is told, and that others avoid it too. So the
+    policy of `recurrent-ppo-plus`, which learned on unicycles among obstacles that
+    never yield, drives unicycles, and everybody who has just sensed a dynamic
+    obstacle; ORCA drives all others. The policy knows goals better than waypoints
+    (`.waypoint`), and passes by what stands on its way: unless the path is a detour, it is
+    shown the goal.
+    """
+
+    Config = OrcaPpoConfig
+    adapts_clearance: ClassVar[bool] = True
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self._orca = OrcaController(self.config.orca)
+        self._policy = RecurrentPPOPlusController(self.config.policy)
+        self._kept = RowTable()
+
+    @property
+    def required(self) -> frozenset[Need]:
+        return self._orca.required | self._policy.required
+
+    @property
+    def training(self) -> Training | None:
+        return self._policy.training
+
+    @property
+    def fingerprint(self) -> str:
+        return self._policy.fingerprint
+
+    def unfit(self, sensing: Sensing) -> str:
+        return self._policy.unfit(sensing)
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        self._orca.reset(briefings, rows)
+        self._policy.reset(briefings, rows)
+        for row, told in zip(rows.tolist(), briefings, strict=True):
+            self._kept.put(
+                row,
+                unicycle=told.dynamics == Dynamics.UNICYCLE,
+                dt=np.full(len(told), told.dt),
+                wary=np.full(len(told), -np.inf),  # [s] until when
+            )
+
+    def steer(self, observation: Observation, guide: Guide) -> FloatArray:
+        rows, agents = observation.rows, observation.active.shape[1]
+        unicycle, dt = (self._kept.take(name, rows, agents) for name in ("unicycle", "dt"))
+        learned = observation.active & (unicycle | self._wary(observation))
+        velocity = np.zeros((*learned.shape, 2))
+        other = observation.active & ~learned
+        if other.any():
+            velocity = self._orca.steer(replace(observation, active=other), guide)
+        if learned.any():
+            shown = self._goals_if_direct(observation, guide)
+            twist = self._policy.steer(replace(observation, active=learned), shown)
+            as_velocity(learned, unicycle, observation.heading, dt, twist, velocity)
+        return velocity
+
+    def _wary(self, seen: Observation) -> BoolArray:
+        """(B, A) who has just sensed a dynamic obstacle."""
+        rows, agents = seen.rows, seen.active.shape[1]
+        time = seen.time[:, None]
+        near = seen.neighbours
+        assert near is not None  # noqa: S101 - both parts declare them
+        listed = np.arange(near.kind.shape[2]) < near.count[..., None]
+        mover = np.any(listed & (near.kind == Kind.DYNAMIC), axis=-1)
+        until = self._kept.take("wary", rows, agents)
+        until = np.where(mover, time + self.config.memory, until)
+        self._kept.write("wary", rows, until)
+        wary: BoolArray = time <= until
+        return wary
+
+    def _goals_if_direct(self, seen: Observation, guide: Guide) -> Guide:
+        """The guide with goals for targets, but for detours."""
+        way = seen.goal - seen.position
+        straight = np.sqrt(np.sum(way * way, axis=-1))
+        direct = guide.remaining - straight <= self.config.detour
+        return replace(guide, target=np.where(direct[..., None], seen.goal, guide.target))

@@ -1,0 +1,89 @@
+"""Social forces towards the guide's target."""
+
+import math
+from collections.abc import Sequence
+from typing import ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.controller import Controller, Guide
+from benchnav.navigation.navigator import Need, PluginConfig
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.randomness.agent_streams import canonical_order
+from benchnav.navigation.row_table import RowTable
+from benchnav.threads import run_rows
+
+from ...common.kernel_inputs import bodies_of, flat, sensed
+from .kernel import social_force
+
+
+class SocialForceConfig(PluginConfig):
+    """Parameters of the social force model; those of the paper unless another is said."""
+
+    relaxation: float = Field(0.5, gt=0, description="[s] τ, of the speed")
+    pedestrians: float = Field(2.1, ge=0, description="[m²/s²] V⁰ of the potential of a neighbour")
+    pedestrian_range: float = Field(0.3, gt=0, description="[m] σ, at which it falls to 1/e")
+    stride: float = Field(
+        0.2,
+        ge=0,
+        description="[s] Δt, after which a neighbour's step ends (tuned; the paper says that a"
+        " step is of the order of its width)",
+    )
+    borders: float = Field(10.0, ge=0, description="[m²/s²] U⁰ of the potential of a border")
+    border_range: float = Field(0.2, gt=0, description="[m] R, at which it falls to 1/e")
+    sight: float = Field(
+        math.radians(200.0), gt=0, le=2 * math.pi, description="[rad] 2φ, angle of sight"
+    )
+    behind: float = Field(0.5, ge=0, le=1, description="c, weight of forces from out of sight")
+    top: float = Field(1.3, gt=0, description="largest speed as a multiple of the preferred one")
+    border_body: float = Field(
+        0.4,
+        ge=0,
+        description="[m] radius of the bodies for which the distance of borders is that of the"
+        " centre; to what is larger they are nearer (not from the paper)",
+    )
+    fluctuation: float = Field(
+        0.02,
+        ge=0,
+        description="[m/s²] standard deviation of a constant acceleration of each agent, in x and"
+        " in y, without which agents that meet in exact symmetry stand for ever",
+    )
+    tick: float = Field(0.05, gt=0, description="[s] of integration, at most (not from the paper)")
+
+
+class SocialForce(Controller):
+    """The social force model, with the guide's target as the place where each agent wants to be."""
+
+    Config = SocialForceConfig
+    needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self._told = RowTable()
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        for row, briefing in zip(rows, briefings, strict=True):
+            push = np.empty((len(briefing), 2))
+            push[canonical_order(briefing)] = briefing.rng.standard_normal(push.shape)
+            push *= self.config.fluctuation
+            self._told.put(int(row), body=bodies_of(briefing), push=push)
+
+    def steer(self, observation: Observation, guide: Guide) -> FloatArray:
+        worlds, agents = observation.active.shape
+        rows, c = worlds * agents, self.config
+        body, push = (self._told.take(name, observation.rows, agents) for name in ("body", "push"))
+        position, velocity, radius, _, count, *edges = sensed(observation)
+        arrays = (
+            observation.active, observation.position, observation.velocity, guide.target, body,
+            push, position, velocity, radius, count, *edges,
+        )  # fmt: skip
+        answer = np.zeros((rows, 2))
+        run_rows(
+            social_force, rows, *flat(rows, arrays), c.border_body, c.relaxation, c.pedestrians,
+            c.pedestrian_range, c.stride, c.borders, c.border_range, math.cos(0.5 * c.sight),
+            c.behind, c.top, c.tick, answer,
+        )  # fmt: skip
+        return answer.reshape(worlds, agents, 2)

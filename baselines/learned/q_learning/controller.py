@@ -1,0 +1,16 @@
+"""The table as a controller: it is shown waypoints in place of its goal."""
+
+from benchnav.navigation.navigator import PluginConfig
+
+from ...common.policy_runner import PilotedController
+from .table_pilot import QLearningConfig, TablePilot
+
+
+class QLearningController(PilotedController):
+    """The table of `q-learning`, shown the guide's target as its goal."""
+
+    Config = QLearningConfig
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self.pilot = TablePilot(self.config)

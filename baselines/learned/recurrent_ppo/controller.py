@@ -1,0 +1,25 @@
+"""The learned navigators as controllers: the policy follows waypoints in place of its goal."""
+
+from typing import ClassVar
+
+from benchnav.navigation.navigator import PluginConfig
+
+from ...common.policy_runner import PilotedController
+from .policy_at_work import PolicyConfig, pilot_of
+
+
+class RecurrentPPOController(PilotedController):
+    """The policy of `recurrent-ppo`, shown the guide's target as its goal (`..waypoint`)."""
+
+    Config = PolicyConfig
+    shipped: ClassVar[str] = "recurrent-ppo.safetensors"
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self.pilot = pilot_of(self.config, self.shipped)
+
+
+class RecurrentPPOPlusController(RecurrentPPOController):
+    """The policy of `recurrent-ppo-plus`, shown the guide's target as its goal."""
+
+    shipped: ClassVar[str] = "recurrent-ppo-plus.safetensors"

@@ -1,0 +1,1 @@
+"""Training: recipes, learners, checkpoints and logs."""

@@ -1,0 +1,114 @@
+"""The learners: sb3-contrib's RecurrentPPO, and SB3's PPO where a recipe has no memory."""
+
+from typing import Any
+
+import numpy as np
+import torch
+from sb3_contrib import RecurrentPPO
+from sb3_contrib.common.recurrent.type_aliases import RNNStates
+
+from benchnav.envs.sb3.agent_vec_env import AgentVecEnv
+from benchnav.envs.sb3.attempt_ppo import AttemptPPO
+
+from ..actor import Float32Array
+from ..policy import FusedPolicy
+from .buffer import SequenceBuffer
+from .recipe import Recipe, Stage
+
+
+class SequencePPO(RecurrentPPO):
+    """RecurrentPPO whose rollouts are cut into short sequences without idle transitions."""
+
+    _last_lstm_states: Any
+
+    def _setup_model(self) -> None:
+        super()._setup_model()
+        stock: Any = self.rollout_buffer
+        self.rollout_buffer = SequenceBuffer(
+            self.n_steps, self.observation_space, self.action_space, stock.hidden_state_shape,
+            self.device, gamma=self.gamma, gae_lambda=self.gae_lambda, n_envs=self.n_envs,
+        )  # fmt: skip
+
+    def collect_rollouts(
+        self, env: Any, callback: Any, rollout_buffer: Any, n_rollout_steps: int
+    ) -> bool:
+        rollout_buffer.env = env
+        return super().collect_rollouts(env, callback, rollout_buffer, n_rollout_steps)
+
+    def forget(self) -> None:
+        """Start with empty memories."""
+        self._last_lstm_states = RNNStates(
+            *(tuple(torch.zeros_like(t) for t in pair) for pair in self._last_lstm_states)
+        )
+
+
+Learner = SequencePPO | AttemptPPO
+
+
+def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Learner:
+    """A fresh learner; weights are initialised from ``seed``."""
+    network = recipe.network
+    shared: dict[str, Any] = {
+        "n_steps": recipe.rollout, "gamma": recipe.gamma, "gae_lambda": recipe.gae_lambda,
+        "clip_range": recipe.clip, "device": device, "seed": seed,
+    }  # fmt: skip
+    policy: dict[str, Any] = {"net_arch": list(network.dense), "log_std_init": network.log_std}
+    if network.lstm_layers:
+        policy |= {"lstm_hidden_size": network.lstm_size, "n_lstm_layers": network.lstm_layers}
+        learner: Learner = SequencePPO(FusedPolicy, env, policy_kwargs=policy, **shared)
+        buffer_of(learner).length = recipe.sequence
+    else:
+        learner = AttemptPPO(
+            "MlpPolicy", env, policy_kwargs=policy,
+            batch_size=recipe.rollout * env.num_envs, **shared,
+        )  # fmt: skip
+    return learner
+
+
+def copy_weights(source: Learner, target: Learner) -> None:
+    """Make ``target`` go on with the policy and the optimiser of ``source``."""
+    target.policy.load_state_dict(source.policy.state_dict())
+    target.policy.optimizer.load_state_dict(source.policy.optimizer.state_dict())
+
+
+def buffer_of(learner: Learner) -> Any:
+    """Its rollouts: a `SequenceBuffer` or a `LiveBuffer`."""
+    return learner.rollout_buffer
+
+
+def enter(learner: Learner, stage: Stage, progress: float) -> None:
+    """Set what the stage says, at the share ``progress`` of its decisions."""
+    first, last = stage.learning_rate
+    rate = first + (last - first) * min(progress, 1.0)
+    learner.lr_schedule = lambda _: rate
+    learner.batch_size, learner.n_epochs = stage.batch, stage.epochs
+    learner.ent_coef = stage.entropy
+
+
+def reseed(learner: Learner, rng: np.random.Generator) -> None:
+    """Every draw that follows depends on ``rng`` alone."""
+    torch.manual_seed(int(rng.integers(2**63)))
+    buffer_of(learner).rng = rng
+
+
+def actor_tensors(learner: Learner) -> dict[str, Float32Array]:
+    """The actor as `Actor` reads it."""
+    state = {k: v.detach().cpu().numpy() for k, v in learner.policy.state_dict().items()}
+    tensors: dict[str, Float32Array] = {}
+    k = 0
+    while f"lstm_actor.weight_ih_l{k}" in state:
+        both = [state[f"lstm_actor.weight_{part}_l{k}"] for part in ("ih", "hh")]
+        tensors[f"lstm{k}.weight"] = np.ascontiguousarray(np.concatenate(both, axis=1).T)
+        tensors[f"lstm{k}.bias"] = (
+            state[f"lstm_actor.bias_ih_l{k}"] + state[f"lstm_actor.bias_hh_l{k}"]
+        )
+        k += 1
+    k = 0
+    while f"mlp_extractor.policy_net.{2 * k}.weight" in state:
+        name = f"mlp_extractor.policy_net.{2 * k}"
+        tensors[f"dense{k}.weight"] = np.ascontiguousarray(state[f"{name}.weight"].T)
+        tensors[f"dense{k}.bias"] = state[f"{name}.bias"]
+        k += 1
+    tensors["output.weight"] = np.ascontiguousarray(state["action_net.weight"].T)
+    tensors["output.bias"] = state["action_net.bias"]
+    return {name: np.ascontiguousarray(t, np.float32) for name, t in tensors.items()}

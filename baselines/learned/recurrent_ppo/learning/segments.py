@@ -1,0 +1,219 @@
+"""Training from a recipe, in segments that each start from a checkpoint and a seed.
+
+A segment resets worlds, memories and every stream of randomness, so a training that was
+killed and resumed ends in the same bits as one that was not.
+"""
+
+import json
+import platform
+import sys
+from collections.abc import Callable
+from dataclasses import asdict, replace
+from importlib.metadata import version
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import torch
+from stable_baselines3.common.callbacks import CallbackList
+
+from benchnav.envs.agent_batch import AgentBatch
+from benchnav.envs.sb3.agent_vec_env import AgentVecEnv
+from benchnav.envs.trainer import TrainingReport
+from benchnav.errors import TrainingError, UsageError
+from benchnav.store.runs.lock import locked
+from benchnav.threads import core_count
+
+from ..actor import Actor
+from ..foresight import foresee
+from ..weights import write_weights
+from . import checkpoint
+from .checkpoint import Progress
+from .courses import make_env, training_pools, validation_batches
+from .evaluate import evaluate
+from .learner import actor_tensors, copy_weights, enter, make_learner, reseed
+from .log import Curve
+from .recipe import Recipe, Stage
+
+WEIGHTS = "weights.safetensors"
+Report = Callable[[TrainingReport], None]
+
+
+class Training:
+    """One run of one recipe with one seed in one folder."""
+
+    def __init__(self, recipe: Recipe, seed: int, folder: Path, device: str = "cpu") -> None:
+        self.recipe, self.seed, self.folder = recipe, seed, folder
+        self._device = device
+
+    def run(self, resume: bool, report: Report) -> dict[str, float]:
+        """Train to the end; returns the last row of the curve.
+
+        Raises:
+            UsageError: the folder holds something else, or there is nothing to resume.
+            TrainingError: a number stopped being finite; the last checkpoint is kept.
+            RunConflictError: another process trains into the folder.
+        """
+        self._claim(resume)
+        self.folder.mkdir(parents=True, exist_ok=True)
+        with locked(self.folder):
+            self._claim(resume)  # another process began at the same time
+            return self._run(resume, report)
+
+    def _run(self, resume: bool, report: Report) -> dict[str, float]:
+        torch.set_num_threads(1)
+        self._lay_out(self.recipe.stages[0])
+        self._validation = validation_batches(self.recipe)
+        progress = Progress(self.recipe.hash, self.seed)
+        self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
+        if resume:
+            progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
+        else:
+            checkpoint.save(self.folder, self.learner, progress)
+        self._tell()
+        curve = Curve(self.folder, progress.decisions)
+        try:
+            while progress.stage < len(self.recipe.stages):
+                progress = self._segment(progress, curve, report)
+        finally:
+            curve.close()
+        return curve.rows[-1] if curve.rows else {}
+
+    def _claim(self, resume: bool) -> None:
+        there = (self.folder / checkpoint.FILE).exists()
+        if there and not resume:
+            raise UsageError(
+                f"{self.folder} must be new or empty; it holds a training."
+                " Go on with --resume, or choose another --out."
+            )
+        if resume and not there:
+            raise UsageError(f"{self.folder} must hold a checkpoint to --resume. It does not.")
+
+    def _tell(self) -> None:
+        """Everything that is needed to repeat the training."""
+        said = {
+            "recipe": self.recipe.model_dump(mode="json"), "hash": self.recipe.hash,
+            "seed": self.seed, "machine": _machine(), "versions": _versions(),
+        }  # fmt: skip
+        (self.folder / "training.json").write_text(json.dumps(said, indent=1) + "\n")
+
+    def _lay_out(self, stage: Stage) -> None:
+        """Draw the worlds of a stage."""
+        self._courses = self.recipe.courses_of(stage)
+        self._env = make_env(self.recipe, training_pools(self.recipe, stage))
+
+    def _enter(self, stage: Stage, seed: int) -> AgentVecEnv:
+        """The worlds of a stage, about to start anew."""
+        if self.recipe.courses_of(stage) != self._courses:
+            self._lay_out(stage)
+            before = self.learner
+            self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
+            copy_weights(before, self.learner)
+        correct = foresee if stage.foresight else None
+        self._env.enter(stage.reward, seed, correct)
+        for batch in self._validation.values():
+            batch.correct = correct
+        return self._env
+
+    def _segment(self, progress: Progress, curve: Curve, report: Report) -> Progress:
+        """Train until the next checkpoint; returns the progress that it holds."""
+        began, stage = perf_counter(), self.recipe.stages[progress.stage]
+        rng = np.random.default_rng([self.seed, progress.segment])
+        env = self._enter(stage, int(rng.integers(2**31)))
+        learner = self.learner
+        reseed(learner, rng)
+        learner._last_obs = None  # so that the worlds start anew
+        _, callback = learner._setup_learn(sys.maxsize, CallbackList([]))
+        if hasattr(learner, "forget"):
+            learner.forget()
+        here = 0
+        goal = min(self.recipe.checkpoint, stage.decisions - progress.in_stage)
+        while here < goal:
+            enter(learner, stage, (progress.in_stage + here) / stage.decisions)
+            self._update(callback, progress.decisions + here)
+            here = int(env.tally.counts["decisions"])
+            report(TrainingReport(progress.decisions + here, self.recipe.decisions))
+        row = env.tally.take()
+        row["decisions"] = progress.decisions + here
+        success = self._validate()
+        reached = float(np.mean(list(success.values())))
+        progress = self._after(progress, here, reached)
+        progress = replace(progress, seconds=progress.seconds + perf_counter() - began)
+        row |= {"stage": progress.stage, "seconds": progress.seconds, **success}
+        curve.add(row)
+        self._write_weights(progress, success)
+        checkpoint.save(self.folder, learner, progress)  # last: what it counts is on disk
+        report(TrainingReport(progress.decisions, self.recipe.decisions, reached))
+        return progress
+
+    def _update(self, callback: Any, decisions: int) -> None:
+        """One rollout, and learning from it."""
+        learner = self.learner
+        try:
+            learner.collect_rollouts(
+                self._env, callback, learner.rollout_buffer, self.recipe.rollout
+            )
+            learner.train()
+        except ValueError:  # torch refuses a Gaussian that is not finite
+            self._check_finite(decisions)
+            raise
+        self._check_finite(decisions)
+
+    def _write_weights(self, progress: Progress, success: dict[str, float]) -> None:
+        """The newest, and every checkpoint's by its decisions."""
+        history = self.folder / "checkpoints"
+        history.mkdir(exist_ok=True)
+        tensors, about = actor_tensors(self.learner), self._about(progress, success)
+        for path in (self.folder / WEIGHTS, history / f"{progress.decisions:09d}.safetensors"):
+            write_weights(path, tensors, about)
+
+    def _after(self, progress: Progress, here: int, reached: float) -> Progress:
+        recipe = self.recipe
+        better = reached > progress.best
+        waited = 0 if better else progress.waited + 1
+        then = replace(
+            progress, segment=progress.segment + 1, decisions=progress.decisions + here,
+            in_stage=progress.in_stage + here, best=max(reached, progress.best), waited=waited,
+        )  # fmt: skip
+        ended = then.in_stage >= recipe.stages[then.stage].decisions
+        if ended or (recipe.patience and waited >= recipe.patience):
+            return replace(then, stage=then.stage + 1, in_stage=0, best=-1.0, waited=0)
+        return then
+
+    def _validate(self) -> dict[str, float]:
+        actor = Actor(actor_tensors(self.learner))
+        return {
+            f"validation {name}": _share(actor, batch) for name, batch in self._validation.items()
+        }
+
+    def _check_finite(self, decisions: int) -> None:
+        for name, parameter in self.learner.policy.named_parameters():
+            if not bool(torch.isfinite(parameter).all()):
+                raise TrainingError(
+                    f"{self.folder}: {name} must stay finite; it did not after {decisions}"
+                    f" decisions. The last checkpoint and {WEIGHTS} are from before."
+                )
+
+    def _about(self, progress: Progress, success: dict[str, float]) -> dict[str, Any]:
+        return {
+            "encoder": self.recipe.encoder, "network": self.recipe.network.model_dump(mode="json"),
+            "recipe": self.recipe.name, "recipe_hash": self.recipe.hash,
+            "courses": [course.model_dump() for course in self.recipe.courses],
+            "progress": asdict(progress), "success": success,
+            "machine": _machine(), "versions": _versions(),
+        }  # fmt: skip
+
+
+def _share(actor: Actor, batch: AgentBatch) -> float:
+    agents = sum(int(world.agents.evaluated.sum()) for world in batch.simulation.pool)
+    return float(evaluate(actor, batch).sum() / agents)
+
+
+def _machine() -> str:
+    return f"{platform.machine()}, {core_count()} cores, {platform.system()}"
+
+
+def _versions() -> dict[str, str]:
+    names = ("benchnav", "numpy", "numba", "torch", "stable_baselines3", "sb3_contrib")
+    return {"python": platform.python_version(), **{name: version(name) for name in names}}

@@ -1,0 +1,160 @@
+"""The policy at work in many rows."""
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arena.sensing import Sensing
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.envs.encoders.catalogue import encoder
+from benchnav.envs.encoders.encoder import Bodies
+from benchnav.envs.encoders.paper import RANGE, RAYS
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.navigator import Need, PluginConfig, Training
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.row_table import RowTable
+
+from ...common.policy_runner import Pilot
+from .actor import Actor
+from .detour import Detours
+from .foresight import HELD, foresee
+from .ray_memory import Sightings
+from .weights import read_weights
+
+SHIPPED = Path(__file__).parent / "weights"
+_LIMITS = ("radius", "max_speed", "max_turn_rate")
+
+
+class PolicyConfig(PluginConfig):
+    """Which weights, and whether to look ahead."""
+
+    weights: str = Field("", description="file that `benchnav train` wrote; its own if empty")
+    foresight: bool = Field(True, description="correct twists that would collide")
+    hold: float = Field(
+        0.9, ge=HELD, le=2, description="[s] that looking ahead may hold a twist at most"
+    )
+
+
+class DriverConfig(PolicyConfig):
+    """The same for who finds the way alone."""
+
+    patience: float = Field(
+        4.0, ge=0, description="[s] of standing after which to try another way; 0: never"
+    )
+
+
+class PolicyPilot(Pilot):
+    """The actor with its encoder, and what each agent remembers.
+
+    Deterministic: the mean of the Gaussian over (forward speed, turn rate).
+
+    Args:
+        weights: file that `benchnav train` wrote.
+        foresight: correct twists that would collide.
+        hold: [s] that a twist may be held at most.
+        patience: [s] of standing after which to try another way; 0: never.
+
+    Who sees by rays looks ahead with what these meet.
+    """
+
+    def __init__(self, weights: Path, foresight: bool, hold: float, patience: float = 0.0) -> None:
+        self._actor, self.about = _loaded(weights)
+        self._encoder = encoder(self.about["encoder"])
+        self._foresight, self._hold = foresight, hold
+        self._sightings = Sightings() if Need.RAYS in self._encoder.needs else None
+        self._detours = Detours(patience) if patience else None
+        self._kept = RowTable()
+
+    @property
+    def needs(self) -> frozenset[Need]:
+        around = {Need.NEIGHBOURS, Need.EDGES} if self._foresight or self._detours else ()
+        return self._encoder.needs.union(around)
+
+    @property
+    def training(self) -> Training:
+        progress = self.about["progress"]
+        return Training(int(progress["decisions"]), float(progress["seconds"]))
+
+    @property
+    def fingerprint(self) -> str:
+        return str(self.about["sha256"])
+
+    def unfit(self, sensing: Sensing) -> str:
+        rays = sensing.rays
+        if Need.RAYS not in self.needs or rays is None:
+            return ""
+        like = (rays.count, round(rays.fan, 6), rays.range, rays.thick)
+        if like == (RAYS, round(math.pi, 6), RANGE, True):
+            return ""
+        return (
+            f"its encoder {self._encoder.name!r} was made for {RAYS} thick rays over 180° and"
+            f" {RANGE:g} m, and agents there have {rays.count}{' thick' if rays.thick else ''}"
+            f" over {math.degrees(rays.fan):.0f}° and {rays.range:g} m"
+        )
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        for row, briefing in zip(rows, briefings, strict=True):
+            memory = np.zeros((len(briefing), self._actor.state_size), np.float32)
+            limits = {name: getattr(briefing, name) for name in _LIMITS}
+            limits["tolerance"] = np.full(len(briefing), briefing.goal_tolerance)
+            self._kept.put(int(row), memory=memory, **limits)
+            for part in (self._sightings, self._detours):
+                if part is not None:
+                    part.reset(int(row), briefing)
+
+    def tolerance(self, seen: Observation) -> FloatArray:
+        return self._told("tolerance", seen)
+
+    def twists(self, seen: Observation, tolerance: FloatArray) -> FloatArray:
+        active, rows = seen.active, seen.rows
+        radius, speed, turn = (self._told(name, seen) for name in _LIMITS)
+        bodies = Bodies(radius, speed, turn)
+        encoded = self._encoder.encode(seen, bodies)
+        memory = self._kept.take("memory", rows, active.shape[1]).copy()
+        now = memory[active]
+        action = np.clip(self._actor.decide(encoded[active], now).astype(float), -1.0, 1.0)
+        memory[active] = now
+        self._kept.write("memory", rows, memory)
+        command = np.zeros((*active.shape, 2))
+        command[active] = action
+        command[..., 0] = 0.5 * (command[..., 0] + 1.0) * speed
+        command[..., 1] *= turn
+        return self._corrected(seen, bodies, command, tolerance)
+
+    def _corrected(
+        self, seen: Observation, bodies: Bodies, command: FloatArray, tolerance: FloatArray
+    ) -> FloatArray:
+        if seen.neighbours is None or seen.edges is None:
+            return command
+        if self._sightings is not None:
+            seen = self._sightings.limit(seen, bodies.radius)
+        if self._detours is not None:
+            self._detours.steer(seen, bodies, command)
+        if not self._foresight:
+            return command
+        return foresee(seen, bodies, command, tolerance, self._hold)
+
+    def _told(self, name: str, seen: Observation) -> FloatArray:
+        values: FloatArray = self._kept.take(name, seen.rows, seen.active.shape[1])
+        return values
+
+
+def pilot_of(config: Any, shipped: str) -> PolicyPilot:
+    """By a `PolicyConfig` or `DriverConfig`; ``shipped`` are its weights where it names none."""
+    path = Path(config.weights) if config.weights else SHIPPED / shipped
+    return PolicyPilot(path, config.foresight, config.hold, getattr(config, "patience", 0.0))
+
+
+@lru_cache(maxsize=8)
+def _read(path: Path, changed: int) -> tuple[Actor, dict[str, Any]]:
+    return read_weights(path)
+
+
+def _loaded(path: Path) -> tuple[Actor, dict[str, Any]]:
+    """Read once per state of the file."""
+    return _read(path, path.stat().st_mtime_ns if path.is_file() else 0)

@@ -1,0 +1,76 @@
+"""Weights on disk: safetensors with what is needed to use and to judge them; no pickle."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchnav.envs.encoders.catalogue import ENCODERS, encoder
+from benchnav.errors import PluginError
+
+from ...common.tensor_file import read_tensors, write_tensors
+from .actor import Actor, Float32Array
+
+FORMAT = "benchnav-actor-1"
+
+
+def write_weights(path: Path, tensors: Mapping[str, Float32Array], about: dict[str, Any]) -> None:
+    """Atomically. ``about`` holds plain data and must name the encoder."""
+    arrays = {name: np.ascontiguousarray(tensor) for name, tensor in tensors.items()}
+    write_tensors(path, arrays, {"format": FORMAT, **about})
+
+
+def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
+    """The actor in a file, and what the file says about it.
+
+    Raises PluginError where the file is missing, cut short, foreign, or not of one piece.
+    """
+    file = read_tensors(path)
+    about = {**file.about, "sha256": file.sha256}
+    if about.get("format") != FORMAT:
+        raise PluginError(
+            f"{path}: must be weights written by `benchnav train` (format {FORMAT!r})."
+            f" Got the format {about.get('format')!r} instead."
+        )
+    if not isinstance(about.get("progress"), dict):
+        raise PluginError(f"{path}: must say what it learned from (`progress`). It does not.")
+    name = about.get("encoder")
+    if name not in ENCODERS:
+        raise PluginError(f"{path}: made for the encoder {name!r}, which does not exist.")
+    actor = _fitting(path, file.tensors, encoder(name).size, name)
+    return actor, about
+
+
+def _fitting(path: Path, tensors: Mapping[str, Float32Array], size: int, name: str) -> Actor:
+    try:
+        actor = Actor(tensors)
+    except KeyError as error:
+        raise PluginError(f"{path}: the tensor {error} must be there. It is not.") from None
+    if any(layer.weight.ndim != 2 or layer.bias.ndim != 1 for layer in actor.layers):
+        raise PluginError(f"{path}: weights must have two axes and biases one. They do not.")
+    width = size
+    for k, layer in enumerate(actor.lstm):
+        hidden = len(layer.bias) // 4
+        _demand(path, f"lstm{k}", layer.weight.shape, (width + hidden, len(layer.bias)), name)
+        _demand(path, f"lstm{k}", layer.bias.shape, (4 * hidden,), name)
+        width = hidden
+    for what, dense in [*((f"dense{k}", d) for k, d in enumerate(actor.dense)),
+                        ("output", actor.output)]:  # fmt: skip
+        _demand(path, what, dense.weight.shape, (width, len(dense.bias)), name)
+        width = len(dense.bias)
+    _demand(path, "output", (width,), (2,), name)
+    for key, tensor in tensors.items():
+        if tensor.dtype != np.float32:
+            raise PluginError(f"{path}: {key} must be float32. Got {tensor.dtype} instead.")
+        if not np.isfinite(tensor).all():
+            raise PluginError(f"{path}: {key} must be finite. It holds NaN or infinity.")
+    return actor
+
+
+def _demand(path: Path, what: str, got: tuple[int, ...], want: tuple[int, ...], name: str) -> None:
+    if tuple(got) != want:
+        raise PluginError(
+            f"{path}: {what} must have the shape {want} for the encoder {name!r}."
+            f" Got {tuple(got)} instead."
+        )

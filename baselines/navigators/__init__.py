@@ -1,0 +1,1 @@
+"""Navigators that are no single planner or controller."""

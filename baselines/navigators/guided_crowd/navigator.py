@@ -1,0 +1,239 @@
+"""The guided crowd: each group follows its leader's rehearsed way, and ORCA has priority."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.navigator import Navigator, Need, PluginConfig
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.plugin.configure import Spec
+from benchnav.navigation.row_table import RowTable
+from benchnav.threads import run_rows
+
+from ...controllers.orca.avoidance import LEAST, Avoidance, OrcaConfig, no_edges
+from .group import Group, groups_of, leaders_in, misfit, places_in_corridor, turn_offs
+from .guiding_path import GuidingPath, best_path
+from .march import BLOCKED, CUT_OFF, march
+from .path_file import fingerprint_of, read_paths
+
+
+class GuidedCrowdConfig(PluginConfig):
+    """Parameters of the guided crowd."""
+
+    rehearsal: int = Field(
+        5, ge=1, le=100, description="rehearsals of the leaders before each episode; charged"
+    )
+    leader: str | dict[str, Any] = Field(
+        "recurrent-ppo", description="who drives the leaders in them: name or {type: name, …}"
+    )
+    path: str | None = Field(
+        None,
+        min_length=1,
+        description="file of guiding paths that come before the rehearsals' where they fit a group",
+    )
+    fit: float = Field(
+        3.0, ge=0, description="[m] that such a path may begin or end away from its leader's"
+    )
+    fallback: Literal["orca", "collided"] = Field(
+        "orca",
+        description="what a group does whose leader never succeeded: go straight at its goals with"
+        " ORCA, or follow the fastest trajectory that arrived with a collision, if there is one",
+    )
+    lookahead: float = Field(2.0, gt=0, description="[m] along the path from a member to its aim")
+    spread: float = Field(
+        3.0, ge=0, description="[m] half width of the corridor that a group takes about its path"
+    )
+    leaving: float = Field(
+        3.0,
+        ge=0,
+        description="[m] before the place of the path that is nearest to its own goal, at which"
+        " a member leaves the path for it",
+    )
+    tolerance: float = Field(
+        0.05, ge=0, description="[m] by which a path may leave the trajectory, to be simpler"
+    )
+    orca: OrcaConfig = Field(OrcaConfig(), description="parameters of the avoidance")
+
+
+class GuidedCrowd(Navigator):
+    """Members follow their leader's best rehearsed trajectory, spread over a corridor about it.
+
+    Once ORCA predicts a collision, it decides; else the path does. The last stretch is
+    straight to each member's own goal. `paths` are the guiding paths of each row, and
+    `remarks` say what went wrong with them.
+    """
+
+    Config = GuidedCrowdConfig
+    needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
+
+    def __init__(self, config: PluginConfig | None = None) -> None:
+        super().__init__(config)
+        self.paths: dict[int, dict[int, GuidingPath]] = {}  # row → leader → its path
+        self._given = () if self.config.path is None else read_paths(self.config.path)
+        self._avoidance = Avoidance(self.config.orca)
+        self._told = RowTable()
+        self._state: dict[int, _Row] = {}
+        self._flat = _Flat({})
+
+    @property
+    def uses_map(self) -> bool:
+        return False
+
+    @property
+    def rehearsal(self) -> int:
+        return int(self.config.rehearsal)
+
+    @property
+    def leader(self) -> Spec | None:
+        spec: Spec = self.config.leader
+        return spec
+
+    @property
+    def fingerprint(self) -> str:
+        return "" if self.config.path is None else fingerprint_of(self.config.path)
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        self._avoidance.reset(briefings, rows)
+        for row, briefing in zip(rows, briefings, strict=True):
+            state = _Row()
+            self._state[int(row)] = state
+            count = len(briefing)
+            path, offset, leave = np.full(count, -1), np.zeros(count), np.zeros(count)
+            for group in groups_of(briefing, leaders_in(briefing)):
+                found = self._path(briefing, group, state)
+                if found is not None:
+                    members = group.members
+                    path[members] = len(state.paths)
+                    offset[members] = places_in_corridor(
+                        found, briefing.start[members], self.config.spread
+                    )
+                    leave[members] = turn_offs(found, briefing.goal[members], self.config.leaving)
+                    state.paths[group.leader] = found
+            state.team = briefing.team.copy()
+            self.paths[int(row)] = state.paths
+            self._told.put(
+                int(row), path=path + 1, offset=offset, leave=leave,
+                radius=briefing.radius, progress=np.zeros(count),
+            )  # fmt: skip
+        self._flat = _Flat({row: list(s.paths.values()) for row, s in self._state.items()})
+
+    def act(self, observation: Observation) -> FloatArray:
+        shape = observation.active.shape
+        rows, agents, n = observation.rows, shape[1], shape[0] * shape[1]
+        told = {
+            name: np.ascontiguousarray(self._told.take(name, rows, agents)).reshape(n)
+            for name in ("path", "offset", "leave", "radius", "progress")
+        }
+        base = np.array([self._flat.base[int(row)] for row in rows])
+        path = np.where(told["path"] > 0, told["path"] - 1 + np.repeat(base, agents), -1)
+        seen = observation.edges or no_edges(*shape)
+        target, met = observation.goal.reshape(n, 2).copy(), np.zeros(n, np.int8)
+        run_rows(
+            march, n, observation.active.reshape(n), observation.position.reshape(n, 2),
+            observation.goal.reshape(n, 2), told["radius"], path, told["offset"],
+            told["leave"], self._flat.first, self._flat.point, self._flat.arc,
+            self.config.lookahead, self.config.spread, seen.start.reshape(n, -1, 2),
+            seen.end.reshape(n, -1, 2), seen.count.reshape(n), told["progress"], target, met,
+            least=LEAST,
+        )  # fmt: skip
+        self._told.write("progress", rows, told["progress"].reshape(shape))
+        if met.any():
+            self._note(observation, met.reshape(shape))
+        return self._avoidance.velocity(observation, target.reshape(*shape, 2))
+
+    def remarks(self, row: int) -> Sequence[str]:
+        return self._state[row].remarks()
+
+    def _path(self, briefing: Briefing, group: Group, state: "_Row") -> GuidingPath | None:
+        """The path of a group: of the file, else of the rehearsals; None and a remark without."""
+        name = f"team {int(briefing.team[group.leader])}"
+        if self._given:
+            apart, best = min(
+                ((misfit(path, briefing, group.leader), k) for k, path in enumerate(self._given)),
+                key=lambda found: (sum(found[0]), found[1]),
+            )
+            if max(apart) <= self.config.fit:
+                return self._given[best]
+            state.said.append(
+                f"no path of {self.config.path} leads from the start to the goal of the leader of"
+                f" {name}: the nearest begins {apart[0]:.1f} m and ends {apart[1]:.1f} m away"
+            )
+        if not briefing.rehearsals:
+            state.said.append(f"nothing was rehearsed for {name}: it goes straight at its goals")
+            return None
+        radius, tolerance = float(briefing.radius[group.leader]), float(self.config.tolerance)
+        hits = self.config.fallback == "collided"
+        found = best_path(briefing.rehearsals, group.leader, radius, tolerance, hits)
+        if found is None or not found.succeeded:
+            state.said.append(_unled(briefing, group.leader, name, found is not None))
+        return found
+
+    def _note(self, observation: Observation, met: np.ndarray) -> None:
+        """Keep when and where a path was found blocked first, and how many were cut off."""
+        for b in np.flatnonzero(met.any(axis=1)):
+            state = self._state[int(observation.rows[b])]
+            for kind in (BLOCKED, CUT_OFF):
+                for agent in np.flatnonzero(met[b] == kind):
+                    state.meet(kind, int(agent), float(observation.time[b]))
+
+
+class _Row:
+    """What is kept of one world."""
+
+    def __init__(self) -> None:
+        self.paths: dict[int, GuidingPath] = {}  # leader → its path, in the order of the groups
+        self.said: list[str] = []
+        self.team: IntArray = np.zeros(0, np.int64)
+        self._met: dict[tuple[int, int], tuple[float, set[int]]] = {}
+
+    def meet(self, kind: int, agent: int, time: float) -> None:
+        """A member met what the path did not foresee."""
+        key = kind, int(self.team[agent])
+        self._met.setdefault(key, (time, set()))[1].add(agent)
+
+    def remarks(self) -> list[str]:
+        """Everything there is to tell."""
+        lines = list(self.said)
+        for (kind, team), (time, members) in sorted(self._met.items()):
+            who = f"{len(members)} of team {team}"
+            if kind == BLOCKED:
+                lines.append(
+                    f"something stands on the guiding path of team {team} that did not when it was"
+                    f" rehearsed: {who} met it, first at t = {time:g} s, and went round it"
+                )
+            else:
+                lines.append(
+                    f"something stands between the end of the guiding path and the goals of {who},"
+                    f" who met it first at t = {time:g} s"
+                )
+        return lines
+
+
+class _Flat:
+    """The paths of all rows one behind another, as the kernel takes them."""
+
+    def __init__(self, paths: dict[int, list[GuidingPath]]) -> None:
+        every = [path for own in paths.values() for path in own]
+        count = np.cumsum([0, *(len(own) for own in paths.values())])
+        self.base = {row: int(count[k]) for k, row in enumerate(paths)}  # row → its first path
+        self.first = np.cumsum([0, *(len(path.points) for path in every)])
+        self.point = np.vstack([np.zeros((0, 2)), *(path.points for path in every)])
+        self.arc = np.concatenate([np.zeros(0), *(path.arc for path in every)])
+
+
+def _unled(briefing: Briefing, leader: int, name: str, follows: bool) -> str:
+    """That a leader never succeeded, why, and what its group does."""
+    place = [
+        (told, k) for told in briefing.rehearsals for k in np.flatnonzero(told.agent == leader)
+    ]
+    hit = sum(bool(told.collided[k]) for told, k in place)
+    late = sum(bool(np.isnan(told.arrival[k]) and not told.collided[k]) for told, k in place)
+    then = "follows a trajectory with a collision" if follows else "goes straight at its goals"
+    return (
+        f"the leader of {name} succeeded in none of {len(place)} rehearsals ({hit} with a"
+        f" collision, {late} not arrived): its group {then}"
+    )

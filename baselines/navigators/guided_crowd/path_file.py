@@ -1,0 +1,93 @@
+"""Guiding paths in a JSON file: to be looked at, used again, or drawn.
+
+{"format": "benchnav guiding paths", "version": 1, "paths": [
+  {"points": [[x, y], …], "duration": s, "turning": rad, "radius": m,
+   "rehearsals": n, "succeeded": n}, …]}
+"""
+
+import hashlib
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Annotated, Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from benchnav.errors import InputError
+from benchnav.system.plain_file import read_file
+
+from .guiding_path import GuidingPath, arc_length, distinct
+
+MOST_BYTES = 256 << 20
+Number = Annotated[float, Field(allow_inf_nan=False)]
+
+
+class _Path(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=False)
+
+    points: list[tuple[Number, Number]] = Field(min_length=2, max_length=100_000)
+    duration: Number = Field(0.0, ge=0)
+    turning: Number = Field(0.0, ge=0)
+    radius: Number = Field(0.0, ge=0)
+    rehearsals: int = Field(0, ge=0)
+    succeeded: int = Field(0, ge=0)
+
+
+class _File(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+    format: Literal["benchnav guiding paths"]
+    version: Literal[1]
+    paths: list[_Path] = Field(min_length=1, max_length=10_000)
+
+
+def write_paths(file: Path | str, paths: Sequence[GuidingPath]) -> None:
+    """Write guiding paths to ``file``; reading them gives the same numbers to the last bit."""
+    lines = [
+        json.dumps(
+            {
+                "points": path.points.tolist(), "duration": path.duration,
+                "turning": path.turning, "radius": path.radius,
+                "rehearsals": path.rehearsals, "succeeded": path.succeeded,
+            },
+            allow_nan=False,
+        )
+        for path in paths
+    ]  # fmt: skip
+    head = '{"format": "benchnav guiding paths", "version": 1, "paths": [\n'
+    Path(file).write_text(head + ",\n".join(lines) + "\n]}\n", encoding="utf-8")
+
+
+def read_paths(file: Path | str) -> tuple[GuidingPath, ...]:
+    """The guiding paths in ``file``.
+
+    Raises InputError where it cannot be read or holds something else.
+    """
+    rule = f"{file} must be a file of guiding paths, as write_paths writes it."
+    try:
+        raw = read_file(Path(file), MOST_BYTES)
+        if len(raw) > MOST_BYTES:
+            raise InputError(f"{rule} It has more than {MOST_BYTES} bytes.")
+        said = _File.model_validate_json(raw)
+    except OSError as error:
+        raise InputError(f"{rule} The system says: {error.strerror}.") from error
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(map(str, first["loc"]))
+        raise InputError(f"{rule} {place or 'It'}: {first['msg']}.") from None
+    return tuple(_path(k, path, rule) for k, path in enumerate(said.paths))
+
+
+def _path(k: int, said: _Path, rule: str) -> GuidingPath:
+    points = distinct(np.array(said.points))
+    if len(points) < 2 or not arc_length(points)[-1] > 0.0:
+        raise InputError(f"{rule} paths.{k}.points: must lead somewhere.")
+    return GuidingPath(
+        points, said.duration, said.turning, said.radius, said.rehearsals, said.succeeded
+    )
+
+
+def fingerprint_of(file: Path | str) -> str:
+    """sha256 of the file."""
+    return hashlib.sha256(read_file(Path(file), MOST_BYTES)).hexdigest()

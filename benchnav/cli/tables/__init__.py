@@ -1,0 +1,1 @@
+"""Commands that print tables and comparisons of runs."""

@@ -1,0 +1,105 @@
+"""What `list`, `show` and `doctor` say of plugins, which processes of their own are asked."""
+
+from collections.abc import Iterable
+from typing import Any
+
+from benchnav.cli.viewing.plugin_page import pair_page, plugin_page, sentence
+from benchnav.errors import BenchnavError, PluginError
+from benchnav.metrics.measure import is_own
+from benchnav.navigation.command_check import short
+from benchnav.navigation.hierarchy.composition import HIERARCHICAL
+from benchnav.navigation.plugin.configure import make, split
+from benchnav.navigation.plugin.plugin_process import IMPORT, Plugin, Stepping, ask_plugins, tell
+from benchnav.navigation.plugin.trace import plain
+from benchnav.plugins import (
+    CONTROLLERS,
+    METRICS,
+    NAVIGATORS,
+    PLANNERS,
+    TRAINERS,
+    Registry,
+)
+from benchnav.processes.channel import Channel
+from benchnav.source.parts import names_known_here
+
+SENTENCE, MADE, PAGE, PAIR = "sentence", "made", "page", "pair"  # what can be asked
+_TIMEOUT = 30.0  # [s] for an import, or to be made
+_MADE = (NAVIGATORS, PLANNERS, CONTROLLERS)  # that `benchnav run` makes from a Config
+_REGISTRIES = {r.kind: r for r in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, TRAINERS)}
+
+
+def inspect_plugins(
+    registry: Registry, names: Iterable[str], what: str
+) -> dict[str, str | BenchnavError]:
+    """What each of the plugins says, or why it cannot be used.
+
+    Those of one distribution share a process. What is part of benchnav alone, or is known in
+    this process alone, is asked in it.
+    """
+    found: dict[str, str | BenchnavError] = {}
+    groups: dict[str, list[Plugin]] = {}
+    names = list(names)
+    for name in names:
+        question = {"kind": registry.kind, "name": name, "what": what}
+        try:
+            source = registry.source(HIERARCHICAL if what == PAIR else name)
+        except PluginError as error:  # two distributions claim it
+            found[name] = error
+            continue
+        if _is_known_here(registry, name) or (registry is METRICS and is_own(name)):
+            found[name] = _here(question)
+        else:
+            plugin = Plugin(registry.kind, name, "", question)
+            groups.setdefault(source.distribution, []).append(plugin)
+    answers = ask_plugins(f"{__name__}:tell_inspected", list(groups.values()), _TIMEOUT)
+    for group, answered in zip(groups.values(), answers, strict=True):
+        for plugin, answer in zip(group, answered, strict=True):
+            known = isinstance(answer, BenchnavError)
+            found[plugin.name] = answer if known else _cleaned(answer, what)
+    return {name: found[name] for name in names}
+
+
+def tell_inspected(channel: Channel, notes: "memoryview[float]") -> None:
+    """Say what the channel asks of plugins. Of a process of its own."""
+    tell(channel, notes, _inspected)
+
+
+def _inspected(question: Any, stepping: Stepping) -> str:
+    registry, name, what = _REGISTRIES[question["kind"]], question["name"], question["what"]
+    stepping(IMPORT)
+    if what == PAIR:
+        return pair_page(name)
+    plugin = registry.load(name)
+    if what == SENTENCE:
+        return short(sentence(plugin))
+    if what == PAGE:
+        return plugin_page(registry, name)
+    if registry in _MADE:
+        declared = getattr(plugin, "Config", None)
+        required = getattr(declared, "model_fields", {}).values()
+        if not any(field.is_required() for field in required):
+            stepping("__init__")
+            make(registry, name)
+    return ""
+
+
+def _is_known_here(registry: Registry, name: str) -> bool:
+    """Whether this process alone knows it, or a part of it."""
+    if registry is not NAVIGATORS:
+        return registry.is_local(name)
+    try:
+        full, parameters = split(registry, name)
+    except PluginError:  # it is refused wherever it is asked
+        return False
+    return bool(names_known_here({"type": full, **parameters}))
+
+
+def _here(question: Any) -> str | BenchnavError:
+    try:
+        return _inspected(question, lambda step: None)
+    except BenchnavError as error:
+        return error
+
+
+def _cleaned(answer: Any, what: str) -> str:
+    return plain(answer) if what in (PAGE, PAIR) else short(answer)

@@ -1,0 +1,46 @@
+"""What a plugin takes and needs, as text."""
+
+import re
+from typing import Any
+
+from benchnav.errors import BenchnavError
+from benchnav.plugins import Registry
+
+WIDEST = 40  # characters of a type
+SAID_ONCE_MADE = "what it says once it is made"
+
+
+def parameters(plugin: Any) -> list[tuple[str, str, str, str]]:
+    """Name, type, default and description of every parameter; none for a plugin without."""
+    return [
+        (key, _type(field.annotation), _default(field), field.description or "")
+        for key, field in (plugin.Config.model_fields if hasattr(plugin, "Config") else {}).items()
+    ]
+
+
+def needs(registry: Registry, name: str) -> str:
+    """What it needs as it is made without parameters."""
+    from benchnav.navigation.plugin.configure import make
+
+    if name in registry.names():  # and not a pair
+        declared = registry.load(name).Config.model_fields.values()
+        if any(field.is_required() for field in declared):
+            return SAID_ONCE_MADE
+    try:
+        required = make(registry, name).required
+    except BenchnavError as error:
+        return f"what it says once it can be made: {error}"
+    return ", ".join(sorted(required)) or "nothing beyond its own state and goal"
+
+
+def _type(annotation: Any) -> str:
+    if isinstance(annotation, type):
+        return annotation.__name__
+    text = re.sub(r"\b(?:\w+\.)+(?=\w)", "", str(annotation)).replace("NoneType", "None")
+    return text if len(text) <= WIDEST else "one of several"  # which, its description says
+
+
+def _default(field: Any) -> str:
+    if field.is_required():
+        return "must be given"
+    return f"= {field.get_default(call_default_factory=True)!r}"

@@ -1,0 +1,202 @@
+"""A scenario on one page: who, where, among what, until when, and which worlds come of it."""
+
+from collections.abc import Iterator
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+from benchnav.text.plural import counted
+
+if TYPE_CHECKING:
+    from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
+    from benchnav.scenario.sampling.region import Region
+    from benchnav.scenario.sampling.sampler import Scalar
+    from benchnav.scenario.scenario import Scenario
+    from benchnav.scenario.shape import Shape
+    from benchnav.scenario.team import Team
+
+Fact = tuple[str, str]
+WIDTH = 100  # of a page [characters]
+_PLACES = {
+    "circle": "on a circle",
+    "grid": "in a grid",
+    "points": "at points",
+    "antipodal": "opposite",
+    "packed": "packed side by side",
+    "shifted": "as far away for all",
+}
+
+
+def scenario_page(scenario: "Scenario") -> str:
+    """What a scenario says, in lines that fit a screen. Draws six worlds to compare them."""
+    from benchnav.errors import UnsolvableError
+
+    try:
+        worlds = said_of_worlds(scenario)
+    except UnsolvableError as error:
+        worlds = f"none: {error}"
+    facts = [
+        *_arena(scenario),
+        *(("team" if not i else "", _team(team)) for i, team in enumerate(scenario.teams)),
+        *_terms(scenario),
+        ("tracks", ", ".join(scenario.granted_tracks)),
+        *(("may set", text) for text in _parameters(scenario)),
+        ("worlds", worlds),
+        ("hash", scenario.hash),
+    ]
+    head = [("is", f"a scenario: {scenario.title or 'without a title'}")]
+    page = [scenario.identity, *(_line(*fact) for fact in [*head, *facts])]
+    if scenario.description.strip():
+        page += ["", fill(scenario.description.strip(), WIDTH)]
+    return "\n".join(page)
+
+
+def _parameters(scenario: "Scenario") -> Iterator[str]:
+    for name, p in scenario.parameters.items():
+        told = f" ({p.description})" if p.description else ""
+        yield f"{name} = {p.default:g} unless chosen, from {p.low:g} to {p.high:g}{told}"
+
+
+def _line(key: str, value: str) -> str:
+    first, rest = f"  {key:8} ", " " * 11
+    return fill(value, WIDTH, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False)
+
+
+def said_of_worlds(scenario: "Scenario") -> str:
+    """Whether worlds differ from seed to seed and between the splits, of seeds 0 and 1 of each.
+
+    Raises UnsolvableError where a world cannot be drawn.
+    """
+    from benchnav.generation.build import SPLITS
+    from benchnav.generation.world_digest import coincidences
+
+    same = coincidences(scenario, (0, 1))
+    if not same:
+        return "differ from seed to seed, and between train, validation and test"
+    if len(same[0]) == 2 * len(SPLITS):
+        return "are all the same: nothing in them is random, so train, validation and test coincide"
+    groups = (" = ".join(f"{split} {seed}" for split, seed in group) for group in same)
+    return f"coincide in part (split and seed): {'; '.join(groups)}"
+
+
+def _arena(scenario: "Scenario") -> Iterator[Fact]:
+    x0, y0, x1, y1 = scenario.bounds
+    around = "walled" if scenario.walled else "open"
+    yield "arena", f"{x1 - x0:g} m × {y1 - y0:g} m, {around}"
+    layout = scenario.layout
+    if layout is not None:
+        yield "walls", f"a {layout.type} layout of {layout.columns} × {layout.rows} cells"
+    for i, wall in enumerate(scenario.walls[:6]):
+        count = str(len(wall.places)) if len(wall.places) > 1 else "one"
+        yield "" if i or layout else "walls", f"{count} {_shape(wall.shape)}"
+    if len(scenario.walls) > 6:
+        yield "", f"and {len(scenario.walls) - 6} more"
+    for i, group in enumerate(scenario.static):
+        yield "static" if not i else "", _static(group)
+    for i, moving in enumerate(scenario.dynamic):
+        yield "dynamic" if not i else "", _dynamic(moving)
+
+
+def _static(group: "StaticGroup") -> str:
+    text = f"{_count(group)} × {_shape(group.shape)}, {_where(group)}"
+    if group.gap:
+        text += f", {group.gap:g} m or more from all else"
+    if group.was_moved:
+        by = "" if group.moved is True else f" by {group.moved:g} m"
+        text += f"; moved{by} since the stale map was made"
+    if group.relocate_at is not None:
+        text += f"; each re-placed once, after {number(group.relocate_at)} s"
+    return text
+
+
+def _dynamic(group: "DynamicGroup") -> str:
+    law = group.law
+    speed = getattr(law, "speed", None)
+    way = law.type if speed is None else f"{law.type} at {number(speed)} m/s"
+    return f"{_count(group)} × {_shape(group.shape)}, {way}, never yielding"
+
+
+def _count(group: "StaticGroup | DynamicGroup") -> str:
+    if group.at is not None:
+        return str(len(group.points))
+    return "1" if group.count is None else number(group.count)
+
+
+def _where(group: "StaticGroup") -> str:
+    return "at fixed points" if group.region is None else f"drawn {_region(group.region)}"
+
+
+def _region(region: "Region") -> str:
+    if region.type == "points":
+        return f"from {counted(len(region.points), 'point')}"
+    return "anywhere" if region.type == "anywhere" else f"in a {region.type}"
+
+
+def _shape(shape: "Shape") -> str:
+    if shape.type == "disc":
+        return f"disc of radius {number(shape.radius)} m"
+    if shape.type == "box":
+        depth = shape.width if shape.depth is None else shape.depth
+        return f"box of {number(shape.width)} m × {number(depth)} m"
+    if shape.type == "polygon" or shape.type == "polyline":
+        return f"{shape.type} of {len(shape.points)} points"
+    return f"{shape.type} {shape.file}"
+
+
+def _team(team: "Team") -> str:
+    from benchnav.scenario.sampling.sampler import support
+
+    speed = team.max_speed if team.preferred_speed is None else team.preferred_speed
+    start, goal = (
+        _region(place.region) if place.type == "region" else _PLACES[place.type]
+        for place in (team.start, team.goal)
+    )
+    many = "" if support(team.count)[1] == 1 else "s"
+    text = (
+        f"{team.name}: {number(team.count)} {team.dynamics} {team.role}{many}, radius"
+        f" {number(team.radius)} m, {number(speed)} m/s; start {start}, goal {goal}"
+    )
+    if team.goal.type == "region" and team.goal.min_distance:
+        text += f" at least {team.goal.min_distance:g} m away"
+    if not team.evaluated:
+        text += f"; background, driven by {team.driver.type}"
+    return text + (f"; does not see {', '.join(team.ignores)}" if team.ignores else "")
+
+
+def _terms(scenario: "Scenario") -> Iterator[Fact]:
+    clock, rules, sensing = scenario.clock, scenario.rules, scenario.sensing
+    seen = []
+    if sensing.rays is not None:
+        seen.append(f"{sensing.rays.count} rays to {sensing.rays.range:g} m")
+    if sensing.neighbours is not None:
+        near = sensing.neighbours
+        seen.append(f"the nearest {near.count} neighbours within {near.range:g} m")
+    if sensing.edges is not None:
+        seen.append(f"the nearest {sensing.edges.count} edges within {sensing.edges.range:g} m")
+    hidden = "" if sensing.occlusion else "; nothing hides what is behind it"
+    yield "sensing", (", ".join(seen) or "nothing") + hidden
+    budget = "" if clock.decision_budget is None else f", to be made in {clock.decision_budget:g} s"
+    yield (
+        "clock",
+        f"a decision every {clock.dt:g} s{budget}, {clock.substeps} substeps, until"
+        f" {clock.horizon:g} s",
+    )
+    yield (
+        "rules",
+        f"arrived within {rules.goal_tolerance:g} m of the goal, then {rules.on_arrival};"
+        f" contact: {rules.contact}",
+    )
+
+
+def number(scalar: "Scalar") -> str:
+    """A number, or what it is drawn from."""
+    from benchnav.scenario.sampling.sampler import Choice, Normal, support
+
+    if isinstance(scalar, int | float):
+        return f"{scalar:g}"
+    if isinstance(scalar, Choice):
+        return " or ".join(f"{value:g}" for value in scalar.choice)
+    low, high = support(scalar)
+    if isinstance(scalar, Normal):
+        mean, deviation = scalar.normal[:2]
+        return f"{mean:g} ± {deviation:g} ({low:g} to {high:g})"
+    return f"{low:g} to {high:g}"

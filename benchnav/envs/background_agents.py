@@ -1,0 +1,109 @@
+"""Who drives the agents that do not learn: a navigator, told anew whenever a row restarts."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.envs.autoreset import Relay
+from benchnav.errors import NavigatorError
+from benchnav.navigation.briefing import brief
+from benchnav.navigation.command_check import CallFailed, checked
+from benchnav.navigation.map import Map
+from benchnav.navigation.navigator import Navigator
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.plugin.configure import Spec, make, split
+from benchnav.navigation.tracks import granted_map
+from benchnav.plugins import NAVIGATORS
+from benchnav.sensors.sense import sense
+
+
+@dataclass(frozen=True, eq=False)
+class Instead:
+    """Commands of slots that somebody else than the learner drives, in the simulator's units."""
+
+    who: BoolArray  # (B, A)
+    command: FloatArray  # (B, A, 2) planar velocities [m/s] or twists [m/s, rad/s]
+    twist: bool  # which of the two
+
+
+class Others:
+    """A navigator that drives some agents of each row; it has the map, as a scenario's drivers do.
+
+    Args:
+        spec: the navigator.
+        simulation: the rows.
+        at_most: how many agents of a row it drives.
+        blame: what its errors begin with.
+
+    Raises what `benchnav.navigation.plugin.configure.make` raises.
+    """
+
+    def __init__(self, spec: Spec, simulation: Relay, at_most: int, blame: str) -> None:
+        self._blame = f"{blame}={split(NAVIGATORS, spec)[0]!r}"
+        self._navigator: Navigator = make(NAVIGATORS, spec)
+        self._needs = frozenset(map(str, self._navigator.required))
+        self._simulation = simulation
+        self._mine: IntArray = np.full((simulation.B, at_most), -1)  # agents, -1: padding
+        self._maps: list[Map | None] = [None] * simulation.B
+
+    def start(
+        self, rows: IntArray, mine: Sequence[IntArray], streams: Sequence[np.random.Generator]
+    ) -> None:
+        """Brief the navigator for the agents ``mine`` of each of the ``rows`` that began."""
+        briefings = []
+        for row, agents, rng in zip(rows.tolist(), mine, streams, strict=True):
+            world = self._simulation.worlds[row]
+            self._mine[row] = -1
+            self._mine[row, : len(agents)] = agents
+            self._maps[row] = granted_map(world, "known")
+            briefings.append(
+                brief(
+                    world.agents, agents, dt=world.clock.dt, horizon=world.clock.horizon,
+                    goal_tolerance=world.rules.goal_tolerance,
+                    decision_budget=world.clock.decision_budget, map=self._maps[row], rng=rng,
+                )
+            )  # fmt: skip
+        if self._mine.shape[1]:
+            self._navigator.reset(briefings, rows)
+
+    def decide(self, acting: BoolArray) -> Instead:
+        """What those of ``acting`` (B, A) do now that it drives.
+
+        Raises NavigatorError where the navigator answers what is no command.
+        """
+        row = np.arange(len(acting))[:, None]
+        active = (self._mine >= 0) & acting[row, self._mine]
+        command = np.zeros((*acting.shape, 2))
+        who = np.zeros_like(acting)
+        if active.any():
+            try:
+                answer = checked(self._navigator.act(self._observe(active)), active)
+            except CallFailed as failed:
+                raise NavigatorError(f"{self._blame}: {failed.reason}.") from None
+            world, slot = np.nonzero(active)
+            command[world, self._mine[world, slot]] = answer[world, slot]
+            who[world, self._mine[world, slot]] = True
+        return Instead(who, command, self._navigator.command == "twist")
+
+    def _observe(self, active: BoolArray) -> Observation:
+        s, row = self._simulation, np.arange(len(active))[:, None]
+        rays, neighbours, edges = sense(s, np.where(active, self._mine, -1), self._needs)
+        self._renew_maps()
+
+        def own(array: FloatArray) -> FloatArray:
+            return array[row, self._mine]
+
+        return Observation(
+            row[:, 0], s.steps_done * s.records["dt"], active, own(s.position), own(s.heading),
+            own(s.velocity), own(s.goal), tuple(self._maps), rays, neighbours, edges,
+        )  # fmt: skip
+
+    def _renew_maps(self) -> None:
+        s = self._simulation
+        for row, held in enumerate(self._maps):
+            revision = int(s.revision[row])
+            if held is not None and held.revision != revision:
+                position = s.body_position[row].copy()
+                self._maps[row] = granted_map(s.worlds[row], "known", position, revision)

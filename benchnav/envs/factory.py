@@ -1,0 +1,114 @@
+"""A decision process from names and numbers, as environments are asked for."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from benchnav.arena.world import World
+from benchnav.arrays import IntArray
+from benchnav.envs.agent_batch import AgentBatch
+from benchnav.envs.encoders.catalogue import encoder as encoder_called
+from benchnav.envs.reward import RewardWeights
+from benchnav.errors import ConfigError, UsageError, did_you_mean
+from benchnav.generation.build import build
+from benchnav.scenario.catalogue import find
+
+
+class NoRenderingError(UsageError, TypeError):
+    """A wish to render; SB3's `make_vec_env` tries rgb_array and goes on without on a TypeError."""
+
+
+Reward = RewardWeights | Mapping[str, Any] | None
+SPLITS = ("train", "validation")
+
+
+def make_worlds(scenario: str, split: str, count: int) -> list[World]:
+    """The worlds 0 to ``count`` - 1 of a scenario's split.
+
+    Raises:
+        UsageError: no such split, or no worlds.
+        UnknownPluginError: no such scenario.
+    """
+    if split not in SPLITS:
+        raise UsageError(
+            f"The split of an environment must be {' or '.join(SPLITS)}: worlds of the split test"
+            f" are for `benchnav run`. Got {split!r} instead.{did_you_mean(split, SPLITS)}"
+        )
+    if count < 1:
+        raise UsageError(f"An environment must have at least 1 world. Got {count} instead.")
+    found = find(scenario)
+    return [build(found, split, seed) for seed in range(count)]
+
+
+def weights_of(reward: Reward) -> RewardWeights:
+    """The weights that ``reward`` says; None: the defaults.
+
+    Raises ConfigError where it says what is none.
+    """
+    if isinstance(reward, RewardWeights):
+        return reward
+    try:
+        return RewardWeights(**(reward or {}))
+    except ValidationError as error:
+        raise ConfigError("\n".join(map(_mistake, error.errors()))) from None
+
+
+def make_batch(
+    scenario: str, encoder: str, split: str, worlds: int, reward: Reward, slots: int | None = None
+) -> AgentBatch:
+    """As many rows as have ``slots`` learning agents, or one, over a pool of ``worlds`` worlds.
+
+    The order of worlds is random until `AgentBatch.reseed` decides it. Raises UsageError where
+    ``slots`` is no multiple of a world's learning agents, and what `make_worlds`, `weights_of`
+    and the catalogue of encoders raise.
+    """
+    chosen, weights = encoder_called(encoder), weights_of(reward)
+    pool, drivers = make_worlds(scenario, split, worlds), find(scenario).driver_specs
+    rows, L = 1, max(int(world.agents.evaluated.sum()) for world in pool)
+    if slots is not None:
+        rows = max(slots // max(L, 1), 1)
+        if slots != rows * L:
+            least, most = f"at least {L}", f"a multiple of {L}"
+            nearest = f"; the nearest below is {rows * L}" if slots > L else ""
+            raise UsageError(
+                "num_envs counts the agents that learn: it must be"
+                f" {most if nearest else least}, the agents of a world of {scenario}."
+                f" Got {slots} instead{nearest}."
+            )
+    return AgentBatch(pool, rows, chosen, weights, np.random.default_rng(), drivers=drivers)
+
+
+def drawn_index(
+    rng: np.random.Generator, name: str, options: Mapping[str, Any] | None, allowed: IntArray
+) -> int:
+    """The option ``name``, or one of ``allowed`` (in rising order) if it is not given.
+
+    It is drawn in both cases, so that an option does not change what is drawn later. Raises
+    UsageError where the option is not allowed.
+    """
+    drawn = int(allowed[int(rng.integers(len(allowed)))])
+    chosen = int((options or {}).get(name, drawn))
+    if chosen not in allowed:
+        most = int(allowed[-1])
+        span = f"from 0 to {most}" if len(allowed) == most + 1 else f"one of {allowed.tolist()}"
+        raise UsageError(f"The option {name!r} must be {span}. Got {chosen} instead.")
+    return chosen
+
+
+def refuse_rendering(render_mode: str | None) -> None:
+    """Raise NoRenderingError for any mode but None."""
+    if render_mode is not None:
+        raise NoRenderingError(
+            f"The render_mode must be None: environments draw nothing. Got {render_mode!r} instead."
+        )
+
+
+def _mistake(detail: ErrorDetails) -> str:
+    key = ".".join(map(str, detail["loc"]))
+    if detail["type"] == "extra_forbidden":
+        return f"The reward has no weight {key!r}.{did_you_mean(key, RewardWeights.model_fields)}"
+    rule = detail["msg"].removeprefix("Input should be ")
+    return f"The weight {key!r} of the reward must be {rule}. Got {detail['input']!r} instead."

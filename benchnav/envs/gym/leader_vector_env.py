@@ -1,0 +1,126 @@
+"""Gymnasium's VectorEnv: every learning agent of every row is a sub-environment."""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.envs.agent_batch import Transition
+from benchnav.envs.encoders.encoder import Float32Array
+from benchnav.envs.factory import Reward, make_batch, refuse_rendering
+from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
+from benchnav.envs.learner_slots import LearnerSlots
+from benchnav.envs.seeding import joint_seed, plain_seed
+from benchnav.errors import UsageError
+
+Stepped = tuple[Float32Array, FloatArray, BoolArray, BoolArray, dict[str, Any]]
+
+
+class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
+    """Slots of a batch, row by row. A slot is terminated or truncated once in each attempt.
+
+    It is idle from then until its row starts again, which is at once where it was the last of
+    its row: it observes zeros and is paid nothing. ``info["idle"]`` (N,) marks the slots that are
+    idle now, ``info["acted"]`` (N,) those whose last step was a decision: a learner leaves the
+    others out, and `AttemptStatistics` leaves them out of the lengths of episodes.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
+        "render_modes": [],
+        "autoreset_mode": AutoresetMode.SAME_STEP,
+    }
+
+    def __init__(
+        self,
+        num_envs: int = 4,
+        scenario: str = "leaders/static",
+        encoder: str = "ego",
+        *,
+        split: str = "train",
+        worlds: int = 100,
+        reward: Reward = None,
+        others: None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        """Draws the worlds. The parameters are those of `LeaderEnv`, but two.
+
+        ``num_envs`` is N = B L, a multiple of the learning agents of a world; ``others`` must be
+        None, since all agents learn that the scenario does not drive.
+
+        Raises BenchnavError for a mistake in any of these.
+        """
+        refuse_rendering(render_mode)
+        if others is not None:
+            raise UsageError(
+                "Every agent learns here: `others` must be None. Got"
+                f" {others!r} instead; vectorization_mode='sync' has others."
+            )
+        self.batch = make_batch(scenario, encoder, split, worlds, reward, num_envs)
+        self._slots = LearnerSlots(self.batch)
+        self.num_envs, self._begun = self._slots.size, False
+        self.single_observation_space = observation_space(self.batch.encoder)
+        self.single_action_space = action_space()
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+
+    def reset(
+        self,
+        *,
+        seed: int | Sequence[int | None] | None = None,
+        options: dict[str, Any] | None = None,
+    ) -> tuple[Float32Array, dict[str, Any]]:
+        """Start every row. From a seed on, the order of worlds follows from it.
+
+        A list of N seeds is one seed as a whole, since sub-environments share worlds.
+        """
+        given = seed is not None
+        if isinstance(seed, Sequence | np.ndarray):
+            joint = joint_seed(seed, self.num_envs)
+            given = joint is not None
+            if joint is not None:
+                sequence = np.random.SeedSequence(joint)
+                self.np_random = np.random.Generator(np.random.PCG64(sequence))
+        else:
+            super().reset(seed=plain_seed(seed))
+        if given or not self._begun:
+            self.batch.reseed(self.np_random.spawn(1)[0])
+        self._begun = True
+        seen = self._flat(self._slots.reset())
+        return seen, self._masked({"idle": self._idle()}, np.ones(self.num_envs, np.bool_))
+
+    def step(self, actions: Float32Array) -> Stepped:
+        """Decide. ``actions`` (N, 2) in [-1, 1]; those of idle slots are ignored."""
+        step = self._slots.step(actions)
+        terminated = (step.arrived | step.touched).reshape(-1)
+        reward: FloatArray = step.reward.reshape(-1)
+        seen = self._flat(step.observation)
+        return seen, reward, terminated, step.timed_out.reshape(-1), self._info(step)
+
+    def _info(self, step: Transition) -> dict[str, Any]:
+        acted, over = step.acted.reshape(-1), step.over.reshape(-1)
+        named = {name: term.reshape(-1) for name, term in terms(step).items()}
+        always = {"idle": self._idle(), "acted": acted}
+        info = self._masked(always, np.ones(self.num_envs, np.bool_))
+        info |= self._masked({"terms": self._masked(named, acted)}, acted)
+        if over.any():
+            final = np.full(self.num_envs, None, dtype=object)
+            last = self._flat(last_seen(step))
+            for slot in np.flatnonzero(over):
+                final[slot] = last[slot]
+            ended = self._masked({"is_success": step.arrived.reshape(-1)}, over)
+            info |= self._masked({"final_obs": final, "final_info": ended}, over)
+        return info
+
+    def _idle(self) -> BoolArray:
+        return ~self._slots.active.reshape(-1)
+
+    def _flat(self, array: Float32Array) -> Float32Array:
+        return array.reshape(self.num_envs, -1)
+
+    @staticmethod
+    def _masked(values: dict[str, Any], mask: BoolArray) -> dict[str, Any]:
+        """``values`` in Gymnasium's form: beside each key the mask (N,) of slots that have it."""
+        return values | {f"_{key}": mask for key in values}

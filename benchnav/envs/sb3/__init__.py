@@ -1,0 +1,1 @@
+"""Environments and learners for Stable-Baselines3."""

@@ -1,0 +1,131 @@
+"""Stable-Baselines3's VecEnv: every learning agent of every world is one environment."""
+
+from collections.abc import Iterable, Sequence
+from operator import index
+from typing import Any, cast
+
+import numpy as np
+from stable_baselines3.common.vec_env import VecEnv
+
+from benchnav.arrays import BoolArray
+from benchnav.envs.agent_batch import AgentBatch, Correction, Transition
+from benchnav.envs.episode_stats import Tally
+from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
+from benchnav.envs.learner_slots import LearnerSlots
+from benchnav.envs.reward import RewardWeights
+from benchnav.errors import UsageError
+
+
+class AgentVecEnv(VecEnv):
+    """The learning agents of one or more batches, one slot each, one batch after the other.
+
+    A slot is done when its attempt ends, and at no other time. It is idle from then until its
+    row starts again: it observes zeros and is paid nothing. `acted` and ``infos[i]["idle"]``
+    tell whether the last transition of a slot was a decision, so that a learner can leave the
+    others out; `AttemptMonitor` and `AttemptPPO` do.
+    """
+
+    render_mode: str | None = None
+
+    def __init__(self, batches: Sequence[AgentBatch]) -> None:
+        self.batches = tuple(batches)
+        self._slots = tuple(LearnerSlots(batch) for batch in self.batches)
+        self.tally = Tally()
+        size = sum(slots.size for slots in self._slots)
+        self.acted: BoolArray = np.zeros(size, np.bool_)
+        self.woke: BoolArray = np.zeros(size, np.bool_)  # idle before the last step, not after
+        self._action: Any = None
+        space: Any = observation_space(self.batches[0].encoder)
+        super().__init__(size, space, cast(Any, action_space()))
+
+    def enter(self, weights: RewardWeights, seed: int, correct: Correction | None = None) -> None:
+        """From the next reset on, pay by ``weights``, draw worlds in the order of ``seed``, and
+        execute what ``correct`` makes of commands.
+        """
+        self.tally = Tally()
+        for batch in self.batches:
+            batch.weights, batch.correct = weights, correct
+        self.seed(seed)
+
+    def seed(self, seed: int | None = None) -> Sequence[int | None]:
+        """Decide the order of worlds, and all else that is random, from the next reset on.
+
+        Returns the seeds of the slots, as Stable-Baselines3 counts them; None draws one. Worlds
+        are shared between slots, so the first seed stands for all. Raises UsageError below 0.
+        """
+        if seed is not None and index(seed) < 0:
+            raise UsageError(f"The seed must be 0 or more. Got {seed} instead.")
+        return super().seed(None if seed is None else index(seed))
+
+    def reset(self) -> Any:
+        seed = self._seeds[0]
+        if seed is not None:
+            for k, batch in enumerate(self.batches):
+                batch.reseed(np.random.default_rng([seed, k]))
+        self._reset_seeds()
+        self._reset_options()
+        observation = np.concatenate([_flat(slots.reset()) for slots in self._slots])
+        self.acted[:] = self.woke[:] = False
+        active = np.concatenate([slots.active.reshape(-1) for slots in self._slots])
+        self.reset_infos = [{"idle": not bool(here)} for here in active]
+        return observation
+
+    def step_async(self, actions: Any) -> None:
+        self._action = actions
+
+    def step_wait(self) -> Any:
+        steps, first = [], 0
+        for slots in self._slots:
+            steps.append(slots.step(self._action[first : first + slots.size]))
+            first += slots.size
+        for step in steps:
+            self.tally.add(step)
+        self.acted = _joined([step.acted for step in steps])
+        self.woke = _joined([step.restarted & ~step.acted for step in steps])
+        observation = np.concatenate([_flat(step.observation) for step in steps])
+        reward = _joined([step.reward for step in steps]).astype(np.float32)
+        done = _joined([step.over for step in steps])
+        infos: list[dict[str, Any]] = [{"idle": not bool(acted)} for acted in self.acted]
+        first = 0
+        for step in steps:
+            _describe_ends(step, infos[first : first + step.acted.size])
+            first += step.acted.size
+        return observation, reward, done, infos
+
+    def close(self) -> None:
+        pass
+
+    def get_attr(self, attr_name: str, indices: Any = None) -> list[Any]:
+        return [getattr(self, attr_name)] * len(self._chosen(indices))
+
+    def set_attr(self, attr_name: str, value: Any, indices: Any = None) -> None:
+        setattr(self, attr_name, value)
+
+    def env_method(self, method_name: str, *args: Any, indices: Any = None, **kwargs: Any) -> Any:
+        return [getattr(self, method_name)(*args, **kwargs)] * len(self._chosen(indices))
+
+    def env_is_wrapped(self, wrapper_class: Any, indices: Any = None) -> list[bool]:
+        return [False] * len(self._chosen(indices))
+
+    def _chosen(self, indices: int | Iterable[int] | None) -> list[int]:
+        return list(self._get_indices(indices))
+
+
+def _flat(array: Any) -> Any:
+    return array.reshape(-1, array.shape[-1])
+
+
+def _joined(arrays: Sequence[Any]) -> Any:
+    return np.concatenate([array.reshape(-1) for array in arrays])
+
+
+def _describe_ends(step: Transition, infos: list[dict[str, Any]]) -> None:
+    """Add to ``infos``, one for each slot, how the attempts that ended did end."""
+    last, named = last_seen(step), terms(step)
+    for b, a in np.argwhere(step.over):
+        infos[b * step.acted.shape[1] + a] |= {
+            "is_success": bool(step.arrived[b, a]),
+            "TimeLimit.truncated": bool(step.timed_out[b, a]),
+            "terminal_observation": last[b, a],
+            "terms": {name: float(term[b, a]) for name, term in named.items()},
+        }

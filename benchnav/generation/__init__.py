@@ -1,0 +1,1 @@
+"""The generation of worlds: (scenario, split, seed) → world."""

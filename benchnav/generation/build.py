@@ -1,0 +1,291 @@
+"""Worlds from scenarios: (scenario, split, seed) → World, a pure function."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from zlib import crc32
+
+import numpy as np
+
+from benchnav.arena.agents import Agents, Dynamics, Role
+from benchnav.arena.body import Body
+from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
+from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.errors import UnsolvableError, UsageError, did_you_mean
+from benchnav.generation.clearance import Barrier, barrier, joined
+from benchnav.generation.dynamic_obstacles import check_clear, fixed_bodies, is_fixed, placed_bodies
+from benchnav.generation.motion_law import place_at_start
+from benchnav.generation.placement import Fault, NoPlaceError, Part
+from benchnav.generation.prepared import Prepared, Structure, prepare
+from benchnav.generation.static_obstacles import Piece, draw_pieces
+from benchnav.generation.teams import Crowd, draw_numbers, place_team
+from benchnav.geometry.rotation import angle_of
+from benchnav.scenario.sampling.packing import most_that_fit
+from benchnav.scenario.sampling.sampler import sample, support
+from benchnav.scenario.scenario import Scenario
+from benchnav.scenario.team import RegionStart, Team
+from benchnav.text.plural import counted
+
+SPLITS = ("train", "validation", "test")
+MAX_ATTEMPTS = 100
+_LAYOUT, _STATIC, _ELSEWHERE, _DYNAMIC, _TEAM, _BODY = range(6)  # streams of one draw
+
+
+def build(scenario: Scenario, split: str, seed: int) -> World:
+    """The world of ``scenario`` for ``seed`` ≥ 0 of ``split`` (train, validation or test).
+
+    Every agent's goal can be reached from its start by its disc, in every arrangement
+    of the static obstacles; draws for which that fails are thrown away and counted.
+
+    Raises:
+        UsageError: no such split, or a negative seed.
+        UnsolvableError: 100 draws were thrown away; says what found no place.
+        InputError: a file that the scenario names is wrong.
+    """
+    if split not in SPLITS:
+        raise UsageError(
+            f"The split must be one of {', '.join(SPLITS)}; got {split!r}."
+            f"{did_you_mean(split, SPLITS)}"
+        )
+    if seed < 0:
+        raise UsageError(f"The seed must be ≥ 0; got {seed}.")
+    prepared = prepare(scenario)
+    reasons: Counter[str] = Counter()
+    failed: dict[tuple[int, Part], Fault] = {}
+    for attempt in range(MAX_ATTEMPTS):
+        try:
+            return _Draw(prepared, SPLITS.index(split), seed, attempt).world()
+        except NoPlaceError as reason:
+            reasons[str(reason)] += 1
+            if reason.team is not None:
+                failed.setdefault((reason.team, reason.part), reason.fault)
+    worst = "; ".join(f"{text} ({counted(n, 'draw')})" for text, n in reasons.most_common(3))
+    raise UnsolvableError(
+        f"{scenario.identity}, split {split}, seed {seed}: no world could be drawn in"
+        f" {MAX_ATTEMPTS} draws: {worst}.{_said_of_teams(scenario, failed)}"
+    )
+
+
+def _said_of_teams(scenario: Scenario, failed: Mapping[tuple[int, Part], Fault]) -> str:
+    """Of teams whose members found no start or goal: where that stands, and the cure."""
+    lines = []
+    for (i, part), fault in sorted(failed.items()):
+        team = scenario.teams[i]
+        radius = support(team.radius)[0]
+        text = f"\n{scenario.where(('teams', i, part))} of {team.name!r}"
+        if fault == "unreachable":
+            lines.append(
+                f"{text} is walled off from the start: no way between them is {2 * radius:g} m"
+                " wide, as the agents are. Move it, or open the walls."
+            )
+        elif fault == "blocked":
+            lines.append(
+                f"{text} must be {radius:g} m, the agents' radius, away from all walls and"
+                " obstacles. Move it."
+            )
+        elif part == "start" and isinstance(team.start, RegionStart):
+            lines.append(f"{text} {_room(scenario, team.start, radius)}")
+        else:
+            lines.append(
+                f"{text} has no free place: walls, obstacles or other agents are in the way."
+            )
+    return "".join(lines)
+
+
+def _room(scenario: Scenario, start: RegionStart, radius: float) -> str:
+    """How many agents fit at the most."""
+    margin = radius if scenario.walled else 0.0
+    gap = start.separation
+    room = most_that_fit(start.region, scenario.bounds, 2.0 * radius + gap, margin)
+    return (
+        f"holds at most {counted(room, 'agent')} of radius {radius:g} m that are {gap:g} m apart,"
+        " packed closely and with nothing else there; drawn at random, about half as many find"
+        " a place."
+    )
+
+
+class _Draw:
+    """One attempt. Every part draws from a stream of its own, undisturbed by the others."""
+
+    def __init__(self, prepared: Prepared, split: int, seed: int, attempt: int) -> None:
+        self.prepared, self.scenario = prepared, prepared.scenario
+        self.seed, self.attempt = seed, attempt
+        self.key = (split, crc32(self.scenario.name.encode()), attempt)
+
+    def stream(self, part: int, index: int = 0) -> np.random.Generator:
+        sequence = np.random.SeedSequence(self.seed, spawn_key=(*self.key, part, index))
+        return np.random.Generator(np.random.PCG64(sequence))
+
+    def streams(self, part: int, count: int) -> list[np.random.Generator]:
+        return [self.stream(part, i) for i in range(count)]
+
+    def world(self) -> World:
+        scenario = self.scenario
+        structure = self.prepared.structure(self.stream(_LAYOUT))
+        given = self.given_bodies()
+        pieces = self.pieces(structure, given)
+        now = _with(structure.wall, [piece.solid for piece in pieces])
+        replaced = [piece for piece in pieces if piece.after is not None]
+        later = _with(structure.wall, [piece.after_solid for piece in pieces]) if replaced else None
+        bodies = self.bodies(given, now if later is None else joined(now, later))
+        moved = any(piece.before is not None for piece in pieces)
+        staying = [piece for piece in pieces if piece.after is None]
+        return World(
+            bounds=scenario.bounds,
+            solids=(*structure.solids, *(piece.solid for piece in staying)),
+            bodies=(*bodies, *(piece.body for piece in replaced)),
+            agents=self.agents(structure, now, later, bodies),
+            teams=_names(scenario.teams),
+            sees=_sees(scenario.teams),
+            clock=clock_of(scenario),
+            rules=rules_of(scenario),
+            sensing=sensing_of(scenario),
+            stale_solids=(*structure.solids, *(piece.before_solid for piece in staying))
+            if moved
+            else None,
+            measurement_area=scenario.measurement_area,
+            meshes=structure.meshes,
+            redraws=self.attempt,
+        )
+
+    def given_bodies(self) -> list[list[Body]]:
+        """Of every group whose places the scenario fixes; empty for the others."""
+        return [
+            fixed_bodies(group, self.scenario.folder, self.stream(_DYNAMIC, i))
+            if is_fixed(group)
+            else []
+            for i, group in enumerate(self.scenario.dynamic)
+        ]
+
+    def pieces(self, structure: Structure, given: list[list[Body]]) -> list[Piece]:
+        groups = self.scenario.static
+        keep_free = self.prepared.kept_free([body for bodies in given for body in bodies])
+        return draw_pieces(
+            groups, self.scenario.bounds, structure.wall, keep_free,
+            self.streams(_STATIC, len(groups)), self.streams(_ELSEWHERE, len(groups)),
+            self.scenario.folder,
+        )  # fmt: skip
+
+    def bodies(self, given: list[list[Body]], standing: Barrier) -> list[Body]:
+        drawn: list[Body] = []
+        for i, group in enumerate(self.scenario.dynamic):
+            if is_fixed(group):
+                check_clear(given[i], group, f"dynamic[{i}]", standing)
+                drawn += given[i]
+            else:
+                rng = self.stream(_DYNAMIC, i)
+                bounds = self.scenario.bounds
+                drawn += placed_bodies(group, f"dynamic[{i}]", bounds, standing, rng)
+        return drawn
+
+    def agents(
+        self, structure: Structure, now: Barrier, later: Barrier | None, bodies: list[Body]
+    ) -> Agents:
+        scenario = self.scenario
+        there = barrier([body.solid.moved(place_at_start(body.law)) for body in bodies])
+        crowd = Crowd()
+        columns: list[dict[str, FloatArray]] = []
+        for i, team in enumerate(scenario.teams):
+            rng = self.stream(_BODY, i)
+            count = int(sample(team.count, rng))
+            columns.append(_numbers(team, count, rng))
+            reach = support(team.radius)[1]
+            spaces = [self.prepared.space(structure, now, reach)]
+            if later is not None:
+                spaces.append(self.prepared.space(structure, later, reach))
+            radii = columns[i]["radius"]
+            try:
+                place_team(
+                    team, radii, crowd, scenario.bounds, spaces, there, self.stream(_TEAM, i)
+                )
+            except NoPlaceError as reason:
+                reason.team = i
+                raise
+        return _assembled(scenario, crowd, columns)
+
+
+def _with(wall: Barrier, solids: Sequence[object]) -> Barrier:
+    return joined(wall, barrier(solids)) if solids else wall  # type: ignore[arg-type]
+
+
+def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, FloatArray]:
+    """The numbers of a team's agents, each (count,)."""
+    top = draw_numbers(team.max_speed, count, rng)
+    preferred = team.preferred_speed
+    heading = 0.0 if team.heading == "goal" else team.heading
+    return {
+        "radius": draw_numbers(team.radius, count, rng),
+        "max_speed": top,
+        "preferred_speed": top.copy()
+        if preferred is None
+        else np.minimum(draw_numbers(preferred, count, rng), top),
+        "max_turn_rate": draw_numbers(team.max_turn_rate, count, rng),
+        "heading": draw_numbers(heading, count, rng),
+    }
+
+
+def _assembled(scenario: Scenario, crowd: Crowd, columns: list[dict[str, FloatArray]]) -> Agents:
+    sizes = [len(column["radius"]) for column in columns]
+    entry = np.repeat(np.arange(len(sizes)), sizes)
+    names = _names(scenario.teams)
+    team = np.array([names.index(t.name) for t in scenario.teams], np.int64)[entry]
+
+    def column(name: str) -> FloatArray:
+        return np.concatenate([part[name] for part in columns])
+
+    heading = column("heading")
+    for a in range(len(entry)):
+        if scenario.teams[entry[a]].heading == "goal":
+            way = crowd.goal[a] - crowd.start[a]
+            heading[a] = angle_of(way[0], way[1])
+    dynamics = [Dynamics[t.dynamics.upper()] for t in scenario.teams]
+    roles = [Role[t.role.upper()] for t in scenario.teams]
+    drivers = [0 if t.evaluated else 1 + scenario.drivers.index(t.driver) for t in scenario.teams]
+    return Agents(
+        start=crowd.start, heading=heading, goal=crowd.goal, radius=column("radius"),
+        max_speed=column("max_speed"), preferred_speed=column("preferred_speed"),
+        max_turn_rate=column("max_turn_rate"),
+        dynamics=np.repeat(np.array(dynamics, np.int8), sizes),
+        role=np.repeat(np.array(roles, np.int8), sizes),
+        team=team, driver=np.repeat(np.array(drivers, np.int64), sizes),
+    )  # fmt: skip
+
+
+def _names(teams: Sequence[Team]) -> tuple[str, ...]:
+    """Of teams, each once: leaders and followers of one name are one team."""
+    return tuple(dict.fromkeys(team.name for team in teams))
+
+
+def _sees(teams: Sequence[Team]) -> BoolArray:
+    blind = {team.name: set(team.ignores) for team in teams}
+    names = _names(teams)
+    return np.array([[other not in blind[name] for other in names] for name in names])
+
+
+def clock_of(scenario: Scenario) -> Clock:
+    """The clock of every world of ``scenario``."""
+    clock = scenario.clock
+    return Clock(clock.dt, clock.substeps, clock.steps, clock.decision_budget)
+
+
+def rules_of(scenario: Scenario) -> Rules:
+    """The rules of every world of ``scenario``."""
+    rules = scenario.rules
+    return Rules(
+        rules.goal_tolerance,
+        ContactRule[rules.contact.upper()],
+        Afterwards[rules.on_arrival.upper()],
+        Afterwards[rules.on_end.upper()],
+        Charge[rules.charge.upper()],
+    )
+
+
+def sensing_of(scenario: Scenario) -> Sensing:
+    """The sensors in every world of ``scenario``."""
+    s = scenario.sensing
+    return Sensing(
+        None if s.rays is None else RaySensor(**s.rays.model_dump()),
+        None if s.neighbours is None else NeighbourSensor(**s.neighbours.model_dump()),
+        None if s.edges is None else EdgeSensor(**s.edges.model_dump()),
+        s.occlusion,
+    )

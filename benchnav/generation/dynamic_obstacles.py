@@ -1,0 +1,95 @@
+"""Dynamic obstacles, clear of static solids all along their paths."""
+
+from pathlib import Path
+
+import numpy as np
+
+from benchnav.arena.body import Body, Law
+from benchnav.arena.solid import Kind, Solid
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.generation.clearance import Barrier, clear, shifted
+from benchnav.generation.motion_law import draw_law, moved_law, recorded_laws, swept
+from benchnav.generation.placement import FEW, NoPlaceError, draw_points, find_place
+from benchnav.generation.solids import draw_solid
+from benchnav.scenario.law import RecordedTrack
+from benchnav.scenario.obstacle import DynamicGroup
+from benchnav.scenario.sampling.region import Region
+from benchnav.scenario.sampling.sampler import sample
+
+Bounds = tuple[float, float, float, float]
+_LAWS = 16  # laws that are tried for one obstacle
+
+
+def is_fixed(group: DynamicGroup) -> bool:
+    """True where the scenario says where the obstacles go, so that static ones keep clear."""
+    return group.at is not None or isinstance(group.law, RecordedTrack)
+
+
+def fixed_bodies(group: DynamicGroup, folder: Path, rng: np.random.Generator) -> list[Body]:
+    """The obstacles of a group that is not placed by chance."""
+    if isinstance(group.law, RecordedTrack):
+        laws = recorded_laws(group.law, folder)
+    else:
+        laws = [moved_law(draw_law(group.law, rng), np.array(at)) for at in group.points]
+    return [Body(_shape(group, rng), law) for law in laws]
+
+
+def check_clear(bodies: list[Body], group: DynamicGroup, name: str, standing: Barrier) -> None:
+    """Raises NoPlaceError unless the paths of all bodies keep the group's gap."""
+    for k, body in enumerate(bodies):
+        path = swept(body.law, body.solid.bounding_radius)
+        if not clear(path[:, None], standing, group.gap).all():
+            raise NoPlaceError(
+                f"the path of {name} (number {k + 1}) is not clear of walls and static obstacles"
+            )
+
+
+def placed_bodies(
+    group: DynamicGroup, name: str, bounds: Bounds, standing: Barrier, rng: np.random.Generator
+) -> list[Body]:
+    """The obstacles of a group that is placed by chance.
+
+    Raises:
+        NoPlaceError: an obstacle's path is nowhere clear of the static solids.
+    """
+    count = 1 if group.count is None else int(sample(group.count, rng))
+    bodies = []
+    for k in range(count):
+        solid = _shape(group, rng)
+        what = f"the path of {name} ({group.shape.type} {k + 1} of {count})"
+        bodies.append(Body(solid, _place(group, solid, bounds, standing, what, rng)))
+    return bodies
+
+
+def _place(
+    group: DynamicGroup,
+    solid: Solid,
+    bounds: Bounds,
+    standing: Barrier,
+    what: str,
+    rng: np.random.Generator,
+) -> Law:
+    """A law that keeps clear; one that finds no place is drawn again."""
+    region: Region = group.region  # type: ignore[assignment] # groups without it are fixed
+    failure = NoPlaceError(what)
+    for _ in range(_LAWS):
+        law = draw_law(group.law, rng)  # type: ignore[arg-type] # recorded tracks are fixed
+        path = swept(law, solid.bounding_radius)
+
+        def accept(points: FloatArray, path: FloatArray = path) -> BoolArray:
+            good = np.ones(len(points), np.bool_)
+            for capsule in path:  # apart: a path is no loop that could hold a solid inside
+                good &= clear(shifted(capsule[None], points), standing, group.gap)
+            return good
+
+        try:
+            place = find_place(lambda n: draw_points(region, bounds, n, rng), accept, what, FEW)
+        except NoPlaceError as error:
+            failure = error
+            continue
+        return moved_law(law, place)
+    raise failure
+
+
+def _shape(group: DynamicGroup, rng: np.random.Generator) -> Solid:
+    return draw_solid(group.shape, group.heading, Kind.DYNAMIC, rng)

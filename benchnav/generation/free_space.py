@@ -1,0 +1,98 @@
+"""Free space: where the centre of a disc may be, and which places are joined.
+
+The space is conservative: discs are grown by polygons that contain the true
+outline, so what counts as joined is joined. It errs by at most 0.5 % of the radius.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.generation.clearance import Barrier, clear, point_shapes
+
+Bounds = tuple[float, float, float, float]
+_QUADRANT = 8  # segments in a quarter of a grown outline
+_GROWTH = 1.0 / math.cos(math.pi / (4 * _QUADRANT))  # the polygon then contains the circle
+_TOUCH = 1e-6  # [m] that every place keeps beyond the radius
+
+
+class Space:
+    """Free space of one arrangement of solids for one radius."""
+
+    def labels(self, points: FloatArray) -> IntArray:
+        """(N,) number of the connected part that each point (N, 2) lies in; -1: not free."""
+        raise NotImplementedError
+
+
+class JoinedSpace(Space):
+    """Among convex solids that are farther apart than the disc is wide, where all is joined."""
+
+    def __init__(self, wall: Barrier, radius: float) -> None:
+        self._wall, self._least = wall, radius + _TOUCH
+
+    def labels(self, points: FloatArray) -> IntArray:
+        return np.where(clear(point_shapes(points), self._wall, self._least), 0, -1)
+
+
+class PartedSpace(Space):
+    """Free space as polygons: the bounds less everything within the radius of any edge.
+
+    What remains lies wholly in a solid or wholly outside all of them; one point of
+    each polygon decides which.
+    """
+
+    def __init__(self, wall: Barrier, bounds: Bounds, walled: bool, radius: float) -> None:
+        import shapely
+
+        reach = radius + _TOUCH
+        x0, y0, x1, y1 = bounds
+        margin = reach if walled else -4.0 * reach  # outside, agents may pass round everything
+        arena = shapely.box(x0 + margin, y0 + margin, x1 - margin, y1 - margin)
+        rest = arena.difference(_grown(wall, reach))
+        parts = [p for p in shapely.get_parts(rest) if p.area > 0.0]
+        if parts:
+            inner = shapely.get_coordinates(shapely.point_on_surface(parts))
+            outside = clear(point_shapes(inner), wall, 0.0)
+            parts = [part for part, free in zip(parts, outside, strict=True) if free]
+        parts.sort(key=lambda part: -part.area)
+        shapely.prepare(parts)
+        self._parts: list[Any] = parts
+        self._boxes = np.array([part.bounds for part in parts]).reshape(-1, 4)
+
+    def labels(self, points: FloatArray) -> IntArray:
+        import shapely
+
+        found = np.full(len(points), -1)
+        x, y = points[:, 0, None], points[:, 1, None]
+        b = self._boxes
+        near = (b[:, 0] <= x) & (x <= b[:, 2]) & (b[:, 1] <= y) & (y <= b[:, 3])  # (N, parts)
+        for k in np.flatnonzero(near.any(axis=0)):
+            ask = np.flatnonzero(near[:, k] & (found < 0))
+            if len(ask):
+                held = shapely.contains_xy(self._parts[k], points[ask, 0], points[ask, 1])
+                found[ask[held]] = k
+        return found
+
+
+def _grown(wall: Barrier, reach: float) -> Any:
+    """Everything within ``reach`` of an edge or disc of the solids, and a little more."""
+    import shapely
+
+    edges = wall.capsules
+    thin = edges[:, 4] == 0.0
+    grown = []
+    for s in range(len(wall.hollow)):
+        own = slice(wall.first[s], wall.first[s + 1])
+        if thin[own].all():
+            lines = shapely.linestrings(edges[own, :4].reshape(-1, 2, 2))
+            grown.append((shapely.multilinestrings(lines), reach))
+        else:
+            grown += [(shapely.Point(x, y), r + reach) for x, y, _, _, r in edges[own]]
+    if not grown:
+        return shapely.Polygon()
+    shapes, radii = zip(*grown, strict=True)
+    return shapely.union_all(
+        shapely.buffer(np.array(shapes), np.array(radii) * _GROWTH, quad_segs=_QUADRANT)
+    )

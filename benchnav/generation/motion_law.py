@@ -1,0 +1,90 @@
+"""Motion laws with their numbers drawn, and the paths that they sweep."""
+
+from pathlib import Path
+
+import numpy as np
+
+from benchnav.arena.body import Law, LawKind
+from benchnav.arrays import FloatArray
+from benchnav.geometry.rotation import TWO_PI, cos_sin
+from benchnav.scenario.files.track_file import read_tracks
+from benchnav.scenario.law import BackAndForth, CircleLaw, RecordedTrack, WaypointLoop
+from benchnav.scenario.sampling.sampler import sample
+
+_CHORDS = 32  # straight pieces that cover a circle
+
+
+def draw_law(law: BackAndForth | WaypointLoop | CircleLaw, rng: np.random.Generator) -> Law:
+    """The law about the origin."""
+    if isinstance(law, CircleLaw):
+        radius = sample(law.radius, rng)
+        rate = sample(law.speed, rng) / radius
+        angle = TWO_PI * (sample(law.phase, rng) % 1.0)
+        points = np.array([[0.0, 0.0], [radius, angle]])
+        return Law(LawKind.CIRCLE, np.array([-rate if law.clockwise else rate]), points, True)
+    if isinstance(law, WaypointLoop):
+        corners = np.array([*law.points, law.points[0]])
+    else:
+        half = 0.5 * sample(law.length, rng)
+        c, s = cos_sin(sample(law.direction, rng))
+        end = np.array([half * c, half * s])
+        corners = np.vstack([-end, end, -end])
+    legs = np.diff(corners, axis=0)
+    taken = np.sqrt(np.sum(legs * legs, axis=1)) / sample(law.speed, rng)
+    times = np.concatenate([[0.0], np.cumsum(taken)])
+    phase = float(times[-1]) * (sample(law.phase, rng) % 1.0)
+    return Law(LawKind.TRACK, times, corners, True, phase)
+
+
+def recorded_laws(law: RecordedTrack, folder: Path) -> list[Law]:
+    """One law for each recorded track, in the arena's frame."""
+    tracks = [np.array(law.points)] if law.points is not None else read_tracks(law, folder)
+    laws = []
+    for track in tracks:
+        points = track[:, 1:] * law.scale + np.array(law.offset)
+        times = track[:, 0]
+        if times[0] > 0.0:  # stands at its first point until its first time
+            times, points = np.concatenate([[0.0], times]), np.vstack([points[:1], points])
+        laws.append(Law(LawKind.TRACK, times, points, law.repeat))
+    return laws
+
+
+def moved_law(law: Law, place: FloatArray) -> Law:
+    """The law about ``place`` (2,) [m]."""
+    if law.kind == LawKind.CIRCLE:
+        points = law.points + np.vstack([place, np.zeros(2)])
+    else:
+        points = law.points + place
+    return Law(law.kind, law.times, points, law.periodic, law.phase)
+
+
+def swept(law: Law, radius: float) -> FloatArray:
+    """(Q, 5) capsules that cover where a disc of ``radius`` [m] is taken."""
+    if law.kind == LawKind.CIRCLE:
+        center, (reach, _) = law.points
+        step = TWO_PI / _CHORDS
+        ways = np.array([cos_sin(k * step) for k in range(_CHORDS + 1)])
+        corners = center + reach * ways
+        radius += reach * (1.0 - cos_sin(0.5 * step)[0])
+    else:
+        corners = law.points if len(law.points) > 1 else np.repeat(law.points, 2, axis=0)
+        if len(corners) == 3 and np.array_equal(corners[0], corners[2]):
+            corners = corners[:2]
+    ends = np.hstack([corners[:-1], corners[1:]])
+    return np.hstack([ends, np.full((len(ends), 1), radius)])
+
+
+def place_at_start(law: Law) -> FloatArray:
+    """(2,) position [m] at t = 0."""
+    if law.kind == LawKind.CIRCLE:
+        center, (reach, angle) = law.points
+        start: FloatArray = center + reach * np.array(cos_sin(float(angle)))
+        return start
+    t = law.phase
+    k = int(np.searchsorted(law.times, t, side="right")) - 1
+    if k >= len(law.times) - 1:
+        last: FloatArray = law.points[-1]
+        return last
+    share = (t - law.times[k]) / (law.times[k + 1] - law.times[k])
+    between: FloatArray = law.points[k] + share * (law.points[k + 1] - law.points[k])
+    return between

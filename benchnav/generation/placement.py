@@ -1,0 +1,104 @@
+"""Points from regions, and the search for a place by rejection."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Literal
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.scenario.sampling.region import Anywhere, Points, Rectangle, Region, Ring
+
+Bounds = tuple[float, float, float, float]
+MANY = (8, 24, 96, 384)  # candidates that are tested together, until one will do
+FEW = (8, 24)
+
+
+Part = Literal["start", "goal"]
+Fault = Literal["no place", "blocked", "unreachable"]
+
+
+class NoPlaceError(Exception):
+    """A draw has no place for something; says what. Never leaves `build`."""
+
+    part: Part = "start"  # of a team
+    fault: Fault = "no place"
+    team: int | None = None  # whose part had none
+
+
+def draw_points(region: Region, bounds: Bounds, count: int, rng: np.random.Generator) -> FloatArray:
+    """(count, 2) points of ``region`` [m], uniform by area."""
+    if isinstance(region, Points):
+        return np.array(region.points)[rng.integers(len(region.points), size=count)]
+    if isinstance(region, Rectangle | Anywhere):
+        x0, y0, x1, y1 = region.box(bounds)
+        return np.array([x0, y0]) + rng.random((count, 2)) * (x1 - x0, y1 - y0)
+    inner, outer = (region.inner, region.outer) if isinstance(region, Ring) else (0, region.radius)
+    return np.array(region.center) + _in_ring(inner, outer, count, rng)
+
+
+def within(bounds: Bounds, points: FloatArray) -> BoolArray:
+    """(N,) which of the points (N, 2) lie within ``bounds``, edges included."""
+    x0, y0, x1, y1 = bounds
+    found: BoolArray = np.all((points >= (x0, y0)) & (points <= (x1, y1)), axis=1)
+    return found
+
+
+def directions(count: int, rng: np.random.Generator) -> FloatArray:
+    """(count, 2) unit vectors, by rejection from a square.
+
+    Without sine and cosine they have the same bits everywhere.
+    """
+    out = np.empty((0, 2))
+    while len(out) < count:
+        ways = 2.0 * rng.random((2 * count + 8, 2)) - 1.0
+        squared = np.sum(ways * ways, axis=1)
+        good = (squared <= 1.0) & (squared > 1e-12)
+        out = np.vstack([out, ways[good] / np.sqrt(squared[good])[:, None]])
+    return out[:count]
+
+
+def _in_ring(inner: float, outer: float, count: int, rng: np.random.Generator) -> FloatArray:
+    out = directions(count, rng)
+    share = rng.random(count)
+    radius = np.sqrt(inner * inner + share * (outer * outer - inner * inner))
+    return out * radius[:, None]
+
+
+def find_place(
+    propose: Callable[[int], FloatArray],
+    accept: Callable[[FloatArray], BoolArray],
+    what: str,
+    batches: Sequence[int] = MANY,
+) -> FloatArray:
+    """The first proposed point (2,) [m] that is accepted.
+
+    Args:
+        propose: count → (count, 2) candidates.
+        accept: (N, 2) candidates → (N,) which of them will do.
+        what: is placed, for the complaint.
+        batches: numbers of candidates that are tested together, until one will do.
+
+    Raises:
+        NoPlaceError: no candidate will do.
+    """
+    for size in batches:
+        candidates = propose(size)
+        good = accept(candidates)
+        k = int(np.argmax(good))
+        if good[k]:
+            place: FloatArray = candidates[k]
+            return place
+    raise NoPlaceError(f"no free place for {what} in {sum(batches)} tries")
+
+
+def distances(points: FloatArray, others: FloatArray) -> FloatArray:
+    """(N, M) distances [m] between points (N, 2) and others (M, 2)."""
+    dx = points[:, None, 0] - others[None, :, 0]
+    dy = points[:, None, 1] - others[None, :, 1]
+    return np.sqrt(dx * dx + dy * dy)
+
+
+def length(vector: FloatArray) -> float:
+    """Length of a vector (2,)."""
+    return math.sqrt(float(vector[0] * vector[0] + vector[1] * vector[1]))

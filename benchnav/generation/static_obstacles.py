@@ -1,0 +1,203 @@
+"""Static obstacles: drawn one after another, each clear of what stands already."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from benchnav.arena.body import Body, Law, LawKind
+from benchnav.arena.solid import Kind, Solid
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.generation.clearance import Barrier, added, clear, joined, shifted
+from benchnav.generation.placement import NoPlaceError, directions, draw_points, find_place, within
+from benchnav.generation.solids import draw_solid
+from benchnav.scenario.obstacle import StaticGroup
+from benchnav.scenario.sampling.region import Region
+from benchnav.scenario.sampling.sampler import sample
+
+ARRANGEMENTS = 50  # of old places that are tried before the world is drawn again
+Bounds = tuple[float, float, float, float]
+Streams = Sequence[np.random.Generator]
+
+
+@dataclass(frozen=True)
+class Piece:
+    """One static obstacle: its shape, where it stands, and where else it stood or will stand."""
+
+    shape: Solid  # about the origin
+    place: FloatArray  # (2,) [m] at the start of the episode
+    before: FloatArray | None = None  # (2,) [m] where it stood before the episode
+    after: FloatArray | None = None  # (2,) [m] where it will stand within the episode
+    when: float = 0.0  # [s] from when on, once that place is free
+
+    @cached_property
+    def solid(self) -> Solid:
+        """Where it stands at the start."""
+        return self.shape.moved(self.place)
+
+    @cached_property
+    def before_solid(self) -> Solid:
+        """Where it stood before the episode."""
+        return self.solid if self.before is None else self.shape.moved(self.before)
+
+    @cached_property
+    def after_solid(self) -> Solid:
+        """Where it stands at the end."""
+        return self.solid if self.after is None else self.shape.moved(self.after)
+
+    @property
+    def body(self) -> Body:
+        """As something that is re-placed within the episode."""
+        points = np.vstack([self.place, self.place if self.after is None else self.after])
+        return Body(self.shape, Law(LawKind.RELOCATE, np.array([0.0, self.when]), points))
+
+
+def draw_pieces(
+    groups: Sequence[StaticGroup],
+    bounds: Bounds,
+    walls: Barrier,
+    keep_free: Barrier,
+    streams: Streams,
+    others: Streams,
+    folder: Path = Path(),
+) -> list[Piece]:
+    """All static obstacles of one draw, in the order of their groups.
+
+    Args:
+        groups: as the scenario lists them.
+        bounds: of the arena [m].
+        walls: what stands before anything is drawn.
+        keep_free: fixed starts, goals and tracks, which sampled obstacles keep clear of.
+        streams: a generator per group, for shapes and for places at the start.
+        others: a generator per group, for places before the start and after it.
+        folder: what the names of meshes and maps are relative to.
+
+    Raises:
+        NoPlaceError: an obstacle finds no place.
+        InputError: a mesh or a map is not one.
+    """
+    search = _Search(bounds, keep_free, folder)
+    pieces: list[list[Piece]] = []
+    standing = walls
+    for i, (group, rng) in enumerate(zip(groups, streams, strict=True)):
+        drawn, standing = search.now(group, f"static[{i}]", standing, rng)
+        pieces.append(drawn)
+    past = walls
+    for group, drawn in zip(groups, pieces, strict=True):
+        for piece in () if group.was_moved else drawn:
+            past = added(past, piece.solid.capsules)
+    for i, (group, rng) in enumerate(zip(groups, others, strict=True)):
+        if group.relocate_at is not None:
+            pieces[i], standing = search.later(group, f"static[{i}]", pieces[i], standing, rng)
+        elif group.was_moved:
+            pieces[i], past = search.before(group, f"static[{i}]", pieces[i], past, rng)
+    return [piece for drawn in pieces for piece in drawn]
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Finds places that keep a group's gap to what stands and to what is kept free.
+
+    Each method returns the pieces, and what stands with them.
+    """
+
+    bounds: Bounds
+    keep_free: Barrier
+    folder: Path
+
+    def now(
+        self, group: StaticGroup, name: str, standing: Barrier, rng: np.random.Generator
+    ) -> tuple[list[Piece], Barrier]:
+        """Shapes, and places at the start."""
+        pieces: list[Piece] = []
+        count = 1 if group.count is None else int(sample(group.count, rng))
+        for k in range(count if group.at is None else len(group.points)):
+            shape = draw_solid(group.shape, group.heading, Kind.STATIC, rng, self.folder)
+            if group.at is not None:
+                place = np.array(group.points[k])
+            else:
+                what = f"{name} ({group.shape.type} {k + 1} of {count})"
+                place = self._place(shape, group, standing, what, rng)
+            pieces.append(Piece(shape, place))
+            standing = added(standing, pieces[k].solid.capsules)
+        return pieces, standing
+
+    def later(
+        self,
+        group: StaticGroup,
+        name: str,
+        pieces: list[Piece],
+        standing: Barrier,
+        rng: np.random.Generator,
+    ) -> tuple[list[Piece], Barrier]:
+        """With places for later, clear of everything that stands now or will."""
+        result = []
+        for k, piece in enumerate(pieces):
+            what = f"the new place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
+            after = self._place(piece.shape, group, standing, what, rng)
+            when = 0.0 if group.relocate_at is None else sample(group.relocate_at, rng)
+            result.append(replace(piece, after=after, when=when))
+            standing = added(standing, result[k].after_solid.capsules)
+        return result, standing
+
+    def before(
+        self,
+        group: StaticGroup,
+        name: str,
+        pieces: list[Piece],
+        past: Barrier,
+        rng: np.random.Generator,
+    ) -> tuple[list[Piece], Barrier]:
+        """With places where they stood before, clear of all else that stood then.
+
+        Cubes moved by a distance each have few places, and one may take another's: then
+        all are drawn again, so that the world of a seed seldom depends on the distance.
+        """
+        for _ in range(0 if isinstance(group.moved, bool) else ARRANGEMENTS - 1):
+            try:
+                return self._before(group, name, pieces, past, rng)
+            except NoPlaceError:
+                continue
+        return self._before(group, name, pieces, past, rng)
+
+    def _before(
+        self,
+        group: StaticGroup,
+        name: str,
+        pieces: list[Piece],
+        past: Barrier,
+        rng: np.random.Generator,
+    ) -> tuple[list[Piece], Barrier]:
+        result = []
+        for k, piece in enumerate(pieces):
+            what = f"the old place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
+            before = self._place(piece.shape, group, past, what, rng, away=piece.place)
+            result.append(replace(piece, before=before))
+            past = added(past, result[k].before_solid.capsules)
+        return result, past
+
+    def _place(
+        self,
+        shape: Solid,
+        group: StaticGroup,
+        standing: Barrier,
+        what: str,
+        rng: np.random.Generator,
+        away: FloatArray | None = None,
+    ) -> FloatArray:
+        """In the group's region; or as far from ``away`` (2,) as the group was moved."""
+        region: Region = group.region  # type: ignore[assignment] # groups without it have `at`
+        around = joined(standing, self.keep_free)
+
+        def propose(count: int) -> FloatArray:
+            if away is None or isinstance(group.moved, bool):
+                return draw_points(region, self.bounds, count, rng)
+            return away + group.moved * directions(count, rng)
+
+        def accept(points: FloatArray) -> BoolArray:
+            free = clear(shifted(shape.capsules, points), around, group.gap)
+            return free if away is None else free & within(self.bounds, points)
+
+        return find_place(propose, accept, what)

@@ -1,0 +1,279 @@
+"""Starts and goals: free, apart, and joined by free space."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.generation.clearance import Barrier, clear, point_shapes
+from benchnav.generation.free_space import Space
+from benchnav.generation.placement import MANY, NoPlaceError, distances, draw_points, find_place
+from benchnav.geometry.rotation import TWO_PI, cos_sin
+from benchnav.scenario.sampling.packing import lattice
+from benchnav.scenario.sampling.sampler import Scalar, fixed, sample, support
+from benchnav.scenario.team import (
+    AntipodalGoal,
+    CircleStart,
+    GridStart,
+    PackedStart,
+    PointsGoal,
+    PointsStart,
+    RegionStart,
+    ShiftedGoal,
+    Team,
+)
+
+Bounds = tuple[float, float, float, float]
+_STARTS = 8  # starts that are tried before an agent without a goal is given up
+
+
+@dataclass
+class Crowd:
+    """The agents placed so far."""
+
+    start: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
+    goal: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
+    radius: FloatArray = field(default_factory=lambda: np.zeros(0))
+
+    def add(self, start: FloatArray, goal: FloatArray, radius: float) -> None:
+        """One more agent."""
+        self.start = np.vstack([self.start, start])
+        self.goal = np.vstack([self.goal, goal])
+        self.radius = np.append(self.radius, radius)
+
+
+def draw_numbers(scalar: Scalar, count: int, rng: np.random.Generator) -> FloatArray:
+    """(count,) draws."""
+    if fixed(scalar):
+        return np.full(count, sample(scalar, rng))
+    return np.array([sample(scalar, rng) for _ in range(count)])
+
+
+def place_team(
+    team: Team,
+    radii: FloatArray,
+    crowd: Crowd,
+    bounds: Bounds,
+    spaces: Sequence[Space],
+    bodies: Barrier,
+    rng: np.random.Generator,
+) -> None:
+    """Adds the agents of a team to the crowd.
+
+    Args:
+        team: as the scenario says.
+        radii: (N,) of its agents [m].
+        crowd: those placed before.
+        bounds: of the arena [m].
+        spaces: free space of this team, one for each arrangement of the static obstacles.
+        bodies: dynamic obstacles where they are at t = 0.
+        rng: the team's own.
+
+    Raises:
+        NoPlaceError: an agent finds no start, or no goal that it could reach from there.
+    """
+    stands = lattice_of(team, bounds, len(radii))
+    for k, radius in enumerate(radii):
+        what = f"of teams[{team.name}] agent {k + 1} of {len(radii)}"
+        place = _Placing(
+            team, k, len(radii), float(radius), crowd, bounds, spaces, bodies, rng, stands
+        )
+        crowd.add(*place.find(what), float(radius))
+
+
+@dataclass
+class GoalsTried:
+    """What became of the goals that were tried: why none of them would do."""
+
+    blocked: int = 0  # in a solid, or too close to one
+    unreachable: int = 0  # free, but not joined to the start
+    reached: int = 0
+
+    def count(self, starts: IntArray, goals: IntArray) -> None:
+        """Add goals, given the part of each free space (spaces, N) that they and starts are in."""
+        free = np.all(goals >= 0, axis=0)
+        reached = np.all(goals == starts, axis=0)
+        self.blocked += int((~free).sum())
+        self.unreachable += int((free & ~reached).sum())
+        self.reached += int(reached.sum())
+
+    def explained(self, error: NoPlaceError, what: str) -> NoPlaceError:
+        """The same error; if no goal was ever reached, one that says so."""
+        if self.reached or not self.blocked + self.unreachable:
+            return error
+        if self.unreachable:
+            found = NoPlaceError(f"the goal {what} is unreachable from its start")
+            found.fault = "unreachable"
+        else:
+            found = NoPlaceError(f"the goal {what} lies in or too close to a wall or obstacle")
+            found.fault = "blocked"
+        found.part = "goal"
+        return found
+
+
+@dataclass
+class _Placing:
+    """One agent's search for a start and a goal."""
+
+    team: Team
+    number: int
+    count: int
+    radius: float
+    crowd: Crowd
+    bounds: Bounds
+    spaces: Sequence[Space]
+    bodies: Barrier
+    rng: np.random.Generator
+    stands: FloatArray  # (N, 2) of a packed start; (0, 2) of any other
+    ends: GoalsTried = field(default_factory=GoalsTried)
+
+    def find(self, what: str) -> tuple[FloatArray, FloatArray]:
+        """A start and a goal; a start without a goal is drawn again."""
+        failure = NoPlaceError(what)
+        for _ in range(_STARTS if len(self.batches) > 1 else 1):
+            self.ends = GoalsTried()
+            try:
+                start = find_place(self.starts, self.start_ok, f"the start {what}", self.batches)
+            except NoPlaceError as error:
+                raise self.ends.explained(error, what) from None
+            try:
+                return start, self.goal(start, f"the goal {what}")
+            except NoPlaceError as error:
+                error.part = "goal"
+                failure = self.ends.explained(error, what)
+        raise failure
+
+    @property
+    def batches(self) -> tuple[int, ...]:
+        """Of candidates; one where all would be the same."""
+        return (1,) if is_fixed(self.team) else MANY
+
+    def starts(self, n: int) -> FloatArray:
+        start = self.team.start
+        if isinstance(start, RegionStart):
+            return draw_points(start.region, self.bounds, n, self.rng)
+        if isinstance(start, PointsStart):
+            return np.array([start.points[self.number]])
+        if isinstance(start, PackedStart):
+            stand = self.stands[self.number]
+            return _jittered(np.repeat(stand[None], n, axis=0), start.jitter, self.rng)
+        if isinstance(start, GridStart):
+            row, column = divmod(self.number, start.columns)
+            place = np.array(start.origin) + start.spacing * np.array([column, row])
+            return _jittered(np.repeat(place[None], n, axis=0), start.jitter, self.rng)
+        if start.angles == "even":
+            shares = np.full(n, self.number / self.count)
+        else:
+            shares = self.rng.random(n)
+        ways = np.array([cos_sin(TWO_PI * float(share)) for share in shares])
+        return _jittered(np.array(start.center) + start.radius * ways, start.jitter, self.rng)
+
+    def start_ok(self, points: FloatArray) -> BoolArray:
+        team, crowd = self.team, self.crowd
+        gap = self.radius + team.start.separation
+        good = _apart(points, crowd.start, crowd.radius + gap)
+        if isinstance(team.start, CircleStart) and team.start.clear_of_goals:
+            good &= _apart(points, crowd.goal, crowd.radius + gap)
+        good[good] = clear(point_shapes(points[good]), self.bodies, gap)
+        labels = self._labels(points[good])
+        joined = np.all(labels >= 0, axis=0)
+        if isinstance(team.goal, AntipodalGoal | ShiftedGoal):
+            ends = self._labels(_bound_goals(team.goal, points[good]))
+            self.ends.count(labels[:, joined], ends[:, joined])
+            joined &= np.all(ends == labels, axis=0)
+        good[good] = joined
+        return good
+
+    def goal(self, start: FloatArray, what: str) -> FloatArray:
+        goal, crowd = self.team.goal, self.crowd
+        if isinstance(goal, AntipodalGoal | ShiftedGoal):
+            return _bound_goals(goal, start)
+        home = self._labels(start[None])
+
+        def joined(points: FloatArray) -> BoolArray:
+            ends = self._labels(points)
+            self.ends.count(home, ends)
+            reached: BoolArray = np.all(ends == home, axis=0)
+            return reached
+
+        if isinstance(goal, PointsGoal):
+            point = np.array([goal.points[self.number]])
+            return find_place(lambda n: point, joined, what, (1,))
+
+        def accept(points: FloatArray) -> BoolArray:
+            good = distances(points, start[None])[:, 0] >= goal.min_distance
+            good &= _apart(points, crowd.goal, crowd.radius + self.radius)
+            good[good] = joined(points[good])
+            return good
+
+        region = goal.region
+        return find_place(lambda n: draw_points(region, self.bounds, n, self.rng), accept, what)
+
+    def _labels(self, points: FloatArray) -> IntArray:
+        """(spaces, N)"""
+        return np.array([space.labels(points) for space in self.spaces])
+
+
+def _bound_goals(goal: AntipodalGoal | ShiftedGoal, starts: FloatArray) -> FloatArray:
+    """Goals that follow from starts (…, 2)."""
+    if isinstance(goal, AntipodalGoal):
+        mirrored: FloatArray = 2.0 * np.array(goal.center) - starts
+        return mirrored
+    shifted: FloatArray = starts + np.array(goal.by)
+    return shifted
+
+
+def is_fixed(team: Team) -> bool:
+    """True where the scenario says where each agent starts."""
+    start = team.start
+    if isinstance(start, CircleStart):
+        return start.angles == "even" and start.jitter == 0.0
+    if isinstance(start, GridStart | PackedStart):
+        return start.jitter == 0.0
+    return isinstance(start, PointsStart)
+
+
+def lattice_of(team: Team, bounds: Bounds, count: int) -> FloatArray:
+    """(N, 2) places of a packed start before they are shaken; (0, 2) of any other."""
+    start = team.start
+    if not isinstance(start, PackedStart):
+        return np.zeros((0, 2))
+    return lattice(start.front, start.spacing, start.region, bounds, count)
+
+
+def fixed_places(team: Team, bounds: Bounds) -> FloatArray:
+    """(N, 5) discs that starts and goals fill whatever is drawn, as capsules.
+
+    Of a packed start these are as much larger as its agents are shaken.
+    """
+    most = int(support(team.count)[1])
+    places, shaken = lattice_of(team, bounds, most), 0.0
+    if isinstance(team.start, PackedStart):
+        shaken = 0.5 * np.sqrt(2.0) * team.start.jitter
+    elif is_fixed(team) and (fixed(team.count) or not isinstance(team.start, CircleStart)):
+        nobody = Crowd()
+        one = np.random.default_rng(0)  # draws nothing: every place is fixed
+        empty = Barrier(np.zeros((0, 5)), np.zeros(1, np.int64), np.zeros(0, np.bool_))
+        for k in range(most):
+            search = _Placing(team, k, most, 0.0, nobody, bounds, (), empty, one, places[:0])
+            places = np.vstack([places, search.starts(1)])
+    if isinstance(team.goal, AntipodalGoal | ShiftedGoal):
+        places = np.vstack([places, _bound_goals(team.goal, places)])
+    if isinstance(team.goal, PointsGoal):
+        places = np.vstack([places, np.array(team.goal.points)[:most]])
+    radius = np.full((len(places), 1), support(team.radius)[1] + shaken)
+    return np.hstack([places, places, radius])
+
+
+def _jittered(points: FloatArray, jitter: float, rng: np.random.Generator) -> FloatArray:
+    if jitter == 0.0:
+        return points
+    moved: FloatArray = points + jitter * (rng.random(points.shape) - 0.5)
+    return moved
+
+
+def _apart(points: FloatArray, others: FloatArray, least: FloatArray) -> BoolArray:
+    """(N,) True where a point is farther than ``least`` (M,) from each of others (M, 2)."""
+    far: BoolArray = np.all(distances(points, others) > least, axis=1)
+    return far

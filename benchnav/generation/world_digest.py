@@ -1,0 +1,54 @@
+"""Do worlds coincide? Compared by a digest of everything in them but the count of redraws."""
+
+import hashlib
+from collections.abc import Iterator, Sequence
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from benchnav.arena.world import World
+from benchnav.generation.build import SPLITS, build
+from benchnav.scenario.scenario import Scenario
+
+Place = tuple[str, int]  # split, seed
+
+
+def world_digest(world: World) -> str:
+    """16 hex digits; equal exactly where all numbers of two worlds are equal."""
+    digest = hashlib.sha256()
+    for chunk in _chunks(world):
+        digest.update(chunk)
+    return digest.hexdigest()[:16]
+
+
+def _chunks(part: Any) -> Iterator[bytes]:
+    if isinstance(part, np.ndarray):
+        yield f"{part.dtype.str}{part.shape}".encode()
+        yield np.ascontiguousarray(part).tobytes()
+    elif is_dataclass(part):
+        for item in fields(part):
+            if item.name != "redraws":
+                yield item.name.encode()
+                yield from _chunks(getattr(part, item.name))
+    elif isinstance(part, tuple):
+        yield f"({len(part)}".encode()
+        for value in part:
+            yield from _chunks(value)
+    else:
+        yield repr(part).encode()
+
+
+def is_random(scenario: Scenario) -> bool:
+    """False where every seed of every split gives the same world."""
+    digests = {world_digest(build(scenario, split, seed)) for split in SPLITS for seed in (0, 1)}
+    return len(digests) > 1
+
+
+def coincidences(scenario: Scenario, seeds: Sequence[int]) -> list[tuple[Place, ...]]:
+    """Which worlds are the same: groups of two or more (split, seed), over all three splits."""
+    found: dict[str, list[Place]] = {}
+    for split in SPLITS:
+        for seed in seeds:
+            found.setdefault(world_digest(build(scenario, split, seed)), []).append((split, seed))
+    return [tuple(group) for group in found.values() if len(group) > 1]

@@ -1,0 +1,182 @@
+"""A navigator's process: started behind the fence, asked by frames, ended for good."""
+
+import contextlib
+import math
+import os
+import selectors
+import signal
+import subprocess
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from time import monotonic
+from typing import Any, NoReturn
+from weakref import finalize
+
+from benchnav.errors import NavigatorError
+from benchnav.isolation import sandbox
+from benchnav.isolation.frame import HEAD, Fields, decode, encode, head
+from benchnav.system.temporary_folder import TemporaryFolder
+
+_ROOM = 1 << 20  # bytes of a pipe, where the system grants them
+_TAIL = 2000  # bytes of what it said last that are kept
+_F_SETPIPE_SZ = 1031  # Linux
+
+
+class Process:
+    """One process that answers frames on its standard input and output, one at a time.
+
+    What it writes to its standard error is talk, and passed on. After a failure it is killed.
+    """
+
+    def __init__(self, command: Sequence[str]) -> None:
+        folder = TemporaryFolder("navigator")
+        try:
+            self._popen = subprocess.Popen(  # noqa: S603 - the command is the user's
+                [*sandbox.prefix(), *command],
+                bufsize=0, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                cwd=folder.path, env=sandbox.environment(folder.path), start_new_session=True,
+            )  # fmt: skip
+        except BaseException:
+            folder.remove()
+            raise
+        self._pipes = [self._popen.stdin, self._popen.stdout, self._popen.stderr]
+        self._in, self._out, self._err = (pipe.fileno() for pipe in self._pipes if pipe)
+        for pipe in (self._in, self._out, self._err):
+            os.set_blocking(pipe, False)
+            _widen(pipe)
+        self._said = b""
+        self.stop = finalize(self, _stop, self._popen, folder)
+
+    @property
+    def alive(self) -> bool:
+        """False once it ended, or was ended."""
+        return bool(self.stop.alive) and self._popen.poll() is None
+
+    def ask(self, kind: str, fields: Fields, patience: float) -> tuple[str, dict[str, Any]]:
+        """(kind, fields) of its answer.
+
+        Args:
+            kind: of the frame that it is sent.
+            fields: of that frame.
+            patience: [s] that it may take.
+
+        Raises NavigatorError where it ends, answers no frame, or takes too long.
+        """
+        if not self.alive:
+            raise NavigatorError(self._ended())
+        unsent, received = memoryview(encode(kind, fields)), bytearray()
+        deadline, size = monotonic() + patience, None
+        with selectors.DefaultSelector() as pipes:
+            pipes.register(self._in, selectors.EVENT_WRITE)
+            pipes.register(self._out, selectors.EVENT_READ)
+            pipes.register(self._err, selectors.EVENT_READ)
+            while size is None or len(received) < size:
+                left = max(deadline - monotonic(), 0.0)
+                ready = pipes.select(None if math.isinf(left) else left)
+                if not ready and monotonic() >= deadline:
+                    self._fail(f"did not answer within {patience:g} s")
+                for key, _ in ready:
+                    if key.fd == self._in:
+                        unsent = self._send(unsent, pipes)
+                    elif key.fd == self._err:
+                        self._listen(pipes)
+                    else:
+                        self._receive(received)
+                if size is None and len(received) >= HEAD.size:
+                    size = HEAD.size + self._size(received)
+        return self._understood(received)
+
+    def peak_memory(self) -> int:
+        """[bytes] the most that it ever held in RAM; 0 where the system does not tell."""
+        most = 0
+        with contextlib.suppress(OSError, ValueError, IndexError):
+            own = self._popen.pid
+            children = Path(f"/proc/{own}/task/{own}/children").read_text().split()
+            for pid in (own, *children):
+                for line in Path(f"/proc/{pid}/status").read_text().splitlines():
+                    if line.startswith("VmHWM:"):
+                        most = max(most, int(line.split()[1]) * 1024)
+        return most
+
+    def _send(self, unsent: memoryview, pipes: selectors.BaseSelector) -> memoryview:
+        with contextlib.suppress(BlockingIOError, BrokenPipeError):  # its end shows on its output
+            unsent = unsent[os.write(self._in, unsent) :]
+            if unsent:
+                return unsent
+        if self._in in pipes.get_map():
+            pipes.unregister(self._in)
+        return unsent
+
+    def _receive(self, received: bytearray) -> None:
+        data = os.read(self._out, _ROOM)
+        if not data:
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                self._popen.wait(2.0)
+            self._listen()
+            cause = self._ended()
+            self.stop()
+            raise NavigatorError(cause)
+        received += data
+
+    def _listen(self, pipes: selectors.BaseSelector | None = None) -> None:
+        """Pass on what it says, and keep the end of it."""
+        with contextlib.suppress(BlockingIOError):
+            data = os.read(self._err, _ROOM)
+            self._said = (self._said + data)[-_TAIL:]
+            if data:
+                sys.stderr.write(data.decode("utf-8", "replace"))
+            elif pipes is not None:
+                pipes.unregister(self._err)
+
+    def _size(self, received: bytearray) -> int:
+        try:
+            return head(received)[2]
+        except ValueError as error:
+            self._fail(f"answered what is no frame: {error}")
+
+    def _understood(self, received: bytearray) -> tuple[str, dict[str, Any]]:
+        kind, count, size = head(received)
+        if len(received) > HEAD.size + size:
+            self._fail(f"answered more than was asked, after {kind!r}")
+        try:
+            return kind, decode(count, received[HEAD.size :])
+        except ValueError as error:  # also of what is no UTF-8 or ASCII
+            self._fail(f"answered what is no frame: {error}")
+
+    def _fail(self, what: str) -> NoReturn:
+        self.stop()
+        raise NavigatorError(f"its process {what}")
+
+    def _ended(self) -> str:
+        code = self._popen.poll()
+        if code is None:
+            how = "closed its output"
+        elif code < 0:
+            how = f"was killed by {signal.Signals(-code).name}"
+        else:
+            how = f"ended with exit status {code}"
+        last = self._said.decode("utf-8", "replace").strip().splitlines()[-1:]
+        return f"its process {how}" + (f" ({last[0].strip()[:200]})" if last else "")
+
+
+def _widen(pipe: int) -> None:
+    try:
+        import fcntl
+
+        fcntl.fcntl(pipe, _F_SETPIPE_SZ, _ROOM)
+    except (ImportError, OSError):
+        pass  # as wide as it is
+
+
+def _stop(popen: subprocess.Popen[bytes], folder: TemporaryFolder) -> None:
+    """End the process and all that it began, and remove its folder."""
+    if popen.poll() is None:
+        with contextlib.suppress(ProcessLookupError, PermissionError):
+            os.killpg(popen.pid, signal.SIGKILL)
+        popen.kill()
+    popen.wait()
+    for pipe in (popen.stdin, popen.stdout, popen.stderr):
+        if pipe is not None:
+            pipe.close()
+    folder.remove()

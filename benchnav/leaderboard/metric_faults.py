@@ -1,0 +1,45 @@
+"""Values that are missing because their metric failed: how many, and why."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from benchnav.leaderboard.record import ALL, Record
+from benchnav.text.plural import counted
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+KEYS = ("split", "track", "role", "navigator", "metric")
+Faults = Mapping[tuple[str, ...], Mapping[tuple[str, int], str]]
+"""By `KEYS` and scenario, or `ALL`: (scenario, seed) → why the metric failed there."""
+
+
+def faults(results: pa.Table) -> Faults:
+    """Those among results of the schema `benchnav.store.parts.results.RESULTS`."""
+    import pyarrow.compute as pc
+
+    found: dict[tuple[str, ...], dict[tuple[str, int], str]] = {}
+    if "missing" not in results.column_names:
+        return found
+    for row in results.filter(pc.not_equal(results["missing"], "")).to_pylist():
+        world = row["scenario"], row["seed"]
+        for scenario in (row["scenario"], ALL):
+            key = *(row[name] for name in KEYS), scenario
+            found.setdefault(key, {})[world] = row["missing"]
+    return found
+
+
+def with_fault(record: Record, found: Faults) -> Record:
+    """The record, with what is to be told of its missing values."""
+    key = *(getattr(record, name) for name in KEYS), record.scenario
+    if key not in found:
+        return record
+    reasons = Counter(found[key].values())
+    (why, _), *others = reasons.most_common()
+    count = sum(reasons.values())
+    more = f" (and {counted(len(others), 'more reason')})" if others else ""
+    return replace(record, fault=f"failed in {counted(count, 'episode')}: {why}{more}")

@@ -1,0 +1,76 @@
+"""What stands beside a table: why navigators failed, and what they remark, in how many worlds."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from benchnav.leaderboard.record import ALL, Record
+from benchnav.navigation.command_check import grouped
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+KEYS = ("split", "track", "role", "navigator")
+SHOWN = 3  # texts of one navigator
+Texts = Mapping[tuple[str, ...], Counter[str]]
+"""By `KEYS` and scenario, or `ALL`: text → the worlds of which it is told."""
+
+
+def failures(results: pa.Table) -> Texts:
+    """Why navigators failed, of results of the schema `benchnav.store.parts.results.RESULTS`."""
+    import pyarrow.compute as pc
+
+    failed = results.filter(pc.not_equal(results["failure"], ""))
+    return _counted((row, [row["failure"]]) for row in _worlds(failed, "failure"))
+
+
+def remarks(results: pa.Table) -> Texts:
+    """What navigators remark; of results without that column, nothing."""
+    import pyarrow.compute as pc
+
+    if "remarks" not in results.column_names:
+        return {}
+    told = results.filter(pc.greater(pc.list_value_length(results["remarks"]), 0))
+    return _counted((row, row["remarks"]) for row in _worlds(told, "remarks"))
+
+
+def with_texts(record: Record, failed: Texts, remarked: Texts) -> Record:
+    """The record, with what is to be told of its episodes."""
+    key = *(getattr(record, name) for name in KEYS), record.scenario
+    return replace(
+        record,
+        failure=_told(failed.get(key, Counter()), record.episodes),
+        remark=_told(remarked.get(key, Counter()), record.episodes),
+    )
+
+
+def _worlds(rows: pa.Table, column: str) -> Iterator[dict[str, Any]]:
+    """One row for each episode and role, whatever the metrics."""
+    names = [*KEYS, "scenario", "scenario_hash", "seed"]
+    seen: set[tuple[Any, ...]] = set()
+    for row in rows.select([*names, column]).to_pylist():
+        world = tuple(row[name] for name in names)
+        if world not in seen:
+            seen.add(world)
+            yield row
+
+
+def _counted(found: Iterator[tuple[dict[str, Any], list[str]]]) -> Texts:
+    texts: dict[tuple[str, ...], Counter[str]] = {}
+    for row, told in found:
+        for scenario in (row["scenario"], ALL):
+            key = *(str(row[name]) for name in KEYS), str(scenario)
+            texts.setdefault(key, Counter()).update(set(told))
+    return texts
+
+
+def _told(texts: Counter[str], episodes: int) -> str:
+    """``in 12 of 40 worlds: …; in 1 of 40 worlds: …``."""
+    groups = grouped(texts)
+    worlds = "world" if episodes == 1 else "worlds"
+    said = [f"in {n} of {episodes} {worlds}: {text}" for text, n in groups[:SHOWN]]
+    more = len(groups) - SHOWN
+    return "; ".join([*said, *([f"and {more} more"] if more > 0 else [])])

@@ -1,0 +1,146 @@
+"""Leaderboard → Markdown, CSV, LaTeX, HTML, JSON."""
+
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
+from typing import Literal
+
+from benchnav.errors import UsageError, did_you_mean
+from benchnav.leaderboard.columns import choose, choose_columns
+from benchnav.leaderboard.record import Leaderboard, Record
+from benchnav.leaderboard.rendering import escape
+from benchnav.leaderboard.rendering.cell import Cell
+from benchnav.leaderboard.rendering.latex import latex_document
+from benchnav.leaderboard.rendering.layout import legend, sections
+from benchnav.leaderboard.rendering.long_format import as_csv, as_json
+from benchnav.leaderboard.rendering.matrix import matrix_sections
+from benchnav.leaderboard.rendering.section import Section
+
+Format = Literal["markdown", "csv", "latex", "html", "json"]
+Metrics = Sequence[str] | None
+
+
+def render(
+    board: Leaderboard,
+    format: str,
+    metrics: Sequence[str] | None = None,
+    columns: Sequence[str] | None = None,
+) -> str:
+    """The leaderboard as text that ends with a line break.
+
+    Markdown, LaTeX and HTML show a few ``metrics`` unless told otherwise (``["all"]``:
+    all); LaTeX shows each as a matrix of navigators and scenarios. ``columns`` are instead those
+    of every table, in this order: metrics and the names of
+    `benchnav.leaderboard.columns.NAMES`. CSV and JSON are tidy, one record each with every field,
+    and hold all metrics unless some are named in either way.
+    Raises UsageError for an unknown format, metric or column, and for metrics beside columns.
+    """
+    if format not in _RENDERERS:
+        raise UsageError(
+            f"The format must be one of {', '.join(_RENDERERS)}. Got {format!r} instead."
+            f"{did_you_mean(format, _RENDERERS)}"
+        )
+    if columns is not None:
+        if metrics is not None:
+            raise UsageError("Columns name their metrics. Got metrics, too: name them as columns.")
+        columns = choose_columns(board.metrics, columns)
+    return _RENDERERS[format](board, metrics, columns)
+
+
+def _chosen(board: Leaderboard, metrics: Metrics, columns: Metrics) -> list[Record]:
+    if columns is not None:
+        metrics = [name for name in columns if name in board.metrics]
+    shown = set(choose(board.metrics, ["all"] if metrics is None else metrics))
+    return [record for record in board.records if record.metric in shown]
+
+
+def _json(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+    return as_json(_chosen(board, metrics, columns))
+
+
+def _csv(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+    return as_csv(Record, _chosen(board, metrics, columns))
+
+
+def _chapters(
+    board: Leaderboard, metrics: Metrics, columns: Metrics
+) -> Iterator[tuple[str, list[Section]]]:
+    """The tables of each track, then those of the price of ignorance."""
+    for chapter, tables in groupby(sections(board, metrics, columns), key=lambda s: s.chapter):
+        yield chapter, list(tables)
+
+
+def _markdown(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+    blocks = []
+    for chapter, tables in _chapters(board, metrics, columns):
+        blocks += [f"## {escape.markdown(chapter)}\n", *map(_markdown_table, tables)]
+    return "\n".join([*blocks, *(f"{line}  " for line in legend(board)), ""])
+
+
+def _markdown_table(section: Section) -> str:
+    def text(cell: Cell) -> str:
+        return f"**{escape.markdown(cell.text)}**" if cell.bold else escape.markdown(cell.text)
+
+    head = [text(heading) for heading in section.headings]
+    body = [[text(cell) for cell in row] for row in section.rows]
+    width = [max(map(len, column)) for column in zip(head, *body, strict=True)]
+    lines = [f"### {escape.markdown(section.title)}", ""]
+    for row in (head, ["-" * max(w, 3) for w in width], *body):
+        padded = [cell.ljust(max(w, 3)) for cell, w in zip(row, width, strict=True)]
+        lines.append(f"| {' | '.join(padded)} |")
+    lines += ["", *(escape.markdown(note) + "  " for note in section.notes)]
+    return "\n".join([*lines, ""] if section.notes else lines)
+
+
+def _latex(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+    """Matrices of the leading metric, or of those named; tables where columns are named."""
+    if columns is not None:
+        return latex_document(list(sections(board, None, columns)), legend(board))
+    shown = choose(board.metrics, metrics)[: 1 if metrics is None else None]
+    return latex_document(list(matrix_sections(board, shown)), legend(board))
+
+
+_STYLE = (
+    "body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem;"
+    "color-scheme:light dark}table{border-collapse:collapse;font-variant-numeric:tabular-nums}"
+    "div{overflow-x:auto}th,td{padding:.25rem .75rem;text-align:right;white-space:nowrap;"
+    "border-bottom:1px solid #8884}th:first-child,td:first-child{text-align:left}"
+    "h2{margin-top:2.5rem}h3{font-size:1.05rem;margin-top:1.5rem}p{font-size:.9rem}"
+)
+
+
+def _html(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+    body = []
+    for chapter, tables in _chapters(board, metrics, columns):
+        body.append(f"<h2>{escape.html(chapter)}</h2>")
+        body += [part for section in tables for part in _html_table(section)]
+    said = [f"<p>{escape.html(line)}</p>" for line in legend(board)]
+    head = (
+        '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width">'
+        f"<title>Leaderboard</title><style>{_STYLE}</style></head><body>\n<h1>Leaderboard</h1>"
+    )
+    return "\n".join([head, *body, *said, "</body></html>", ""])
+
+
+def _html_table(section: Section) -> list[str]:
+    def cell(part: Cell) -> str:
+        inner = escape.html(part.text)
+        return f"<td><strong>{inner}</strong></td>" if part.bold else f"<td>{inner}</td>"
+
+    head = "".join(f"<th>{escape.html(heading.text)}</th>" for heading in section.headings)
+    return [
+        f"<h3>{escape.html(section.title)}</h3>",
+        f"<div><table><thead><tr>{head}</tr></thead><tbody>",
+        *(f"<tr>{''.join(map(cell, row))}</tr>" for row in section.rows),
+        "</tbody></table></div>",
+        *(f"<p>{escape.html(note)}</p>" for note in section.notes),
+    ]
+
+
+_RENDERERS: dict[str, Callable[[Leaderboard, Metrics, Metrics], str]] = {
+    "markdown": _markdown,
+    "csv": _csv,
+    "latex": _latex,
+    "html": _html,
+    "json": _json,
+}

@@ -1,0 +1,73 @@
+"""The table of the price of ignorance: a row for each navigator, a column for each scenario."""
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from benchnav.leaderboard.record import ALL, NO_MAP, PRICE, Leaderboard, Record
+from benchnav.leaderboard.rendering.cell import Cell, cell
+from benchnav.leaderboard.rendering.section import Section
+from benchnav.text.plural import counted
+
+CHAPTER = "Price of ignorance"
+ABREAST = 5  # columns of numbers side by side
+LEGEND = (
+    "price of ignorance: what the same navigator reaches in track known less what it reaches in"
+    " track unknown, mean over the same worlds [95 % interval]. It does not rank."
+)
+
+Place = tuple[bool, str, str, float, float]
+
+
+def price_sections(board: Leaderboard, shown: Sequence[str]) -> Iterator[Section]:
+    """A table for each metric of ``shown`` that has a better end, and each role and grant."""
+    priced = [r for r in board.records if r.track == PRICE]
+    priced.sort(key=lambda r: (r.split, r.role, r.rehearsal))  # stable
+    for _, group in groupby(priced, key=lambda r: (r.split, r.role, r.rehearsal)):
+        records = list(group)
+        for metric in shown:
+            chosen = [r for r in records if r.metric == metric and r.better]
+            if chosen:
+                yield from _tables(chosen)
+
+
+def _tables(records: list[Record]) -> Iterator[Section]:
+    """One metric: as many tables as its scenarios need."""
+    first = records[0]
+    at = {(r.navigator, _place(r)): r for r in records}
+    places = sorted({_place(r) for r in records})
+    names = sorted({r.navigator for r in records}, key=lambda name: _bare(at, name, places))
+    counts = {r.episodes for r in records if r.episodes and r.scenario != ALL}
+    title = f"{first.metric}, known − unknown, {first.role}s"
+    title += f", {counted(counts.pop(), 'world')}" if len(counts) == 1 else ""
+    title += "" if first.split == "test" else f", split {first.split}"
+    title += f", rehearsal: {first.rehearsal}" if first.rehearsal else ""
+    name = "price", first.metric, first.role, "" if first.split == "test" else first.split
+    for start in range(0, len(places), ABREAST):
+        block = places[start : start + ABREAST]
+        heads = [Cell("all scenarios" if p[1] == ALL else p[1]) for p in block]
+        rows = [(Cell(name), *_row([at.get((name, p)) for p in block])) for name in names]
+        yield Section(CHAPTER, title, name, (Cell("navigator"), *heads), tuple(rows), ())
+
+
+def _place(r: Record) -> Place:
+    """Where a column stands: what is over all scenarios first."""
+    whole = r.scenario == ALL
+    variant = (0.0, 0.0) if whole else (r.horizon, r.dt)
+    return not whole, r.scenario, r.scenario_hash, *variant
+
+
+def _bare(at: dict[tuple[str, Place], Record], name: str, places: list[Place]) -> tuple[bool, str]:
+    """Who has no price stands below."""
+    found = [at[name, p] for p in places if (name, p) in at]
+    return all(r.note == NO_MAP or not r.episodes for r in found), name
+
+
+def _row(records: Sequence[Record | None]) -> Iterator[Cell]:
+    """Numbers; or the reason for none, once where all share it."""
+    reasons = {r.note for r in records if r and (r.note == NO_MAP or not r.episodes)}
+    alike = len(reasons) == 1 and all(r and r.note in reasons for r in records)
+    for k, r in enumerate(records):
+        if r and (r.note == NO_MAP or not r.episodes):
+            yield Cell(r.note if k == 0 or not alike else "")
+        else:
+            yield cell(r, interval=True, decided=False)

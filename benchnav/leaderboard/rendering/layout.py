@@ -1,0 +1,230 @@
+"""What a table for people shows, whatever it is printed as."""
+
+import math
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from benchnav.leaderboard.columns import DESCRIPTIVE, MIDDLE_HALF, NAMES, choose
+from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Leaderboard, Record
+from benchnav.leaderboard.rendering.cell import Cell, cell, entrant, heading
+from benchnav.leaderboard.rendering.knowledge_gap_table import LEGEND as PRICE_LEGEND
+from benchnav.leaderboard.rendering.knowledge_gap_table import price_sections
+from benchnav.leaderboard.rendering.section import Section
+from benchnav.leaderboard.statistics.order import by_merit, leading
+from benchnav.text.plural import counted
+
+NARROW = 4  # metrics up to which every cell shows its interval
+INTERVALS = 2  # metrics that show it in a wider table
+WIDE = 8  # metrics beyond which a table has a row for each of them
+PRICED = 3  # of the default metrics that have a table of the price of ignorance
+ABREAST = 5  # navigators side by side in such a table
+
+LEGEND = (
+    "value [low, high]: mean over worlds and its 95 % interval; (n): only n episodes define it."
+    " ↑ more is better, ↓ less.",
+    "rank: 1 + entries significantly better – N − entries significantly worse, by the first metric"
+    " that ranks; 1–3 is a tie.",
+    "Significant: the paired 95 % interval over the worlds excludes 0, after Holm. Scenarios are"
+    " fixed: a rank holds for other seeds of these.",
+    "Bold: not significantly worse than any other entry; nothing is bold where all tie.",
+    "A failed episode counts as the worst: success 0, collided 1.",
+)
+
+
+def sections(
+    board: Leaderboard, metrics: Sequence[str] | None, columns: Sequence[str] | None = None
+) -> Iterator[Section]:
+    """Tables of a leaderboard, one per track, scenario and role, and what ignorance costs.
+
+    ``columns`` are those of each table, in this order; without them, it has the rank, the
+    ``metrics``, and what else is known of its navigators.
+    """
+    named = None if columns is None else [name for name in columns if name in board.metrics]
+    shown = choose(board.metrics, metrics if named is None else named)
+    records = [r for r in board.records if r.track != PRICE]
+    groups = {key: list(group) for key, group in groupby(records, key=_key)}
+    for key, records in groups.items():
+        if key[2] == ALL_INTERQUARTILE:
+            continue
+        variants = sum((k[:3], k[6:]) == (key[:3], key[6:]) for k in groups) > 1
+        middle = [
+            r
+            for k, group in groups.items()
+            for r in group
+            if key[2] == ALL and (k[:3], k[6:]) == ((*key[:2], ALL_INTERQUARTILE), key[6:])
+        ]
+        table = _Table(records, middle, shown, columns)
+        yield from table.sections(_title(records, variants), _name(records[0], variants))
+    priced = shown[:PRICED] if metrics is None and columns is None else shown
+    yield from price_sections(board, priced)
+
+
+def legend(board: Leaderboard) -> tuple[str, ...]:
+    """What is said below all tables."""
+    priced = any(r.track == PRICE for r in board.records)
+    caveats = tuple(f"Caveat: {text}" for text in board.caveats)
+    return (*LEGEND, *((PRICE_LEGEND,) if priced else ()), *caveats)
+
+
+def failures_and_remarks(leaders: Sequence[Record]) -> list[str]:
+    """The notes on what went wrong in the episodes of navigators."""
+    failures = [f"{r.navigator} failed {_closed(r.failure)}" for r in leaders if r.failure]
+    remarks = [f"Remark of {r.navigator} {_closed(r.remark)}" for r in leaders if r.remark]
+    return failures + remarks
+
+
+def granted(rehearsals: int) -> str:
+    """The note of a table of entries that rehearsed."""
+    return (
+        f"Granted {counted(rehearsals, 'rehearsal')} of each world before it was scored; ranked"
+        " among entries with the same grant alone."
+    )
+
+
+def _key(r: Record) -> tuple[str, ...]:
+    """What stands in one table: the scenario is third, role and grant last."""
+    variant = r.scenario_hash, f"{r.horizon!r}", f"{r.dt!r}"
+    return r.split, r.track, r.scenario, *variant, r.role, f"{r.rehearsal}"
+
+
+def _title(records: list[Record], variants: bool) -> str:
+    first = records[0]
+    scenario = "all scenarios" if first.scenario == ALL else first.scenario
+    counts = {r.episodes for r in records if r.episodes}
+    worlds = f", {counted(counts.pop(), 'world')}" if len(counts) == 1 else ""
+    split = "" if first.split == "test" else f", split {first.split}"
+    variant = (
+        f", horizon {first.horizon:g} s, dt {first.dt:g} s, hash {first.scenario_hash[:8]}"
+        if variants
+        else ""
+    )
+    grant = f", rehearsal: {first.rehearsal}" if first.rehearsal else ""
+    return f"{scenario}, track {first.track}{split}, {first.role}s{worlds}{variant}{grant}"
+
+
+def _name(r: Record, variants: bool) -> tuple[str, ...]:
+    """What tells a table from the others of a leaderboard."""
+    variant = f"{r.scenario_hash[:8]}-{r.horizon:g}-{r.dt:g}" if variants else ""
+    grant = f"rehearsal-{r.rehearsal}" if r.rehearsal else ""
+    return r.scenario, r.track, r.role, "" if r.split == "test" else r.split, grant, variant
+
+
+class _Table:
+    """The records of one scenario, track and role, the best navigator first."""
+
+    def __init__(
+        self,
+        records: list[Record],
+        middle: list[Record],
+        shown: Sequence[str],
+        columns: Sequence[str] | None,
+    ) -> None:
+        self.at = {(r.navigator, r.metric): r for r in records}
+        self.middle = {(r.navigator, r.metric): r for r in middle}
+        known = {r.metric for r in records}
+        self.metrics = [name for name in shown if name in known]
+        self.leading = leading(records, self.metrics)
+        self.navigators = by_merit({r.navigator: r for r in records if r.metric == self.leading})
+        # bold says something only where somebody is significantly worse
+        self.decided = {r.metric for r in records if (r.rank_low or 0) > 1}
+        self.rehearsed = records[0].rehearsal
+        self.verified = any(r.verified for r in records)
+        self.chapter = f"Track {records[0].track}"
+        self.columns = [
+            name
+            for name in (self._usual(records) if columns is None else columns)
+            if name in self.metrics or name in NAMES
+        ]
+
+    def _usual(self, records: list[Record]) -> Iterator[str]:
+        """The rank, the metrics, and beside the leading one what else is known."""
+        yield "rank"
+        if any(r.mode for r in records):
+            yield "mode"  # in the runner's process, or in one of its own
+        for metric in self.metrics:
+            yield metric
+            if metric != self.leading:
+                continue
+            if self.middle:
+                yield MIDDLE_HALF
+            if any(not math.isnan(r.training_decisions) for r in records):
+                yield "training"
+            if self.rehearsed:
+                yield "rehearsal"
+            if self.verified:
+                yield "verified"
+
+    def sections(self, title: str, name: tuple[str, ...]) -> Iterator[Section]:
+        """A row for each navigator, or for each column where those are many."""
+        if len(self.metrics) <= WIDE:
+            rows = [self._row(navigator) for navigator in self.navigators]
+            heads = (Cell("navigator"), *map(self._heading, self.columns))
+            notes = self._notes(self.navigators)
+            yield Section(self.chapter, title, name, heads, tuple(rows), notes)
+            return
+        columns = [c for c in self.columns if c != MIDDLE_HALF]
+        columns.sort(key=lambda column: column in self.metrics)  # stable
+        for start in range(0, len(self.navigators), ABREAST):
+            block = self.navigators[start : start + ABREAST]
+            names = (entrant(self.at[name, self.leading]) for name in block)
+            rows = [
+                (self._heading(column, alone=True), *(self._cell(n, column, True) for n in block))
+                for column in columns
+            ]
+            heads = (Cell("metric"), *names)
+            yield Section(self.chapter, title, name, heads, tuple(rows), self._notes(block))
+
+    def _heading(self, column: str, alone: bool = False) -> Cell:
+        if column in self.metrics:
+            return heading(next(r for (_, metric), r in self.at.items() if metric == column))
+        if column == "rank" and alone:
+            return Cell(f"rank ({self.leading})")
+        return Cell(column.replace("_", " "))
+
+    def _row(self, name: str) -> tuple[Cell, ...]:
+        leader = self.at[name, self.leading]
+        limit = len(self.metrics)
+        if limit > NARROW:
+            limit = INTERVALS - (MIDDLE_HALF in self.columns)
+        if leader.episodes:
+            cells = (self._cell(name, c, c in self.metrics[:limit]) for c in self.columns)
+        else:
+            cells = (self._absence(leader, c) for c in self.columns)
+        return entrant(leader), *cells
+
+    def _absence(self, leader: Record, column: str) -> Cell:
+        """Of a navigator that was not run: the reason, once."""
+        if column in ("rank", "mode"):
+            return self._cell(leader.navigator, column, False)
+        return Cell(leader.note if column == self.leading else "")
+
+    def _cell(self, name: str, column: str, interval: bool) -> Cell:
+        leader = self.at[name, self.leading]
+        if column == MIDDLE_HALF:
+            return cell(self.middle.get((name, self.leading)), interval=False, decided=False)
+        if column in DESCRIPTIVE:
+            return DESCRIPTIVE[column](leader)
+        r = self.at.get((name, column))
+        return cell(r, interval=interval, decided=column in self.decided)
+
+    def _notes(self, names: list[str]) -> tuple[str, ...]:
+        leaders = [self.at[name, self.leading] for name in names]
+        notes = [
+            f"{r.navigator} is not ranked: {r.note}." for r in leaders if r.note and r.episodes
+        ]
+        notes += failures_and_remarks(leaders)
+        notes += [
+            f"{metric} of {name} {self.at[name, metric].fault}."
+            for name in names
+            for metric in self.metrics
+            if (name, metric) in self.at and self.at[name, metric].fault
+        ]
+        if self.verified:
+            notes.append("verified: its runs were re-simulated here; timings cannot be verified.")
+        if self.rehearsed:
+            notes.append(granted(self.rehearsed))
+        return tuple(notes)
+
+
+def _closed(text: str) -> str:
+    return text if text.endswith((".", "!", "?")) else f"{text}."

@@ -1,0 +1,126 @@
+"""One metric at a glance: a row for each navigator, a column for each scenario."""
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+
+from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, NO_MAP, PRICE, Leaderboard, Record
+from benchnav.leaderboard.rendering.cell import Cell, cell, entrant, rank, rehearsal, training
+from benchnav.leaderboard.rendering.layout import failures_and_remarks, granted
+from benchnav.leaderboard.rendering.section import Section
+from benchnav.leaderboard.statistics.order import by_merit
+from benchnav.text.plural import counted
+
+Place = tuple[bool, str, str, float, float]
+BETTER = {"higher": " (higher is better)", "lower": " (lower is better)", None: ""}
+INTERVAL = "95 % interval"
+
+
+def matrix_sections(board: Leaderboard, metrics: Sequence[str]) -> Iterator[Section]:
+    """A matrix for each of ``metrics``, track, role, split and grant; then what ignorance costs."""
+    for price in (False, True):
+        records = [r for r in board.records if (r.track == PRICE) == price]
+        records = [r for r in records if r.scenario != ALL_INTERQUARTILE]
+        for metric in metrics:
+            chosen = sorted((r for r in records if r.metric == metric), key=_contest)  # stable
+            for _, group in groupby(chosen, key=_contest):
+                section = _matrix(list(group))
+                if section.rows:
+                    yield section
+
+
+def _contest(r: Record) -> tuple[str, str, str, int]:
+    return r.split, r.track, r.role, r.rehearsal
+
+
+def _place(r: Record) -> Place:
+    """A column: the mean over scenarios is the first."""
+    whole = r.scenario == ALL
+    variant = (0.0, 0.0) if whole else (r.horizon, r.dt)
+    return not whole, r.scenario, r.scenario_hash, *variant
+
+
+def _matrix(records: list[Record]) -> Section:
+    at = {(r.navigator, _place(r)): r for r in records}
+    places = sorted({_place(r) for r in records})
+    first, wide = records[0], places[0]  # the column with intervals
+    leaders = {r.navigator: r for r in records if _place(r) == wide}
+    leaders = {r.navigator: leaders.get(r.navigator, r) for r in records}
+    priced = first.track == PRICE
+    idle = {r.navigator for r in leaders.values() if priced and r.note == NO_MAP}
+    names = [name for name in by_merit(leaders) if name not in idle]
+    worse = {_place(r) for r in records if (r.rank_low or 0) > 1}
+    rows = []
+    for name in names:
+        row = [entrant(leaders[name]), *([] if priced else [rank(leaders[name])])]
+        missing = None if leaders[name].episodes else leaders[name]
+        row += [_cell(at.get((name, p), missing), p == wide, p in worse) for p in places]
+        rows.append(tuple(row))
+    heads = [Cell("navigator"), *([] if priced else [Cell("rank")])]
+    heads += [Cell(_heading(p, places)) for p in places]
+    notes = _notes([leaders[name] for name in names], idle)
+    return Section("", _title(records, places), _name(first), tuple(heads), tuple(rows), notes)
+
+
+def _cell(r: Record | None, interval: bool, decided: bool) -> Cell:
+    if r is not None and not r.episodes:
+        return Cell("n/a")
+    return cell(r, interval=interval, decided=decided)
+
+
+def _heading(place: Place, places: Sequence[Place]) -> str:
+    """The scenario; with its hash, horizon and time step where they alone tell it from another."""
+    if not place[0]:
+        return "all scenarios"
+    _, scenario, digest, horizon, dt = place
+    alone = sum(other[1] == scenario for other in places) == 1
+    return scenario if alone else f"{scenario} {digest[:8]} {horizon:g} s {dt:g} s"
+
+
+def _title(records: Sequence[Record], places: Sequence[Place]) -> str:
+    """The caption: what is shown of which agents, and what the numbers are."""
+    first = records[0]
+    priced = first.track == PRICE
+    where = "track known less track unknown" if priced else f"track {first.track}"
+    where += "" if first.split == "test" else f", split {first.split}"
+    where += f", {counted(first.rehearsal, 'rehearsal')} granted" if first.rehearsal else ""
+    counts = {r.episodes for r in records if r.episodes and r.scenario != ALL}
+    worlds = counted(counts.pop(), "world") if len(counts) == 1 else "the worlds"
+    several = f"each scenario, and over all scenarios with {INTERVAL}"
+    of = several if len(places) > 1 else f"{places[0][1]}, with {INTERVAL}"
+    better = "" if priced else BETTER[first.better]
+    return f"{first.metric}{better} of {first.role}s, {where}: means over {worlds} of {of}"
+
+
+def _name(r: Record) -> tuple[str, ...]:
+    track = "price" if r.track == PRICE else r.track
+    grant = f"rehearsal-{r.rehearsal}" if r.rehearsal else ""
+    return r.metric, track, r.role, "" if r.split == "test" else r.split, grant
+
+
+def _notes(leaders: Sequence[Record], idle: set[str]) -> tuple[str, ...]:
+    """Why navigators have no number or no rank, once for all that share the reason."""
+    reasons: dict[str, list[str]] = {}
+    for r in leaders:
+        if r.note and not r.episodes:
+            reasons.setdefault(r.note, []).append(r.navigator)
+        elif r.note and r.track != PRICE:
+            reasons.setdefault(f"not ranked ({r.note})", []).append(r.navigator)
+    notes = [f"{reason}: {', '.join(names)}." for reason, names in reasons.items()]
+    notes += failures_and_remarks([r for r in leaders if r.track != PRICE])
+    notes += [f"{r.metric} of {r.navigator} {r.fault}." for r in leaders if r.fault]
+    if idle:
+        notes.append(f"{NO_MAP}, so that there is no difference: {', '.join(sorted(idle))}.")
+    return (*notes, *_costs(leaders))
+
+
+def _costs(leaders: Sequence[Record]) -> Iterator[str]:
+    """What navigators learned and rehearsed, which other formats show in columns."""
+    for title, cost in (("training", training), ("rehearsal of a world", rehearsal)):
+        spent = [f"{r.navigator} {text}" for r in leaders if (text := cost(r).text)]
+        if spent:
+            yield f"{title}: {'; '.join(spent)}."
+    if leaders and leaders[0].rehearsal:
+        yield granted(leaders[0].rehearsal)
+    checked = [r.navigator for r in leaders if r.verified]
+    if checked:
+        yield f"verified, re-simulated here: {', '.join(checked)}."

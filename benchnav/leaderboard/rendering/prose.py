@@ -1,0 +1,152 @@
+"""A comparison in words: what is different, by how much, and how sure that is."""
+
+import math
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+from benchnav.errors import UsageError
+from benchnav.leaderboard.record import ALL
+from benchnav.leaderboard.rendering import escape
+from benchnav.leaderboard.rendering.digits import figures, number, prefixed
+from benchnav.leaderboard.rendering.digits import signed as with_sign
+from benchnav.leaderboard.rendering.long_format import as_csv, as_json
+from benchnav.leaderboard.statistics.comparison import Comparison
+from benchnav.leaderboard.statistics.head_to_head import Duel
+from benchnav.metrics.metric import Metric
+from benchnav.text.plural import counted
+
+FORMATS = ("markdown", "csv", "json")
+SMALLEST = 1e-4  # p below which only that is said
+VERBS = {
+    "success": "succeeds", "arrival": "arrives", "collided": "collides", "timeout": "times out",
+    "stuck": "gets stuck", "failed": "fails",
+}  # fmt: skip
+"""Of rates that happen to an agent; others are higher or lower."""
+
+
+def render_duel(duel: Duel, metrics: Mapping[str, Metric], format: str = "markdown") -> str:
+    """A comparison as text that ends with a line break: sentences, or tidy CSV or JSON.
+
+    Raises UsageError for another format.
+    """
+    if format not in FORMATS:
+        raise UsageError(f"A comparison comes as {', '.join(FORMATS)}. Got {format!r} instead.")
+    if format == "json":
+        return as_json(duel.comparisons)
+    if format == "csv":
+        return as_csv(Comparison, duel.comparisons)
+    lines = [f"# {escape.markdown(f'{duel.first} against {duel.second}')}", ""]
+    for name in dict.fromkeys(c.metric for c in duel.comparisons):
+        chosen = [c for c in duel.comparisons if c.metric == name]
+        lines += _block(chosen, metrics[name])
+    lines += [f"{_explained(duel)}", ""]
+    for note in duel.notes:
+        lines.append(f"- {escape.markdown(note)}")
+    return "\n".join([*lines, ""] if duel.notes else lines)
+
+
+def _block(found: Sequence[Comparison], metric: Metric) -> list[str]:
+    """The sentences about one metric, its outcome first."""
+    roles, splits = {c.role for c in found}, {c.split for c in found}
+    lines = [f"## {escape.markdown(metric.name)}: {escape.markdown(outcome(found))}", ""]
+    lines += [f"{escape.markdown(metric.title)}.", ""]
+    for c in found:
+        where = place(c, role=len(roles) > 1, split=splits != {"test"})
+        lines.append(f"- {escape.markdown(f'{where}: {sentence(c, metric)}')}")
+    return [*lines, ""]
+
+
+def outcome(found: Sequence[Comparison]) -> str:
+    """How often the first is better, worse, tied."""
+    counts = Counter(c.verdict for c in found)
+    if len(found) == 1:
+        return str(found[0].verdict)
+    return ", ".join(f"{verdict} in {n} of {len(found)}" for verdict, n in counts.most_common())
+
+
+def place(c: Comparison, *, role: bool, split: bool) -> str:
+    """Where it was, ``leaders/dynamic@1, unknown (100 worlds)``."""
+    scenario = "all scenarios" if c.scenario == ALL else c.scenario
+    parts = [scenario, f"track {c.track}"]
+    parts += [f"{c.role}s"] if role else []
+    parts += [f"split {c.split}"] if split else []
+    return f"{', '.join(parts)} ({counted(c.worlds, 'world')})"
+
+
+def sentence(c: Comparison, metric: Metric) -> str:
+    """What one comparison says."""
+    if not c.worlds:
+        return "no world in which both have a value."
+    if c.verdict == "tie":
+        nothing = c.difference == 0.0 and c.p == 1.0
+        chance = "" if nothing else f"; {_chance(c)}"
+        return f"a tie, {signed(c, metric)}{chance}."
+    if c.verdict == "too few worlds":
+        return f"too few worlds to tell, {signed(c, metric)}."
+    said = f"{_said(c, metric)}; {_chance(c)}"
+    return f"{said}. Not as equals." if c.verdict == "not as equals" else f"{said}."
+
+
+def _said(c: Comparison, metric: Metric) -> str:
+    """``A succeeds 4.2 points more often [2.9, 5.6]``."""
+    sign = math.copysign(1.0, c.difference)
+    bounds = sorted((sign * c.low, sign * c.high))
+    value, ends, unit = _figures(metric, sign * c.difference, bounds)
+    verb = VERBS.get(metric.name)
+    if verb:
+        return f"{c.first} {verb} {value}{unit} {'more' if sign > 0 else 'less'} often{ends}"
+    way = "higher" if sign > 0 else "lower"
+    good = f" ({c.verdict})" if c.verdict in ("better", "worse") else ""
+    return f"{metric.name} of {c.first} is {value}{unit} {way}{ends}{good}"
+
+
+def signed(c: Comparison, metric: Metric) -> str:
+    """``A − B = +0.5 points [−2.1, +3.0]``."""
+    value, ends, unit = _figures(metric, c.difference, [c.low, c.high], plus=True)
+    return f"{c.first} − {c.second} = {value}{unit}{ends}"
+
+
+def scaled(metric: Metric, widest: float) -> tuple[float, str]:
+    """By what to divide differences of a metric, and the unit then; rates are in points."""
+    return (0.01, "points") if metric.rate else prefixed(metric.unit, widest)
+
+
+def _figures(
+    metric: Metric, value: float, bounds: Sequence[float], plus: bool = False
+) -> tuple[str, str, str]:
+    """Value, interval and unit, the last two with a space before."""
+    known = [x for x in bounds if not math.isnan(x)]
+    size, unit = scaled(metric, max(map(abs, (value, *known))))
+    whole = 100.0 if metric.rate else None  # points
+    texts: tuple[str, ...]
+    if known:
+        texts = figures(value / size, known[0] / size, known[1] / size, whole)
+    else:
+        texts = (number(value / size, whole),)
+    first, *ends = (with_sign(text) if plus else with_sign(text).replace("+", "") for text in texts)
+    return first, f" [{', '.join(ends)}]" if ends else "", f" {unit}" if unit else ""
+
+
+def _chance(c: Comparison) -> str:
+    """How often nothing but chance differs as much, after Holm."""
+    p = c.adjusted
+    if p < SMALLEST:
+        return f"by chance less than once in {1 / SMALLEST:,.0f} times"
+    if p >= 0.95:
+        return "which is what chance does"
+    if p >= 0.1:
+        return f"by chance {counted(round(10 * p), 'time')} in 10"
+    times = math.floor(1 / p)
+    return f"by chance once in {times if times < 100 else round(times, -1):,} times"
+
+
+def _explained(duel: Duel) -> str:
+    family = max(c.family for c in duel.comparisons)
+    return (
+        "[low, high]: 95 % interval of the mean difference over the worlds of both. By chance: how"
+        " often a difference as large would be seen if the true one were 0, by the t-test of the"
+        " same interval, adjusted by Holm's procedure for the"
+        f" {counted(family, 'comparison')} above as one family. Rarer than once in"
+        " 20 it is called a difference. An interval is not adjusted, so a tie may exclude 0."
+        " Scenarios are fixed: other seeds may differ, not other scenarios."
+    )

@@ -1,0 +1,1 @@
+"""Estimates, intervals, paired comparisons and rankings."""

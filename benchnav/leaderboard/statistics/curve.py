@@ -1,0 +1,150 @@
+"""Curves of a metric against a number: success against horizon, or against a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from benchnav.arena.agents import Role
+from benchnav.arrays import FloatArray
+from benchnav.leaderboard.statistics.estimate import Sample, columns_of, estimate
+from benchnav.leaderboard.statistics.interval import resample
+from benchnav.leaderboard.statistics.strata import strata
+from benchnav.metrics.metric import Metric
+from benchnav.metrics.success import SUCCESS, success_by_horizon, success_time
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+    from benchnav.episode.episode import Episode
+
+HORIZON = "horizon"
+"""The axis that is no parameter of a scenario: what if the episodes had ended by then."""
+POINTS = 100  # times of a curve against horizon
+
+
+@dataclass(frozen=True)
+class Point:
+    """A point of one navigator's curve."""
+
+    navigator: str
+    scenario: str  # without the parameter that is the axis
+    track: str
+    role: str
+    metric: str
+    axis: str  # "horizon", or a parameter of the scenario
+    axis_unit: str
+    x: float
+    value: float  # mean over worlds; NaN where none defines it
+    low: float  # of its 95 % interval
+    high: float
+    unit: str  # of the value
+    worlds: int  # attempted
+    split: str
+    scenario_hash: str
+    horizon: float  # [s] of the episodes
+    dt: float  # [s]
+    rehearsal: int = 0  # rehearsals of each world that the navigator was granted
+
+
+@dataclass(frozen=True)
+class Setting:
+    """Where on its axis a scenario stands that has a parameter."""
+
+    scenario: str  # without the parameter
+    x: float
+    unit: str  # of x; "" where the scenario does not say
+
+
+Key = tuple[str, str, str, str, str, float, float, int, str]
+Worlds = dict[int, tuple[FloatArray, int]]  # seed → shares at every time, agents
+
+
+def horizon_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[Point, ...]:
+    """Success against horizon at ``points`` even times, from episodes that ran to the last.
+
+    The cumulative incidence of success: agents that collided, failed or timed out stay in the
+    denominator. One curve for each navigator × scenario × track × role, and apart what
+    differs in split, scenario hash, horizon, time step or rehearsals. An episode that occurs
+    twice counts once. Background agents are left out.
+    """
+    curves: dict[Key, Worlds] = {}
+    for episode in episodes:
+        who, clock, agents = episode.identity, episode.world.clock, episode.world.agents
+        times = success_time(episode)
+        for role in Role:
+            members = agents.evaluated & (agents.role == role)
+            if members.any():
+                key = (
+                    who.split, who.track, who.scenario, role.name.lower(), who.scenario_hash,
+                    clock.horizon, clock.dt, episode.rehearsals, who.navigator,
+                )  # fmt: skip
+                shares = success_by_horizon(times[members], _times(clock.horizon, points))
+                curves.setdefault(key, {})[who.seed] = (shares, int(members.sum()))
+    return tuple(p for key in sorted(curves) for p in _horizon_curve(key, curves[key], points))
+
+
+def _times(horizon: float, points: int) -> FloatArray:
+    """(T,) [s] the ends of equal parts of the episode."""
+    found: FloatArray = np.linspace(0.0, horizon, points + 1)[1:]
+    return found
+
+
+def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
+    split, track, scenario, role, digest, horizon, dt, rehearsal, navigator = key
+    value = np.array([worlds[seed][0] for seed in sorted(worlds)])
+    agents = np.array([[float(worlds[seed][1])] * points for seed in sorted(worlds)])
+    weights = resample(len(value), np.random.default_rng(0))
+    found = estimate(Sample(value, agents, weights), columns_of([SUCCESS] * points))
+    for k, time in enumerate(_times(horizon, points)):
+        yield Point(
+            navigator, scenario, track, role, SUCCESS.name, HORIZON, "s", float(time),
+            float(found.value[k]), float(found.low[k]), float(found.high[k]), "", len(value),
+            split, digest, horizon, dt, rehearsal,
+        )  # fmt: skip
+
+
+def parameter_curves(
+    results: pa.Table, metric: Metric, axis: str, settings: Mapping[str, Setting]
+) -> tuple[Point, ...]:
+    """A metric against the parameter ``axis`` of scenarios.
+
+    ``settings`` maps a scenario of ``results`` (RESULTS) that has the parameter to where on
+    the axis it stands; other scenarios are left out.
+    """
+    found = []
+    for s in strata(results, {metric.name: metric}):
+        if s.scenario not in settings or metric.name not in s.metrics:
+            continue
+        m = s.metrics.index(metric.name)
+        sample = Sample(s.value[:, :, m], s.agents[:, :, m], resample(len(s.seeds), s.rng("curve")))
+        mean = estimate(sample, columns_of([metric] * len(s.navigators)))
+        where = settings[s.scenario]
+        found += [
+            Point(
+                navigator, where.scenario, s.track, s.role, metric.name, axis, where.unit, where.x,
+                float(mean.value[n]), float(mean.low[n]), float(mean.high[n]), metric.unit,
+                int(s.attempted[:, n].sum()), s.split, s.scenario_hash, s.horizon, s.dt,
+                s.rehearsal,
+            )
+            for n, navigator in enumerate(s.navigators)
+        ]  # fmt: skip
+    return tuple(sorted(found, key=lambda p: (*place(p), p.navigator, p.x)))
+
+
+Place = tuple[str, str, str, str, float, float, int]
+
+
+def place(p: Point) -> Place:
+    """What stands in one picture: curves of one scenario, track and role."""
+    return p.split, p.scenario, p.track, p.role, p.horizon, p.dt, p.rehearsal
+
+
+def panels(points: Iterable[Point]) -> Iterator[list[Point]]:
+    """The points of each place."""
+    for _, group in groupby(sorted(points, key=lambda p: (*place(p), p.navigator, p.x)), key=place):
+        yield list(group)

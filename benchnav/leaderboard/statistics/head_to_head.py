@@ -1,0 +1,121 @@
+"""Two navigators against each other, on all metrics and places that both were run in."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from benchnav.arrays import IntArray
+from benchnav.errors import UsageError, did_you_mean
+from benchnav.leaderboard.record import ALL, NotApplicable
+from benchnav.leaderboard.statistics.comparison import Comparison, as_family
+from benchnav.leaderboard.statistics.difference import Moments, difference
+from benchnav.leaderboard.statistics.estimate import columns_of
+from benchnav.leaderboard.statistics.not_comparable import absences
+from benchnav.leaderboard.statistics.paired import differences, side_by_side
+from benchnav.leaderboard.statistics.strata import Stratum, strata
+from benchnav.metrics.metric import Metric
+
+if TYPE_CHECKING:
+    import pyarrow as pa
+
+
+@dataclass(frozen=True)
+class Duel:
+    """What `benchnav compare` says: one family of comparisons, and what it cannot compare."""
+
+    first: str
+    second: str
+    comparisons: tuple[Comparison, ...]  # by metric, then split, track, role and scenario
+    notes: tuple[str, ...]
+
+
+def duel(
+    results: pa.Table,
+    metrics: Mapping[str, Metric],
+    names: Sequence[str],
+    first: str,
+    second: str,
+    gaps: Sequence[NotApplicable] = (),
+) -> Duel:
+    """``first`` − ``second`` by the metrics ``names``, in every scenario, track and role of both.
+
+    Where they met in several scenarios of a track also over all of these, each counting
+    alike. All that is said is one family. ``gaps`` are cells that could not be run.
+    Raises UsageError where one of the two is not in ``results``, or they met nowhere.
+    """
+    _require(results, first, second)
+    import pyarrow.compute as pc
+
+    chosen = pc.and_(
+        pc.is_in(results["navigator"], value_set=_strings(first, second)),
+        pc.is_in(results["metric"], value_set=_strings(*names)),
+    )
+    found = strata(results.filter(chosen), metrics, mixed=True)
+    met = [s for s in found if len(s.navigators) == 2 and s.attempted.all(axis=1).any()]
+    notes = absences(found, first, second, gaps)
+    if not met:
+        raise UsageError(
+            f"Two navigators can be compared where both were run in the same worlds. {first!r}"
+            f" and {second!r} never were.{''.join(f' {note}' for note in notes)}"
+        )
+    wanted = [metrics[name] for name in names]
+    every = [c for s in met for c in _in_one(s, first, second, wanted)]
+    for _, group in groupby(met, key=lambda s: (s.split, s.track, s.role)):
+        every += _over_all(list(group), first, second, wanted)
+    order = {name: place for place, name in enumerate(names)}
+    every.sort(key=lambda c: (order[c.metric], c.split, c.track, c.role))  # stable
+    return Duel(first, second, as_family(every, metrics), tuple(notes))
+
+
+def _require(results: pa.Table, first: str, second: str) -> None:
+    known = sorted(results["navigator"].unique().to_pylist())
+    for name in (first, second):
+        if name not in known:
+            raise UsageError(
+                f"A navigator to compare must be one that was run. Got {name!r} instead."
+                f"{did_you_mean(name, known)}"
+            )
+    if first == second:
+        raise UsageError(f"Two different navigators can be compared. Got {first!r} twice.")
+
+
+def _strings(*values: str) -> pa.Array:
+    import pyarrow as pa
+
+    return pa.array(values, pa.string())
+
+
+def _sides(s: Stratum, first: str, second: str, count: int) -> tuple[IntArray, IntArray]:
+    """(C,), (C,) their places among the navigators of a stratum."""
+    one, other = s.navigators.index(first), s.navigators.index(second)
+    return np.full(count, one, np.int64), np.full(count, other, np.int64)
+
+
+def _in_one(s: Stratum, first: str, second: str, metrics: Sequence[Metric]) -> list[Comparison]:
+    """In one scenario, by the metrics that were measured there."""
+    held = [metric for metric in metrics if metric.name in s.metrics]
+    return differences(s, *_sides(s, first, second, len(held)), held)
+
+
+def _over_all(
+    group: list[Stratum], first: str, second: str, metrics: Sequence[Metric]
+) -> Iterator[Comparison]:
+    """Over the scenarios of one split, track and role, if there are several."""
+    if len(group) < 2:
+        return
+    sides = [side_by_side(s, *_sides(s, first, second, len(metrics)), metrics) for s in group]
+    found = difference([Moments.of(side) for side in sides], columns_of(metrics))
+    s = group[0]
+    granted = [int(s.granted[s.navigators.index(name)]) for name in (first, second)]
+    for m, metric in enumerate(metrics):
+        yield Comparison(
+            first, second, ALL, s.track, s.role, metric.name, int(found.worlds[m]),
+            float(found.value[m]), float(found.low[m]), float(found.high[m]), float(found.p[m]),
+            s.split, "", math.nan, math.nan, granted[0], granted[1],
+        )  # fmt: skip

@@ -1,0 +1,135 @@
+"""Voronoi density in the measurement area, computed with PedPy.
+
+Places are taken at 1 Hz, whatever the decision step. Cells are cut by everything that
+never moves (walls and static obstacles; what is thinner than 2 mm is made so thick,
+so that no cell reaches through a thin wall) and, as Steffen & Seyfried do for sparse
+crowds, kept below 2 m²: no cell reaches farther than 0.8 m from its agent. So an agent
+farther than that from the area adds nothing, and one farther than three times that does
+not even bound a cell that does: both, and what is built out there, are left out.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from benchnav.arena.solid import Solid
+from benchnav.arena.world import World
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.metrics.quantities.trajectory import Trajectories, positions_at, present_at
+
+Box = tuple[float, float, float, float]  # x0, y0, x1, y1 [m]
+FRAME_RATE = 2.0  # [Hz] of what is quick to compute
+DENSITY_RATE = 1.0  # [Hz]
+REACH = 0.8  # [m]: a circle of 2.01 m²
+QUARTER = 16  # segments of a quarter of that circle
+SKIN = 1e-3  # [m] half the least thickness of a wall
+AWAY = 128.0  # [m] by which all is moved: GEOS cannot cut cells with corners like 1e-33
+
+
+def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
+    """(N,) [1/m²] at 1 Hz from the start on; (0,) where the world has no measurement area."""
+    area = world.measurement_area
+    if area is None:
+        return np.zeros(0)
+    import pedpy
+    import shapely
+    import shapely.affinity
+
+    times = frame_times(trajectories, DENSITY_RATE)
+    ids, frames, points = bodies_at(trajectories, times)
+    density = np.zeros(len(times))
+    counts = _matter(area, frames, points)
+    if not counts.any():
+        return density
+    walkable = _nearby(walkable_area(world), area)
+    counts &= shapely.contains_xy(walkable, points[:, 0], points[:, 1])
+    if not counts.any():
+        return density
+    there = shapely.affinity.translate(walkable, AWAY, AWAY)
+    cells = pedpy.compute_individual_voronoi_polygons(
+        traj_data=_table(ids[counts], frames[counts], points[counts] + AWAY),
+        walkable_area=pedpy.WalkableArea(there),
+        cut_off=pedpy.Cutoff(radius=REACH, quad_segments=QUARTER),
+    )
+    box = shapely.box(*(np.array(area) + AWAY))
+    measured, _ = pedpy.compute_voronoi_density(
+        individual_voronoi_data=cells, measurement_area=pedpy.MeasurementArea(box)
+    )
+    density[measured["frame"].to_numpy()] = measured["density"].to_numpy()
+    return density
+
+
+def _matter(area: Box, frames: IntArray, points: FloatArray) -> BoolArray:
+    """(N,) points that can change the density, in frames in which there is any."""
+    beyond = np.maximum(np.maximum(area[:2] - points, points - area[2:]), 0.0)
+    away = np.hypot(beyond[:, 0], beyond[:, 1])
+    busy = np.zeros(int(frames.max(initial=0)) + 1, dtype=np.bool_)
+    busy[frames[away <= REACH]] = True
+    matter: BoolArray = busy[frames] & (away <= 3.0 * REACH)
+    return matter
+
+
+def _nearby(walkable: Any, area: Box) -> Any:
+    """The part of the walkable area that cells of those who matter can reach."""
+    import shapely
+
+    x0, y0, x1, y1 = area
+    margin = 4.0 * REACH
+    near = shapely.box(x0 - margin, y0 - margin, x1 + margin, y1 + margin).intersection(walkable)
+    return near if near.geom_type == "Polygon" else walkable
+
+
+def frame_times(trajectories: Trajectories, rate: float = FRAME_RATE) -> FloatArray:
+    """(N,) [s] at ``rate`` [Hz], to the end of the record."""
+    record = trajectories.duration.shape[1] * trajectories.dt
+    return np.arange(int(record * rate + 1e-9) + 1) / rate
+
+
+def bodies_at(
+    trajectories: Trajectories, times: FloatArray
+) -> tuple[IntArray, IntArray, FloatArray]:
+    """Agent (N,), frame (N,) and place (N, 2) [m] of everybody who is a body at ``times``."""
+    ids, frames = np.nonzero(present_at(trajectories, times))
+    return ids, frames, positions_at(trajectories, times)[ids, frames]
+
+
+def walkable_area(world: World) -> Any:
+    """The part of the bounds, free of solids, that holds most of the measurement area."""
+    import shapely
+
+    free = shapely.box(*world.bounds)
+    for solid in world.solids:
+        free = _without(free, solid)
+    measured = shapely.box(*world.measurement_area or world.bounds)
+    parts = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon"]
+    if not parts:
+        return shapely.Polygon()
+    return max(parts, key=lambda part: (part.intersection(measured).area, part.area))
+
+
+def _without(free: Any, solid: Solid) -> Any:
+    """``free`` less a solid: loops that run counter-clockwise are filled, clockwise ones hollow."""
+    import shapely
+
+    if solid.is_disc:
+        return free.difference(shapely.Point(solid.center).buffer(solid.radius))
+    filled: list[Any] = []
+    hollow: list[Any] = []
+    for loop in solid.loops:
+        shape = shapely.make_valid(shapely.Polygon(loop)) if len(loop) > 2 else None
+        if shape is not None and shape.area > 0.0:
+            (filled if shapely.LinearRing(loop).is_ccw else hollow).append(shape)
+    rims = [shapely.LineString(np.vstack([loop, loop[:1]])) for loop in solid.loops]
+    skin = shapely.union_all([rim.buffer(SKIN) for rim in rims])
+    hole = shapely.union_all(hollow)
+    if filled:
+        return free.difference(shapely.union_all(filled).difference(hole).union(skin))
+    return (free.intersection(hole) if hollow else free).difference(skin)
+
+
+def _table(ids: IntArray, frames: IntArray, points: FloatArray) -> Any:
+    import pandas as pd
+    import pedpy
+
+    columns = {"id": ids, "frame": frames, "x": points[:, 0], "y": points[:, 1]}
+    return pedpy.TrajectoryData(data=pd.DataFrame(columns), frame_rate=DENSITY_RATE)

@@ -1,0 +1,254 @@
+"""How near every agent came to everything that it can hit: kernels.
+
+Between states everything moves straight, so the smallest distance within a step is
+that of two segments, not of two samples. A partner that is far cannot matter for
+some steps to come: nobody is faster than its greatest speed, so those steps are
+skipped without changing any result. Time to collision falls within a step, so its
+smallest value there is that of the step's end.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from benchnav.arena.body import LawKind
+from benchnav.arena.solid import Kind
+from benchnav.arena.world import World
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
+from benchnav.geometry.sweep import segment_distance2
+from benchnav.kernels import kernel
+from benchnav.metrics.quantities.trajectory import Trajectories
+
+TTC_CAP = 5.0  # [s] a collision that is farther off than this threatens nobody yet
+RECORDED = 2.4  # [m] gaps between agents are recorded up to this
+NEAR = 4.0  # radii between centres: two diameters
+SLACK = 1e-9  # [m] rounding, where steps are left out that cannot matter
+
+
+class Things(NamedTuple):
+    """Solids and bodies as capsules; bodies as centred at the origin and carried by an offset."""
+
+    capsules: FloatArray  # (P, 5)
+    body: IntArray  # (P,) which offset carries it, -1: none
+    offset: FloatArray  # (M, T+1, 2) [m]
+    jumps: BoolArray  # (M,) re-placed at once, so that it never travels
+
+
+class Encounters(NamedTuple):
+    """The result, all within each agent's own attempt."""
+
+    clearance: (
+        FloatArray  # (A,) [m] smallest gap to anything; negative in overlap, inf: nothing there
+    )
+    time_to_collision: FloatArray  # (A,) [s] smallest, at constant velocities, at most TTC_CAP
+    gap: FloatArray  # (A, T+1) [m] to the nearest agent, at most RECORDED
+    near: BoolArray  # (A, T+1) another agent's centre is within NEAR radii
+
+
+def things_of(world: World, body_position: FloatArray) -> Things:
+    """What stands in a world whose bodies were at ``body_position`` (T+1, M, 2)."""
+    parts = [(solid.capsules, -1) for solid in world.solids]
+    parts += [(body.solid.capsules, m) for m, body in enumerate(world.bodies)]
+    capsules = np.vstack([np.zeros((0, 5)), *(part for part, _ in parts)])
+    owner = np.repeat([m for _, m in parts], [len(part) for part, _ in parts]).astype(np.int64)
+    jumps = [b.solid.kind == Kind.STATIC or b.law.kind == LawKind.RELOCATE for b in world.bodies]
+    offset = np.ascontiguousarray(body_position.transpose(1, 0, 2), dtype=np.float64)
+    return Things(capsules, owner, offset, np.array(jumps, np.bool_))
+
+
+def encounters(trajectories: Trajectories, radius: FloatArray, things: Things) -> Encounters:
+    """Clearance, time to collision and nearest agents for agents of ``radius`` (A,) [m]."""
+    t = trajectories
+    shape = t.position.shape[:2]
+    found = Encounters(
+        np.full(len(t), math.inf), np.full(len(t), TTC_CAP), np.full(shape, RECORDED),
+        np.zeros(shape, np.bool_),
+    )  # fmt: skip
+    top = t.speed.max(axis=1, initial=0.0)
+    meet_things(t.position, t.velocity, t.duration, t.last, radius, top, t.dt, *things, *found[:2])
+    meet_agents(t.position, t.velocity, t.duration, t.last, t.leaves, radius, top, t.dt, *found)
+    return found
+
+
+@kernel
+def _skip(gap: float, clearance: float, ttc: float, top: float, dt: float) -> float:
+    """Steps after which the partner can first matter, at closing speeds up to ``top``."""
+    if top <= 0.0:
+        return math.inf
+    return min((gap - clearance) / (top * dt), (gap / top - ttc) / dt)
+
+
+@kernel
+def meet_things(
+    position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
+    radius: FloatArray, top: FloatArray, dt: float, capsules: FloatArray, body: IntArray,
+    offset: FloatArray, jumps: BoolArray, clearance: FloatArray, ttc: FloatArray,
+) -> None:  # fmt: skip
+    """Lower ``clearance`` and ``ttc`` (A,) by what solids and bodies do."""
+    body_top = _body_top(offset, jumps, dt)
+    for a in range(position.shape[0]):
+        for c in range(capsules.shape[0]):
+            m = body[c]
+            fastest = top[a] + (body_top[m] if m >= 0 else 0.0)
+            k = 0
+            while k < max(last[a], 1):
+                gap = _thing_step(
+                    a, c, k, position, velocity, duration, radius[a], dt, capsules, m, offset,
+                    jumps, last[a] > 0, clearance, ttc,
+                )  # fmt: skip
+                ahead = _skip(gap, clearance[a], ttc[a], fastest, dt)
+                k = last[a] + 1 if ahead > last[a] else k + max(1, int(ahead))
+
+
+@kernel
+def _body_top(offset: FloatArray, jumps: BoolArray, dt: float) -> FloatArray:
+    """(M,) [m/s] greatest speed; inf for what jumps."""
+    top = np.zeros(len(offset))
+    for m in range(len(offset)):
+        for k in range(offset.shape[1] - 1):
+            dx = offset[m, k + 1, 0] - offset[m, k, 0]
+            dy = offset[m, k + 1, 1] - offset[m, k, 1]
+            top[m] = max(top[m], math.sqrt(dx * dx + dy * dy) / dt)
+        if jumps[m] and top[m] > 0.0:
+            top[m] = math.inf
+    return top
+
+
+@kernel
+def _thing_step(
+    a: int, c: int, k: int, position: FloatArray, velocity: FloatArray, duration: FloatArray,
+    radius: float, dt: float, capsules: FloatArray, m: int, offset: FloatArray, jumps: BoolArray,
+    moves: bool, clearance: FloatArray, ttc: FloatArray,
+) -> float:  # fmt: skip
+    """One step against one capsule; returns the gap [m] at its start.
+
+    In the capsule's frame the agent's centre goes from p to q with velocity w. What
+    is re-placed is so at the beginning of a step: the next state has it.
+    """
+    px, py = position[a, k, 0], position[a, k, 1]
+    x0, y0, x1, y1 = capsules[c, 0], capsules[c, 1], capsules[c, 2], capsules[c, 3]
+    reach = radius + capsules[c, 4]
+    qx, qy, wx, wy = px, py, 0.0, 0.0
+    if moves:
+        qx, qy = position[a, k + 1, 0], position[a, k + 1, 1]
+        wx, wy = velocity[a, k, 0], velocity[a, k, 1]
+    if m >= 0:
+        after = k + 1 if moves else k
+        ox, oy = offset[m, after, 0], offset[m, after, 1]
+        if not jumps[m]:
+            ux, uy = (ox - offset[m, k, 0]) / dt, (oy - offset[m, k, 1]) / dt
+            ox, oy = offset[m, k, 0], offset[m, k, 1]
+            wx, wy = wx - ux, wy - uy
+            if moves:
+                qx, qy = qx - ux * duration[a, k], qy - uy * duration[a, k]
+        px, py = px - ox, py - oy
+        qx, qy = qx - ox, qy - oy
+    nx, ny = nearest_on_segment(px, py, x0, y0, x1, y1)
+    gap: float = math.sqrt((px - nx) * (px - nx) + (py - ny) * (py - ny)) - reach
+    travel = math.sqrt((qx - px) * (qx - px) + (qy - py) * (qy - py))
+    if gap - travel < clearance[a]:
+        least = math.sqrt(segment_distance2(px, py, qx, qy, x0, y0, x1, y1)) - reach
+        clearance[a] = min(clearance[a], least)
+    if moves and gap < (ttc[a] + dt) * math.sqrt(wx * wx + wy * wy):
+        time = capsule_time(px, py, wx, wy, reach, math.inf, x0, y0, x1, y1)
+        ttc[a] = min(ttc[a], max(0.0, time - duration[a, k]))
+    return gap
+
+
+@kernel
+def meet_agents(
+    position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
+    leaves: IntArray, radius: FloatArray, top: FloatArray, dt: float,
+    clearance: FloatArray, ttc: FloatArray, gap: FloatArray, near: BoolArray,
+) -> None:  # fmt: skip
+    """Lower ``clearance``, ``ttc`` (A,) and ``gap``, fill ``near`` (A, T+1), pair by pair."""
+    states = position.shape[1]
+    for i in range(position.shape[0]):
+        for j in range(i + 1, position.shape[0]):
+            fastest = top[i] + top[j]
+            margin = max(RECORDED, (NEAR - 1.0) * max(radius[i], radius[j]))
+            end = min(max(last[i], last[j]), min(leaves[i], leaves[j]))
+            k = 0
+            while k <= end:
+                between = _pair_sample(i, j, k, position, last, radius, clearance, gap, near)
+                if k < end and _pair_matters(
+                    i, j, k, between, velocity, clearance, ttc, fastest, dt
+                ):
+                    _pair_step(
+                        i, j, k, position, velocity, duration, last, leaves, radius, clearance, ttc
+                    )
+                ahead = 0.0
+                if between > margin:
+                    worst = max(clearance[i], clearance[j])
+                    ahead = _skip(between, worst, max(ttc[i], ttc[j]), fastest, dt)
+                    if fastest > 0.0:
+                        ahead = min(ahead, (between - margin) / (fastest * dt))
+                k = end + 1 if ahead > states else k + max(1, int(ahead))
+
+
+@kernel
+def _pair_sample(
+    i: int, j: int, k: int, position: FloatArray, last: IntArray, radius: FloatArray,
+    clearance: FloatArray, gap: FloatArray, near: BoolArray,
+) -> float:  # fmt: skip
+    """One pair in one state; returns the gap [m]."""
+    dx = position[j, k, 0] - position[i, k, 0]
+    dy = position[j, k, 1] - position[i, k, 1]
+    apart = math.sqrt(dx * dx + dy * dy)
+    between: float = apart - (radius[i] + radius[j])
+    for a in (i, j):
+        if k <= last[a]:
+            near[a, k] |= apart <= NEAR * radius[a]
+            gap[a, k] = min(gap[a, k], between)
+        if k < last[a] or k == 0:
+            clearance[a] = min(clearance[a], between)
+    return between
+
+
+@kernel
+def _pair_matters(
+    i: int, j: int, k: int, between: float, velocity: FloatArray, clearance: FloatArray,
+    ttc: FloatArray, fastest: float, dt: float,
+) -> bool:  # fmt: skip
+    """False where the step from ``between`` [m] on can lower neither clearance nor ttc."""
+    if between - fastest * dt <= max(clearance[i], clearance[j]) + SLACK:
+        return True
+    wx = velocity[j, k, 0] - velocity[i, k, 0]
+    wy = velocity[j, k, 1] - velocity[i, k, 1]
+    soon = max(ttc[i], ttc[j]) + dt
+    soon_met: bool = between - SLACK <= soon * math.sqrt(wx * wx + wy * wy)
+    return soon_met
+
+
+@kernel
+def _pair_step(
+    i: int, j: int, k: int, position: FloatArray, velocity: FloatArray, duration: FloatArray,
+    last: IntArray, leaves: IntArray, radius: FloatArray, clearance: FloatArray, ttc: FloatArray,
+) -> None:  # fmt: skip
+    """One pair within one step: straight until the first of them stops, and straight after."""
+    px = position[j, k, 0] - position[i, k, 0]
+    py = position[j, k, 1] - position[i, k, 1]
+    wx = velocity[j, k, 0] - velocity[i, k, 0]
+    wy = velocity[j, k, 1] - velocity[i, k, 1]
+    reach = radius[i] + radius[j]
+    i_for = duration[i, k] if k < last[i] else duration[j, k]
+    j_for = duration[j, k] if k < last[j] else duration[i, k]
+    until = min(i_for, j_for)
+    mx, my = px + wx * until, py + wy * until
+    nx, ny = nearest_on_segment(0.0, 0.0, px, py, mx, my)
+    least = math.sqrt(nx * nx + ny * ny) - reach
+    time = disc_time(px, py, wx, wy, reach)
+    for a in (i, j):
+        if k < last[a]:
+            clearance[a] = min(clearance[a], least)
+            ttc[a] = min(ttc[a], max(0.0, time - until))
+    if i_for == j_for:
+        return
+    stays, goes = (i, j) if i_for < j_for else (j, i)
+    if leaves[stays] > last[stays]:
+        qx = position[j, k + 1, 0] - position[i, k + 1, 0]
+        qy = position[j, k + 1, 1] - position[i, k + 1, 1]
+        nx, ny = nearest_on_segment(0.0, 0.0, mx, my, qx, qy)
+        clearance[goes] = min(clearance[goes], math.sqrt(nx * nx + ny * ny) - reach)

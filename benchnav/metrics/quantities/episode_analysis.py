@@ -1,0 +1,125 @@
+"""What several metrics of one episode share, computed once.
+
+`analyse(episode)` is pure from outside: an episode is immutable, its analysis is
+kept as long as the episode lives, and nothing in it may be written to.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from benchnav.arena.world import World
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.episode.episode import Contacts, Episode, Status
+from benchnav.metrics.quantities.density import frame_times, voronoi_density
+from benchnav.metrics.quantities.encounters import Encounters, encounters, things_of
+from benchnav.metrics.quantities.lowpass import smooth_velocity
+from benchnav.metrics.quantities.trajectory import Trajectories, cut, positions_at
+
+
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """Intermediate results. It does not hold the episode, so that both can be dropped."""
+
+    world: World
+    trajectories: Trajectories
+    body_position: FloatArray  # (T+1, M, 2) [m]
+    failed: BoolArray  # (A,) its navigator failed in this episode
+    asked: IntArray  # (T,) agents that the navigator drove in each decision
+    active_at_end: BoolArray  # (A,) still on its way when the record ends
+    arrival: FloatArray  # (A,) [s], NaN where it never came or its navigator failed
+    contacts: Contacts
+    decision: FloatArray  # (T,) [s]
+
+    @property
+    def arrived(self) -> BoolArray:
+        """(A,)"""
+        return ~np.isnan(self.arrival)
+
+    @cached_property
+    def success(self) -> BoolArray:
+        """(A,) arrived, and no charged contact had started before."""
+        c = self.contacts
+        early = c.charged & (c.start < self.arrival[c.agent])
+        hit = np.zeros(len(self.arrival), np.bool_)
+        hit[c.agent[early]] = True
+        return self.arrived & ~hit
+
+    @cached_property
+    def geodesic(self) -> FloatArray:
+        """(A,) [m] shortest way of each disc to its goal; NaN if there is none, or walls move."""
+        agents, count = self.world.agents, len(self.world.agents)
+        if self.world.relocates:
+            return np.full(count, np.nan)
+        from benchnav.geometry.geodesic import geodesic_lengths
+
+        solids = [np.zeros((0, 5)), *(solid.capsules for solid in self.world.solids)]
+        lengths = geodesic_lengths(
+            np.vstack(solids), agents.start, agents.goal, agents.radius,
+            self.world.rules.goal_tolerance,
+        )  # fmt: skip
+        return np.where(np.isfinite(lengths), lengths, np.nan)
+
+    @cached_property
+    def density(self) -> FloatArray:
+        """(N,) [1/m²] Voronoi density at 1 Hz; (0,) without a measurement area."""
+        return voronoi_density(self.world, self.trajectories)
+
+    @cached_property
+    def decision_per_agent(self) -> FloatArray:
+        """(N,) [s] time per decision and agent that it was for, ascending."""
+        count = self.asked[: len(self.decision)]
+        return np.sort(self.decision[count > 0] / count[count > 0])
+
+    @cached_property
+    def group_motion(self) -> tuple[FloatArray, FloatArray, BoolArray]:
+        """At 2 Hz: places, steps of the next 0.25 s (A, N, 2) [m], who is on its way (A, N)."""
+        times = frame_times(self.trajectories)
+        place = positions_at(self.trajectories, times)
+        step = positions_at(self.trajectories, times + 0.25) - place
+        return place, step, times[None] < self.trajectories.end[:, None]
+
+    def smooth_velocity(self, agent: int) -> FloatArray:
+        """(N, 2) [m/s] at a fixed rate, low-passed; see `filter`."""
+        if agent not in self._smooth:
+            self._smooth[agent] = smooth_velocity(self.trajectories, agent)
+        return self._smooth[agent]
+
+    @cached_property
+    def _smooth(self) -> dict[int, FloatArray]:
+        return {}
+
+    @cached_property
+    def encounters(self) -> Encounters:
+        """How near everybody came to everything."""
+        things = things_of(self.world, self.body_position)
+        return encounters(self.trajectories, self.world.agents.radius, things)
+
+
+_KEPT = "_analysis"  # among an episode's own: a table here would show episodes to navigators
+
+
+def analyse(episode: Episode) -> Analysis:
+    """The analysis of an episode: the same object every time."""
+    found: Analysis | None = vars(episode).get(_KEPT)
+    if found is None:
+        final = episode.status[-1]
+        failed = (episode.status == int(Status.FAILED)).any(axis=0)
+        if episode.failure:
+            failed = failed | episode.world.agents.evaluated
+        found = Analysis(
+            world=episode.world,
+            trajectories=cut(episode),
+            body_position=episode.body_position,
+            failed=failed,
+            asked=(episode.status == int(Status.ACTIVE))[:-1, episode.world.agents.evaluated].sum(
+                1
+            ),
+            active_at_end=final == int(Status.ACTIVE),
+            arrival=np.where(failed, np.nan, episode.arrival),
+            contacts=episode.contacts,
+            decision=episode.timings.decision,
+        )
+        vars(episode)[_KEPT] = found
+    return found

@@ -1,0 +1,102 @@
+"""Checks what a navigator answered before it may touch the state, and says what went wrong."""
+
+import re
+from collections import Counter
+from collections.abc import Mapping
+from itertools import islice
+from typing import Any
+
+import numpy as np
+
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.navigation.plugin.trace import class_name, location, plain
+
+_PLACE = re.compile(r" (\([^()]+:\d+\))\.?( at t = \S+ s)?$")
+MOST_REMARKS = 20  # that are kept of one episode
+_NUMBER = re.compile(r"-?\d[\d.]*(e[-+]?\d+)?")
+_TIME = re.compile(r" at t = \S+ s$")
+
+
+class CallFailed(Exception):
+    """A call of a navigator failed; nobody is charged before it failed for one world alone."""
+
+    def __init__(self, reason: str, suspects: IntArray | None = None, traceback: str = "") -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.traceback = traceback  # as text; "" where nothing was raised
+        self.suspects = suspects  # places in the call that gave garbage; None: cannot be told
+
+
+def checked(answer: Any, active: BoolArray) -> FloatArray:
+    """(B, A, 2) finite float64, zero where not ``active`` (B, A).
+
+    Raises CallFailed where the answer is no such array.
+    """
+    expected = (*active.shape, 2)
+    try:
+        command = np.asarray(answer)
+    except Exception as error:
+        raise CallFailed(f"act must return an array. Got {_name(answer)} instead") from error
+    if command.dtype.kind not in "iuf":
+        raise CallFailed(f"act must return real numbers. Got {_kind(answer, command)} instead")
+    if command.shape != expected:
+        raise CallFailed(
+            f"act must return an array of shape {expected}. Got shape {command.shape} instead"
+        )
+    with np.errstate(over="ignore"):  # a number that float64 cannot hold is not finite
+        command = np.where(active[..., None], command.astype(np.float64), 0.0)
+    finite = np.isfinite(command).all(axis=2)
+    if not finite.all():
+        world, agent = np.argwhere(~finite)[0]
+        got = ", ".join(f"{x:g}" for x in command[world, agent])
+        raise CallFailed(
+            f"act must return finite numbers. Got ({got}) for agent {agent} instead",
+            np.flatnonzero(~finite.all(axis=1)),
+        )
+    return command
+
+
+def said(error: BaseException) -> str:
+    """What an exception says and where it was raised, on one line of a reason."""
+    name, text, place = class_name(error), short(error), location(error)
+    return (f"{name}: {text}" if text else name) + (f" ({place})" if place else "")
+
+
+def short(text: object) -> str:
+    """On one line, of at most 300 letters; whatever is no text yet is made one."""
+    line = " ".join(plain(text).split())
+    return line if len(line) <= 300 else line[:297] + "..."
+
+
+def remarks_of(answer: Any) -> list[str]:
+    """The remarks that a navigator answered: one text is one remark, None is none."""
+    if answer is None:
+        return []
+    given = [answer] if isinstance(answer, str) else islice(answer, MOST_REMARKS)
+    return [short(remark) for remark in given]
+
+
+def kind_of(reason: str) -> str:
+    """What reasons share that tell of one fault: their numbers, and when it was, do not count.
+
+    Where a line of code is named, the exception and the line alone count.
+    """
+    place = _PLACE.search(reason)
+    return reason.partition(": ")[0] + place[1] if place else _NUMBER.sub("#", reason)
+
+
+def grouped(reasons: Mapping[str, int]) -> list[tuple[str, int]]:
+    """(reason, how many) of each kind, the commonest first; reasons are told without the time."""
+    kinds: dict[str, Counter[str]] = {}
+    for reason, count in reasons.items():
+        kinds.setdefault(kind_of(reason), Counter())[_TIME.sub("", reason)] += count
+    found = [(texts.most_common(1)[0][0], texts.total()) for texts in kinds.values()]
+    return sorted(found, key=lambda group: (-group[1], group[0]))
+
+
+def _name(value: Any) -> str:
+    return "None" if value is None else f"a {class_name(value)}"
+
+
+def _kind(answer: Any, command: np.ndarray) -> str:
+    return f"dtype {short(command.dtype)}" if isinstance(answer, np.ndarray) else _name(answer)

@@ -1,0 +1,1 @@
+"""Planners combined with controllers: mapping, planning, replanning."""

@@ -1,0 +1,1 @@
+"""Navigators as plugins: configuration, contract and capabilities."""

@@ -1,0 +1,192 @@
+"""From a name or ``{type: name, …params}``, as a file or a caller wrote it, to a plugin."""
+
+from collections.abc import Callable, Iterable, Mapping
+from itertools import groupby
+from types import UnionType
+from typing import Any, Union, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from benchnav.errors import (
+    BenchnavError,
+    BrokenPluginError,
+    ConfigError,
+    PluginError,
+    UnknownPluginError,
+    did_you_mean,
+)
+from benchnav.navigation.command_check import said
+from benchnav.navigation.hierarchy.composition import HIERARCHICAL, hint, is_pair, parameters_of
+from benchnav.plugins import NAVIGATORS, Registry
+
+Spec = str | Mapping[str, Any]
+Where = str | Callable[[str], str]
+"""What a spec stands at, for messages: a text, or parameter → text, "" being the spec itself."""
+
+
+def make(registry: Registry, spec: Spec, *, where: Where = "") -> Any:
+    """The plugin that ``spec`` names, made from the Config that it describes.
+
+    Args:
+        registry: the kind of plugin, e.g. ``benchnav.plugins.NAVIGATORS``.
+        spec: a name, or a mapping with ``type`` and that plugin's parameters; a navigator's
+            name may be made of those of its parts (`benchnav.navigation.hierarchy.composition`).
+        where: what the spec stands at (``"suite.yaml:12: navigators[0]"``), for messages;
+            or a function that gives it for each parameter.
+
+    Raises:
+        ConfigError: the spec is neither form, or the Config refuses a parameter.
+        UnknownPluginError, PluginConflictError, BrokenPluginError: as Registry.load,
+            and the last one also where the plugin cannot be constructed.
+    """
+    plugin, config = configure(registry, spec, where=where)
+    try:
+        return plugin(config)
+    except BenchnavError:
+        raise
+    except (Exception, SystemExit) as error:
+        name, _ = _written(registry, spec, where)
+        raise BrokenPluginError(
+            f"{_at(where)}The {registry.kind} {name!r} cannot be made: {said(error)}."
+        ) from error
+
+
+def configure(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[Any, BaseModel]:
+    """The class that ``spec`` names and its validated Config; nothing is constructed.
+
+    Raises what `make` raises.
+    """
+    name, parameters = split(registry, spec, where=where)
+    try:
+        plugin = registry.load(name)
+    except UnknownPluginError as error:
+        also = hint(name) if registry is NAVIGATORS else ""
+        raise UnknownPluginError(f"{error}{also}") from None
+    declared = getattr(plugin, "Config", None)
+    if not (isinstance(declared, type) and issubclass(declared, BaseModel)):
+        raise BrokenPluginError(
+            f"{_at(where)}The {registry.kind} {name!r} must be a class with a pydantic Config."
+            f" Got {plugin!r} instead."
+        )
+    try:
+        return plugin, declared(**parameters)
+    except ValidationError as error:
+        written, _ = _written(registry, spec, where)
+        lines = _explanations(f"{registry.kind} {written!r}", declared, error.errors())
+        if isinstance(where, str):
+            raise ConfigError(_at(where) + "\n".join(text for _, text in lines)) from None
+        raise ConfigError("\n".join(_at(where, key) + text for key, text in lines)) from None
+    except PluginError as error:  # of a part that the Config names
+        raise type(error)(_at(where) + str(error)) from error.__cause__
+    except BenchnavError:
+        raise
+    except (Exception, SystemExit) as error:
+        written, _ = _written(registry, spec, where)
+        raise BrokenPluginError(
+            f"{_at(where)}The Config of the {registry.kind} {written!r} cannot be made:"
+            f" {said(error)}."
+        ) from error
+
+
+def split(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[str, dict[str, Any]]:
+    """(registered name, parameters) of either form of a spec; a pair is a `hierarchical` one.
+
+    Raises ConfigError where it is neither, UnknownPluginError where a pair's part is unknown.
+    """
+    name, parameters = _written(registry, spec, where)
+    if registry is not NAVIGATORS or not is_pair(name):
+        return name, parameters
+    try:
+        return HIERARCHICAL, parameters_of(name, parameters)
+    except PluginError as error:
+        raise type(error)(_at(where) + str(error)) from None
+
+
+def _written(registry: Registry, spec: Spec, where: Where) -> tuple[str, dict[str, Any]]:
+    """(name, parameters) as they were written."""
+    if isinstance(spec, str):
+        return spec, {}
+    rule = f"{_at(where)}A {registry.kind} must be a name or {{type: name, …parameters}}."
+    if not isinstance(spec, Mapping):
+        raise ConfigError(f"{rule} Got {_short(spec)} instead.")
+    strange = [key for key in spec if not isinstance(key, str)]
+    if strange:
+        raise ConfigError(f"{rule} Got the key {_short(strange[0])}, which is not text, instead.")
+    if "type" not in spec:
+        near = did_you_mean("type", spec).replace("Did you mean", "Should 'type' be written for")
+        raise ConfigError(f"{rule} Got no 'type' among {_listed(spec)} instead.{near}")
+    name = spec["type"]
+    if not isinstance(name, str):
+        raise ConfigError(f"{rule} Got the type {_short(name)} instead.")
+    return name, {key: value for key, value in spec.items() if key != "type"}
+
+
+def _explanations(
+    subject: str, declared: type[BaseModel], details: list[ErrorDetails]
+) -> list[tuple[str, str]]:
+    """(parameter, line) of each mistake; the branches of a union that all fail are one mistake."""
+    lines = []
+    for key, group in groupby(details, key=lambda detail: detail["loc"][:1]):
+        branches = list(group)
+        field = declared.model_fields.get(str(key[0])) if key else None
+        union = field is not None and get_origin(field.annotation) in (Union, UnionType)
+        if union and len({branch["loc"] for branch in branches}) > 1:
+            rule = ", or ".join(dict.fromkeys(_rule(branch) for branch in branches))
+            whole = next((b["input"] for b in branches if len(b["loc"]) == 2), None)
+            got = "" if whole is None else f" Got {_short(whole)} instead."
+            text = f"The parameter {key[0]!r} of the {subject} must be {rule}.{got}"
+            lines.append((str(key[0]), text))
+        else:
+            name = str(key[0]) if key else ""
+            lines += [(name, _explain(subject, declared, branch)) for branch in branches]
+    return lines
+
+
+def _rule(detail: ErrorDetails) -> str:
+    if detail["type"] in ("missing", "extra_forbidden"):
+        word = "with" if detail["type"] == "missing" else "without"
+        return f"a mapping {word} {detail['loc'][-1]!r}"
+    message = detail["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
+    return message.partition(" or instance of ")[0]
+
+
+def _explain(subject: str, declared: type[BaseModel], detail: ErrorDetails) -> str:
+    place = detail["loc"]
+    key = ".".join(str(part) for part in place)
+    if detail["type"] == "extra_forbidden":
+        known = _known(declared, place[:-1])
+        near = did_you_mean(str(place[-1]), known)
+        has = f" There is {_listed(known)}." if known and not near else ""
+        none = " It has none." if len(place) == 1 and not known else ""
+        return f"The {subject} has no parameter {key!r}.{near}{has}{none}"
+    if detail["type"] == "missing":
+        return f"The {subject} must be given the parameter {key!r}. Got nothing instead."
+    what = f"The parameter {key!r} of the {subject}" if key else f"The {subject}"
+    return f"{what} must be {_rule(detail)}. Got {_short(detail['input'])} instead."
+
+
+def _known(declared: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
+    """The parameters at ``place``; none where that is not plainly a nested Config."""
+    for part in place:
+        field = declared.model_fields.get(str(part))
+        if field is None or not isinstance(field.annotation, type):
+            return []
+        if not issubclass(field.annotation, BaseModel):
+            return []
+        declared = field.annotation
+    return list(declared.model_fields)
+
+
+def _at(where: Where, parameter: str = "") -> str:
+    text = where if isinstance(where, str) else where(parameter)
+    return f"{text}: " if text else ""
+
+
+def _listed(names: Iterable[object]) -> str:
+    return ", ".join(repr(name) for name in names) or "nothing"
+
+
+def _short(value: object) -> str:
+    text = repr(value)
+    return text if len(text) <= 80 else text[:77] + "..."

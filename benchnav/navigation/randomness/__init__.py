@@ -1,0 +1,1 @@
+"""Random generators for navigators and agents."""

@@ -1,0 +1,61 @@
+"""Tasks that this process alone can run: their plugins were registered in it, in a notebook say."""
+
+from collections.abc import Iterable
+from contextlib import suppress
+
+from benchnav.errors import UsageError
+from benchnav.named_module import load_by_module
+from benchnav.navigation.plugin.configure import Spec, split
+from benchnav.plugins import NAVIGATORS
+from benchnav.runner.plan.contestant import source_of
+from benchnav.runner.plan.job import Cell
+from benchnav.source.importable import is_importable
+from benchnav.source.parts import live_object, places_of
+
+
+def bound_here(cells: Iterable[Cell], elsewhere: bool) -> list[Cell]:
+    """Return the cells that no worker process can run; ``elsewhere``: on other machines."""
+    return [cell for cell in cells if any(_is_bound(p, elsewhere) for p in _places(cell))]
+
+
+def refuse_limits_here(cells: Iterable[Cell], limited: bool) -> None:
+    """Raise UsageError where a limit is asked for and a cell runs in this process."""
+    labels = dict.fromkeys(cell.entry.label for cell in cells)
+    if labels and limited:
+        raise UsageError(
+            "A limit must have a worker process to hold in. Got one with"
+            f" {', '.join(map(repr, labels))}, known in this process alone: leave the limit out,"
+            " or move the class into a module."
+        )
+
+
+def refuse_edited(cells: Iterable[Cell]) -> None:
+    """Raise UsageError where this process would run code that is no longer what the files hold."""
+    for cell in {cell.entry.label: cell for cell in cells}.values():
+        for place in cell.entry.places:
+            with suppress(Exception, SystemExit):  # making it says why
+                load_by_module(place)
+        edited = cell.entry.edited or source_of(cell.entry).edited
+        if edited:
+            module = edited[0]
+            raise UsageError(
+                f"What runs in this process must be what its files hold. {module} was edited after"
+                f" this process had imported it, and {cell.entry.label!r} would run as it was."
+                f" Restart Python, or call importlib.reload({module}) and load the suite again."
+            )
+
+
+def _places(cell: Cell) -> tuple[str, ...]:
+    """Of the evaluated navigator, and of those that drive the scenario's other teams."""
+    others = (place for spec in cell.scenario.driver_specs for place in places_of(_full(spec)))
+    return (*cell.entry.places, *others)
+
+
+def _full(spec: Spec) -> dict[str, object]:
+    name, parameters = split(NAVIGATORS, spec)
+    return {"type": name, **parameters}
+
+
+def _is_bound(place: str, elsewhere: bool) -> bool:
+    thing = live_object(place)
+    return thing is not None and (elsewhere or not is_importable(thing))

@@ -1,0 +1,66 @@
+"""What a fork server loads before it forks: the modules of a run, and the kernels."""
+
+import numpy as np
+
+from benchnav.arena.world import World
+from benchnav.episode.episode import Episode
+from benchnav.generation.build import build
+from benchnav.metrics.measure import own_metrics
+from benchnav.navigation.navigator import Need
+from benchnav.runner.execute.measurement import measured
+from benchnav.runner.rollouts.recorder import Recorder
+from benchnav.runner.rollouts.rollout import Assignment
+from benchnav.scenario.load import scenario_from_text
+from benchnav.sensors.sense import sense
+from benchnav.store.parts.episodes import from_table, to_table
+from benchnav.world.simulation import Simulation
+
+_DECISIONS = 3
+_SCENARIO = """
+name: warm/crowd
+version: 1
+title: Everything that a run needs, once
+description: Few agents among what stands and what moves
+bounds: [-10, -10, 10, 10]
+static:
+  - {shape: {type: box, width: 1}, count: 2, region: {type: anywhere, margin: 1}}
+dynamic:
+  - shape: {type: disc, radius: 0.5}
+    count: 1
+    region: {type: anywhere, margin: 1}
+    law: {type: back-and-forth, length: 3, speed: 1}
+teams:
+  - name: few
+    role: leader
+    count: 3
+    radius: 0.5
+    dynamics: unicycle
+    max_speed: 2
+    max_turn_rate: 2.5
+    start: {type: region, region: {type: anywhere}, separation: 0.5}
+    goal: {type: region, region: {type: anywhere}, min_distance: 4}
+clock: {dt: 0.2, substeps: 2, horizon: 2}
+rules: {goal_tolerance: 0.5, contact: end, on_arrival: vanish, on_end: vanish}
+"""
+
+
+def warm() -> None:
+    """Build, sense, step, record, store and measure one small world."""
+    scenario = scenario_from_text(_SCENARIO, "warm.yaml")
+    episodes = [_episode(build(scenario, "train", 0))]
+    measured(from_table(to_table(episodes)), own_metrics())
+
+
+def _episode(world: World) -> Episode:
+    simulation = Simulation([world])
+    recorder = Recorder(simulation)
+    recorder.record_state()
+    chosen = np.arange(simulation.A)[None]
+    for _ in range(_DECISIONS):
+        sense(simulation, chosen, frozenset(Need))
+        command = np.full_like(simulation.position, 0.5)
+        executed = simulation.step(command, np.zeros(simulation.present.shape, np.bool_))
+        recorder.record_commands(command, executed, 0.0)
+        recorder.record_state()
+    assignment = Assignment("warm/crowd@1", "", "train", "known", "nobody", "nobody")
+    return recorder.episodes([assignment.identity(0)], 0.0, "", True, [()])[0]

@@ -1,0 +1,1 @@
+"""The plan of a run: suites, contestants, jobs and tasks."""

@@ -1,0 +1,171 @@
+"""Where a run is not what its names say to a reader: compared with what is installed here.
+
+Whether a run is verified and whether it ran the well-known world or suite are two
+questions. A run of an easy world under the name of a hard one may be verified, and then
+says so beside its numbers.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from benchnav.config.yaml_reader import read_yaml, validate
+from benchnav.errors import BenchnavError, UnknownPluginError
+from benchnav.plugins import NAVIGATORS
+from benchnav.runner.plan.contestant import label_of
+from benchnav.runner.plan.limits import Limits
+from benchnav.runner.plan.suite_file import SuiteFile, parse_seeds, suite_names, suite_path
+from benchnav.scenario.catalogue import find
+from benchnav.scenario.catalogue import names as scenario_names
+from benchnav.store.runs.manifest import Manifest
+from benchnav.text.plural import counted
+
+_SHOWN = 3  # names of each kind
+_LONG = 80  # characters of a name
+
+
+@dataclass(frozen=True, order=True)
+class Caveat:
+    """A sentence, and the records that it is about."""
+
+    text: str
+    scenario: str = ""  # identity; "" for every scenario
+    navigator: str = ""  # label; "" for every navigator
+
+
+def caveats_of(manifest: Manifest) -> list[Caveat]:
+    """Return every way in which the suite of a run differs from what has its names here."""
+    suite = manifest.suite
+    found: list[Caveat] = []
+    for entry in suite.get("scenarios", ()):
+        found += _of_scenario(str(entry["scenario"]), str(entry.get("hash", "")))
+    for entry in suite.get("navigators", ()):
+        found += _of_navigator(entry)
+    for label in manifest.unguarded:
+        found.append(
+            Caveat(
+                f"{_short(label)} ran unguarded, in the runner's own process: it is never marked"
+                " as verified.",
+                navigator=label,
+            )
+        )
+    return [*found, *_of_suite(manifest)]
+
+
+def _of_scenario(identity: str, found: str) -> Iterator[Caveat]:
+    if _bare(identity) not in scenario_names():
+        return
+    try:
+        here = find(identity).hash
+    except UnknownPluginError as error:
+        yield Caveat(f"{_short(identity)} cannot be compared: {error}", identity)
+        return
+    except BenchnavError:
+        yield Caveat(
+            f"{_short(identity)} cannot be compared: the scenario of this name that is installed"
+            " here cannot be loaded with these parameters.",
+            identity,
+        )
+        return
+    if here != found:
+        yield Caveat(
+            f"{_short(identity)} is another scenario than the one of this name that is installed"
+            f" here: its hash is {_short(found)[:12]}, not {here[:12]}.",
+            identity,
+        )
+
+
+def _of_navigator(entry: Mapping[str, Any]) -> Iterator[Caveat]:
+    label, kind = str(entry["label"]), str(entry["says"].get("type"))
+    if label in NAVIGATORS.names() and kind != label:
+        yield Caveat(
+            f"The label {_short(label)} stands for the navigator {_short(kind)}, not for the one of"
+            " this name that is installed here.",
+            navigator=label,
+        )
+    elif kind in NAVIGATORS.names():
+        theirs = str(entry.get("source", "")).partition(",")[0].split(" ")[0]
+        here = NAVIGATORS.source(kind).distribution.split(" ")[0]
+        if theirs != here:
+            yield Caveat(
+                f"{_short(label)} is the navigator {_short(kind)} of {_short(theirs)}; the one of"
+                f" this name that is installed here is of {here}.",
+                navigator=label,
+            )
+
+
+def _of_suite(manifest: Manifest) -> Iterator[Caveat]:
+    """One sentence where a run has the name of a suite that ships, and is not that suite."""
+    name = str(manifest.suite.get("name"))
+    if name not in suite_names():
+        return
+    here = validate(SuiteFile, read_yaml(suite_path(name)))
+    differing = [*_numbers(manifest, here), *_members(manifest, here)]
+    if differing:
+        version = manifest.suite.get("version")
+        yield Caveat(
+            f"{name}@{version} is not run as it is installed here: {'; '.join(differing)}."
+        )
+
+
+def _numbers(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
+    suite, seeds = manifest.suite, parse_seeds(str(here.seeds))
+    first, stop = suite["seeds"]
+    usual, limits = Limits(), Limits.of(manifest.limits)
+    for what, run, installed in (
+        ("version", suite.get("version"), here.version),
+        ("split", suite.get("split"), here.split),
+        ("seeds", f"{first}:{stop}", f"{seeds.start}:{seeds.stop}"),
+        ("limits", str(limits), str(usual)),
+    ):
+        if run != installed:
+            yield f"{what} {run}, not {installed}"
+
+
+def _members(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
+    """Scenarios, tracks and navigators that are not all that the suite has, or not of it."""
+    suite = manifest.suite
+    own = {label_of(spec): spec for spec in here.navigators}
+    entries = {str(e["label"]): e["says"] for e in suite.get("navigators", ())}
+    changed = {label for label in own if label in entries and not _fits(own[label], entries[label])}
+    for what, run, installed in (
+        ("scenario", {_named(e["scenario"]) for e in suite["scenarios"]},
+         {_named(name) for name in here.scenarios}),
+        ("track", set(map(str, suite.get("tracks", ()))), set(here.tracks)),
+        ("navigator", set(entries) - changed, set(own)),
+    ):  # fmt: skip
+        kept, others = run & installed, sorted(run - installed)
+        if len(kept) < len(installed):
+            yield f"{len(kept)} of its {counted(len(installed), what)}"
+        if others:
+            more = ", …" if len(others) > _SHOWN else ""
+            listed = ", ".join(map(_short, others[:_SHOWN])) + more
+            yield f"{counted(len(others), what)} that it does not have ({listed})"
+    if changed:
+        yield f"{counted(len(changed), 'navigator')} with other parameters ({', '.join(changed)})"
+    if bool(here.blocks) != bool(suite.get("blocks")):
+        yield "other combinations of them"
+
+
+def _fits(spec: Any, says: Mapping[str, Any]) -> bool:
+    """Whether a navigator has what the suite's file gives it; defaults are not known here."""
+    given = {"type": spec} if isinstance(spec, str) else dict(spec)
+    given.pop("label", None)
+    return all(
+        _fits(value, says[key]) if isinstance(says.get(key), Mapping) else says.get(key) == value
+        for key, value in given.items()
+    )
+
+
+def _bare(identity: str) -> str:
+    return identity.partition(":")[0].partition("@")[0]
+
+
+def _named(name: str) -> str:
+    """A scenario without its version, with its parameters."""
+    base, _, parameters = name.partition(":")
+    return base.partition("@")[0] + (f":{parameters}" if parameters else "")
+
+
+def _short(text: str) -> str:
+    return text if len(text) <= _LONG else text[: _LONG - 1] + "…"

@@ -1,0 +1,102 @@
+"""A cell of a suite: one scenario, track and navigator, for all seeds."""
+
+import hashlib
+import json
+import re
+from dataclasses import dataclass, replace
+
+from benchnav.generation.build import sensing_of
+from benchnav.navigation.navigator import Need
+from benchnav.runner.plan.contestant import Entry
+from benchnav.runner.rollouts.rollout import Assignment
+from benchnav.scenario.sampling.sampler import support
+from benchnav.scenario.scenario import Scenario
+from benchnav.store.runs.manifest import ISOLATED
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One scenario × track × navigator."""
+
+    scenario: Scenario
+    split: str
+    track: str
+    entry: Entry
+    also: tuple[str, ...] = ()  # tracks for which it stands too: no map changes anything
+
+    @property
+    def assignment(self) -> Assignment:
+        """Who runs where."""
+        scenario, entry = self.scenario, self.entry
+        return Assignment(
+            scenario.identity, scenario.hash, self.split, self.track, entry.label, entry.spec,
+            scenario.driver_specs,
+            navigator_hash=entry.hash, source_hash=entry.source_hash, rehearsals=entry.rehearsal,
+            leader=entry.leader.spec if entry.leader else None,
+            isolated=entry.mode == ISOLATED,
+        )  # fmt: skip
+
+    @property
+    def once(self) -> bool:
+        """True where the same episodes stand for every track that the scenario has."""
+        return not self.entry.uses_map and self.track in self.scenario.granted_tracks
+
+    @property
+    def contest(self) -> tuple[str, str]:
+        """The scenario, and the navigator's label."""
+        return self.scenario.identity, self.entry.label
+
+    @property
+    def key(self) -> str:
+        """Name of its folder: readable, and with a hash of all that makes it what it is."""
+        a = self.assignment
+        said = json.dumps(
+            [a.scenario, a.scenario_hash, a.split, a.track, a.label, dict(self.entry.spec)]
+        )
+        parts = (_slug(a.scenario), a.track, _slug(a.label))
+        return ".".join(parts) + "." + hashlib.sha256(said.encode()).hexdigest()[:10]
+
+    @property
+    def reason(self) -> str:
+        """Why it is n/a; "" where it can be run."""
+        if self.entry.lacks:
+            return self.entry.lacks
+        if self.track not in self.scenario.granted_tracks:
+            return f"the scenario has no track {self.track!r}"
+        led = self.entry.leader
+        why = self._unfit(self.entry)
+        if why or led is None:
+            return why
+        why = led.lacks or self._unfit(led)
+        return f"its leaders' {led.label} {why}" if why else ""
+
+    def _unfit(self, entry: Entry) -> str:
+        """Why a navigator cannot work with what the track and the sensors give."""
+        if Need.MAP in entry.required and self.track == "unknown":
+            return "needs a map"
+        return entry.unfit.get(sensing_of(self.scenario), "")
+
+    @property
+    def effort(self) -> float:
+        """How long its episodes are likely to take, to begin the longest first."""
+        agents = sum(support(team.count)[1] for team in self.scenario.teams)
+        planning = 4.0 if Need.MAP in self.entry.required else 1.0
+        effort = agents * self.scenario.clock.steps * planning
+        if self.entry.leader is not None:
+            led = replace(self, entry=self.entry.leader)
+            effort += self.entry.rehearsal * led.effort * self._led / agents
+        return effort
+
+    @property
+    def _led(self) -> float:
+        """How many agents rehearse, at most: leaders, or one of a team without a leader."""
+        counts: dict[str, list[float]] = {}
+        for team in self.scenario.teams:
+            most = support(team.count)[1]
+            share = counts.setdefault(team.name, [0.0])
+            share[0] += most if team.role == "leader" else 0.0
+        return sum(max(share[0], 1.0) for share in counts.values())
+
+
+def _slug(text: str) -> str:
+    return re.sub(r"[^A-Za-z0-9@_-]+", "-", text)[:60]

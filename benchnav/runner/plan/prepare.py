@@ -1,0 +1,106 @@
+"""What a run begins with: its manifest, in a folder that is new or was begun alike."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from benchnav.errors import RunConflictError, UsageError
+from benchnav.processes.process_tree import tells_memory
+from benchnav.runner.plan.contestant import sources_of
+from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.limits import Limits
+from benchnav.runner.plan.shard import Shard
+from benchnav.runner.plan.suite import Suite
+from benchnav.runner.rollouts.seeding import draw_salt
+from benchnav.store.runs.manifest import MANIFEST, Manifest
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.spans import spans
+
+
+def refuse_limits(workers: int | None, timeout: float | None, memory: float | None) -> None:
+    """Raise UsageError where they cannot be kept on this machine."""
+    if workers == 0 and (timeout, memory) != (None, None):
+        raise UsageError(
+            "A limit must have a worker process to hold in. Got --workers 0, which has none."
+        )
+    if memory is not None and not tells_memory():
+        raise UsageError(
+            "--memory must stand on a system that tells how much memory a process holds."
+            " This one does not; leave it out."
+        )
+
+
+def planned(
+    suite: Suite, cells: list[Cell], wanted: Mapping[str, set[int]], shard: Shard | None
+) -> Manifest:
+    """The manifest of a new run of the seeds ``wanted`` of each cell, still without limits."""
+    said: list[dict[str, Any]] = [_said(cell) for cell in cells]
+    if shard is not None:
+        for cell in said:
+            cell["seeds"] = spans(wanted.get(cell["key"], ()))
+    return Manifest(
+        suite.resolved(), tuple(said), suite.salt or draw_salt(), shard=str(shard or ""),
+        sources=sources_of(suite.entries),
+    )  # fmt: skip
+
+
+def start(
+    suite: Suite, out: Path, manifest: Manifest, timeout: float | None, memory: float | None
+) -> tuple[RunFolder, Limits]:
+    """The run folder, new or found, and the limits that hold in it.
+
+    Raises UsageError for a limit that is none, and for a new shard without a salt;
+    RunConflictError where ``out`` was begun otherwise; StoreError where the disk refuses.
+    """
+    if manifest.shard and not suite.salt and not (out / MANIFEST).exists():
+        raise UsageError(
+            "A shard must have the salt of the others. Got none: give all the same --salt, of up"
+            " to 64 bytes in hexadecimal digits that nobody can guess (openssl rand -hex 16)."
+        )
+    asked = _limits(Limits(), timeout, memory)
+    folder = RunFolder.start(out, replace(manifest, limits=asked.said()))
+    if folder.manifest.shard != manifest.shard:
+        raise RunConflictError(
+            f"{out} must hold {_share(manifest)}. It holds {_share(folder.manifest)}."
+            " Give another --out."
+        )
+    held = folder.manifest.salt
+    if suite.salt not in ("", held):
+        raise RunConflictError(
+            f"The salt must be that of the run in {folder.path}, {held}. Got {suite.salt} instead."
+            " Leave --salt out to go on there, or give another --out."
+        )
+    limits = Limits.of(folder.manifest.limits)
+    if _limits(limits, timeout, memory) != limits:
+        raise RunConflictError(
+            f"The limits must be those of the run in {folder.path}, {limits}. Got"
+            f" {_limits(limits, timeout, memory)} instead. Leave --timeout and --memory out to go"
+            " on there, or give another --out."
+        )
+    return folder, limits
+
+
+def _share(manifest: Manifest) -> str:
+    return f"shard {manifest.shard}" if manifest.shard else "the whole suite"
+
+
+def _limits(otherwise: Limits, timeout: float | None, memory: float | None) -> Limits:
+    try:
+        return Limits(
+            otherwise.timeout if timeout is None else timeout,
+            otherwise.memory if memory is None else memory,
+        )
+    except ValueError as error:
+        raise UsageError(f"The limit {error}.") from None
+
+
+def _said(cell: Cell) -> dict[str, Any]:
+    return {
+        "key": cell.key,
+        "scenario": cell.scenario.identity,
+        "track": cell.track,
+        "navigator": cell.entry.label,
+        "reason": cell.reason,
+        **({"also": list(cell.also)} if cell.also else {}),
+    }

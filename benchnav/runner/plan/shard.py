@@ -1,0 +1,54 @@
+"""One of n shares of a plan, the same whoever computes it: n runs that merge into one."""
+
+import re
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from heapq import heapify, heapreplace
+
+from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.task import chunks
+
+MOST = 10_000
+_FORM = re.compile(r"([0-9]{1,5})/([0-9]{1,5})")
+
+
+@dataclass(frozen=True)
+class Shard:
+    """The ``index``-th of ``count``, from 1."""
+
+    index: int
+    count: int
+
+    @classmethod
+    def parse(cls, text: str) -> "Shard":
+        """``"2/4"``. Raises ValueError with the rule, and what came instead."""
+        found = _FORM.fullmatch(text)
+        shard = cls(int(found[1]), int(found[2])) if found else cls(0, 0)
+        if not 1 <= shard.index <= shard.count <= MOST:
+            raise ValueError(f"must be i/n, with 1 ≤ i ≤ n ≤ {MOST:,}; got {text[:60]!r}")
+        return shard
+
+    def __str__(self) -> str:
+        return f"{self.index}/{self.count}"
+
+    def seeds(self, cells: Iterable[Cell], seeds: Sequence[int]) -> dict[str, set[int]]:
+        """What it runs of each cell, by key: whole tasks, the longest given first to who has least.
+
+        Cells that are n/a are nobody's work.
+        """
+        tasks = [
+            (cell.effort * (stop - first), cell.key, first, stop)
+            for cell in cells
+            if not cell.reason
+            for first, stop in chunks(seeds, cell.effort)
+        ]
+        tasks.sort(key=lambda task: (-task[0], *task[1:]))
+        loads = [(0.0, index) for index in range(1, self.count + 1)]
+        heapify(loads)
+        mine: dict[str, set[int]] = {}
+        for effort, key, first, stop in tasks:
+            load, index = loads[0]
+            heapreplace(loads, (load + effort, index))
+            if index == self.index:
+                mine.setdefault(key, set()).update(range(first, stop))
+        return mine

@@ -1,0 +1,272 @@
+"""A suite, resolved: a lazy product of scenarios, tracks and navigators over seeds."""
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from benchnav.config.document import Document
+from benchnav.config.yaml_reader import read_yaml, read_yaml_text, validate
+from benchnav.errors import (
+    ScenarioError,
+    UsageError,
+    did_you_mean,
+)
+from benchnav.generation.build import sensing_of
+from benchnav.navigation.plugin.background_navigators import check_drivers
+from benchnav.navigation.plugin.configure import Spec
+from benchnav.navigation.tracks import TRACKS
+from benchnav.runner.plan.contestant import Entry, Meeting, label_of, resolved
+from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.limits import patience
+from benchnav.runner.plan.suite_file import SuiteFile, is_scenario, parse_seeds, suite_path
+from benchnav.runner.rollouts.seeding import check_salt
+from benchnav.scenario.catalogue import find
+from benchnav.scenario.scenario import Scenario
+from benchnav.store.runs.scenario_files import sha256_of
+
+FIRST_LOOK = "quick"  # the suite that lends its navigators, tracks and seeds to a scenario alone
+
+
+@dataclass(frozen=True)
+class Selection:
+    """What the command line takes instead of the suite's own; empty means the suite's own."""
+
+    scenarios: tuple[str, ...] = ()
+    tracks: tuple[str, ...] = ()
+    navigators: tuple[str, ...] = ()
+    seeds: str = ""
+    salt: str = ""  # in hexadecimal digits; empty: the run draws one
+    isolate: bool = False  # every evaluated navigator in a process of its own
+
+
+@dataclass(frozen=True)
+class Block:
+    """A part of a suite's product."""
+
+    scenarios: tuple[str, ...]  # identities
+    tracks: tuple[str, ...]
+    navigators: tuple[str, ...]  # labels
+
+    def __contains__(self, cell: Cell) -> bool:
+        return (
+            cell.scenario.identity in self.scenarios
+            and cell.track in self.tracks
+            and cell.entry.label in self.navigators
+        )
+
+
+@dataclass(frozen=True)
+class Suite:
+    """What to run."""
+
+    name: str
+    version: int
+    split: str
+    seeds: range
+    scenarios: tuple[Scenario, ...]
+    tracks: tuple[str, ...]
+    entries: tuple[Entry, ...]
+    salt: str = ""  # of navigators' randomness; empty: each new run draws its own
+    blocks: tuple[Block, ...] = ()  # parts of the product that are run; none: all of it
+
+    def cells(self) -> Iterator[Cell]:
+        """Every cell, n/a ones included: by scenario, track, navigator.
+
+        Who uses no map runs once, in the last of a scenario's tracks, for all of them.
+        """
+        whole = [
+            cell
+            for scenario in self.scenarios
+            for track in self.tracks
+            for entry in self.entries
+            if (cell := Cell(scenario, self.split, track, entry)) in self
+        ]
+        stands: dict[tuple[str, str], list[str]] = {}
+        for cell in whole:
+            if cell.once:
+                stands.setdefault(cell.contest, []).append(cell.track)
+        for cell in whole:
+            tracks = stands[cell.contest] if cell.once else [cell.track]
+            if cell.track == tracks[-1]:
+                yield replace(cell, also=tuple(tracks[:-1]))
+
+    def __contains__(self, cell: Cell) -> bool:
+        return not self.blocks or any(cell in block for block in self.blocks)
+
+    def resolved(self) -> dict[str, Any]:
+        """Everything but the salt that has a say in the results, as plain data for the manifest."""
+        return {
+            "name": self.name,
+            "version": self.version,
+            "split": self.split,
+            "seeds": [self.seeds.start, self.seeds.stop],
+            "scenarios": [
+                {
+                    "scenario": s.identity,
+                    "hash": s.hash,
+                    "says": s.model_dump(mode="json"),
+                    "files": {name: sha256_of(path) for name, path in s.named_files().items()},
+                }
+                for s in self.scenarios
+            ],
+            "tracks": list(self.tracks),
+            "navigators": [resolved(entry) for entry in self.entries],
+            **({"blocks": [asdict(block) for block in self.blocks]} if self.blocks else {}),
+        }
+
+
+def load_suite(
+    name: str, selection: Selection = Selection(), *, timeout: float | None = None
+) -> Suite:
+    """Return the suite called ``name`` or in that file, with the selection applied.
+
+    The name or file of a scenario gives a suite of that scenario: its navigators, tracks and
+    seeds are those of the suite `FIRST_LOOK` where nothing is selected. Navigators are asked
+    who they are in processes of their own, in which a call may last ``timeout`` [s].
+
+    Raises:
+        UsageError: no such suite, track, seeds or salt; a label or scenario twice.
+        ScenarioError: the suite file or a scenario is wrong.
+        PluginError: a navigator cannot be used.
+    """
+    if is_scenario(name):
+        return _suite_of_one(name, selection, timeout)
+    path = suite_path(name)
+    document = read_yaml(path)
+    said = validate(SuiteFile, document)
+    wanted = _wanted_navigators(said, selection.navigators)
+    if selection.scenarios:
+        scenarios = tuple(find(name) for name in selection.scenarios)
+    else:
+        scenarios = tuple(find(name, path.parent) for name in said.scenarios)
+    check_drivers(*scenarios, timeout=patience(timeout))
+    meeting = Meeting(
+        tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate, patience(timeout)
+    )
+    entries = meeting.entries(
+        [
+            (spec, "--navigator" if i is None else document.where(("navigators", i)))
+            for i, spec in wanted
+        ]
+    )
+    tracks = tuple(selection.tracks or said.tracks)
+    _refuse_unknown_tracks(tracks)
+    for key, names, selected in (
+        ("scenarios", [s.identity for s in scenarios], selection.scenarios),
+        ("tracks", tracks, selection.tracks),
+        ("navigators", [e.label for e in entries], selection.navigators),
+    ):
+        _refuse_twice(key, names, selected, document)
+    seeds = _seeds(selection.seeds or str(said.seeds))
+    salt = _salt(selection.salt)
+    suite = Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries, salt)
+    return replace(suite, blocks=_blocks(said, suite, path)) if said.blocks else suite
+
+
+def _suite_of_one(name: str, selection: Selection, timeout: float | None) -> Suite:
+    """Return a suite of the scenario called ``name``, and of those that are selected with it."""
+    chosen = replace(selection, scenarios=(name, *selection.scenarios))
+    suite = load_suite(FIRST_LOOK, chosen, timeout=timeout)
+    scenario = suite.scenarios[0]
+    called = re.sub(r"[^a-z0-9]+", "-", scenario.name.lower()).strip("-")[:60]
+    return replace(suite, name=called or "scenario", version=scenario.version, blocks=())
+
+
+def _blocks(said: SuiteFile, suite: Suite, path: Path) -> tuple[Block, ...]:
+    """The file's blocks; what was selected and is not in the file belongs to each of them."""
+    identities = {name: find(name, path.parent).identity for name in said.scenarios}
+    labels = tuple(label_of(spec) for spec in said.navigators)
+    added = (
+        tuple(s.identity for s in suite.scenarios if s.identity not in identities.values()),
+        tuple(track for track in suite.tracks if track not in said.tracks),
+        tuple(entry.label for entry in suite.entries if entry.label not in labels),
+    )
+    blocks = []
+    for i, block in enumerate(said.blocks):
+        at = f"{path}: blocks[{i}]"
+        scenarios = _known(block.scenarios, said.scenarios, f"{at}.scenarios")
+        tracks = _known(block.tracks, said.tracks, f"{at}.tracks")
+        navigators = _known(block.navigators, labels, f"{at}.navigators")
+        blocks.append(
+            Block(
+                tuple(identities[name] for name in scenarios) + added[0],
+                tracks + added[1],
+                navigators + added[2],
+            )
+        )
+    return tuple(blocks)
+
+
+def _known(chosen: tuple[str, ...] | None, own: tuple[str, ...], where: str) -> tuple[str, ...]:
+    """What a block takes of the suite's own. Raises ScenarioError where that has it not."""
+    for name in chosen or ():
+        if name not in own:
+            raise ScenarioError(
+                f"{where} must be among the suite's own. Got {name!r} instead."
+                f"{did_you_mean(name, own)}"
+            )
+    return own if chosen is None else chosen
+
+
+def _wanted_navigators(said: SuiteFile, selected: Sequence[str]) -> list[tuple[int | None, Spec]]:
+    """(place in the file or None, spec): labels select from the file, other names are added."""
+    own = {label_of(spec): (i, spec) for i, spec in enumerate(said.navigators)}
+    if not selected:
+        return [(i, spec) for i, spec in enumerate(said.navigators)]
+    return [own.get(name, (None, _written(name))) for name in selected]
+
+
+def _written(text: str) -> Spec:
+    """A name, or ``{type: name, …}`` as it would stand in a file."""
+    if not text.lstrip().startswith("{"):
+        return text
+    data: Spec = read_yaml_text(text, "--navigator").data
+    return data
+
+
+def _seeds(text: str) -> range:
+    try:
+        return parse_seeds(text)
+    except ValueError as error:
+        raise UsageError(f"seeds {error}.") from None
+
+
+def _salt(text: str) -> str:
+    try:
+        if text:
+            check_salt(text.lower())
+    except ValueError as error:
+        raise UsageError(f"The salt {error}.") from None
+    return text.lower()
+
+
+def _refuse_unknown_tracks(tracks: Sequence[str]) -> None:
+    for track in tracks:
+        if track not in TRACKS:
+            raise UsageError(
+                f"A track must be one of {', '.join(TRACKS)}. Got {track!r} instead."
+                f"{did_you_mean(track, TRACKS)}"
+            )
+
+
+def _refuse_twice(
+    key: str, names: Sequence[str], selected: Sequence[str], document: Document
+) -> None:
+    """Raise UsageError for a name that stands twice in the file, or among options if selected."""
+    for k, name in enumerate(names):
+        first = names.index(name)
+        if first == k:
+            continue
+        if selected:
+            same = selected[first] == selected[k]
+            written = "" if same else f", as {selected[first]!r} and as {selected[k]!r}"
+            raise UsageError(
+                f"--{key[:-1]} must name each of the {key} once. It names {name!r} more than"
+                f" once{written}. Leave one of them out."
+            )
+        raise UsageError(
+            f"{document.where((key, k))} must not repeat another of the {key}. It names {name!r}"
+            f" more than once; the first is {key}[{first}]."
+        )

@@ -1,0 +1,145 @@
+"""The suite file: what a YAML file that asks for a run may say."""
+
+import re
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+from benchnav.config.yaml_reader import read_yaml
+from benchnav.errors import UsageError, did_you_mean
+from benchnav.navigation.tracks import Track
+from benchnav.scenario.catalogue import is_named
+from benchnav.scenario.catalogue import names as scenario_names
+from benchnav.scenario.parameters import split_parameters
+from benchnav.scenario.scenario import Scenario
+from benchnav.store.runs.spans import SEED_DIGITS
+
+MAX_SEEDS = 1_000_000
+_RANGE = re.compile(rf"(?:([0-9]{{1,{SEED_DIGITS}}}):)?([0-9]{{1,{SEED_DIGITS}}})")
+_SUFFIXES = (".yaml", ".yml")
+
+Name = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class BlockFile(BaseModel):
+    """A part of the product; of what it does not name it takes all."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    scenarios: tuple[Name, ...] | None = Field(
+        None, min_length=1, description="Of the suite's scenarios, as they are written there."
+    )
+    tracks: tuple[Track, ...] | None = Field(None, min_length=1, description="Of its tracks.")
+    navigators: tuple[Name, ...] | None = Field(
+        None, min_length=1, description="Of its navigators, by name or label."
+    )
+
+
+class SuiteFile(BaseModel):
+    """Scenarios × tracks × navigators × seeds."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+
+    name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=60)] = Field(
+        description="Of the suite: small letters, digits and hyphens."
+    )
+    version: int = Field(1, ge=1, description="Rises when the suite's results change meaning.")
+    description: str = Field("", description="What the suite is for.")
+    scenarios: tuple[Name, ...] = Field(
+        min_length=1, description="Names of scenarios, or paths from this file's folder."
+    )
+    tracks: tuple[Track, ...] = Field(
+        ("known",), min_length=1, description="Knowledge tracks: known, stale, partial, unknown."
+    )
+    navigators: tuple[Name | dict[str, Any], ...] = Field(
+        min_length=1,
+        description="Names, or {type: name, label: what tables call it, …its parameters}.",
+    )
+    blocks: tuple[BlockFile, ...] = Field(
+        (), description="Where given, only these parts of the product are run."
+    )
+    seeds: int | str = Field(20, description="N for seeds 0 … N-1, or 'a:b' for seeds a … b-1.")
+    split: Literal["train", "validation", "test"] = Field(
+        "test", description="Stream that worlds are drawn from."
+    )
+
+    @field_validator("seeds")
+    @classmethod
+    def _check_seeds(cls, seeds: int | str) -> int | str:
+        parse_seeds(str(seeds))
+        return seeds
+
+
+def parse_seeds(text: str) -> range:
+    """``"20"`` → 0 … 19; ``"100:120"`` → 100 … 119.
+
+    Raises ValueError, with the rule and what came instead.
+    """
+    rule = (
+        f"must be N (seeds 0 … N-1) or A:B (seeds A … B-1), with 1 to {MAX_SEEDS} seeds and at"
+        f" most {SEED_DIGITS} digits"
+    )
+    match = _RANGE.fullmatch(text)
+    if match is None:
+        raise ValueError(f"{rule}; got {text[:60]!r}")
+    first, stop = int(match[1] or 0), int(match[2])
+    if not 1 <= stop - first <= MAX_SEEDS:
+        raise ValueError(f"{rule}; got {text!r}")
+    return range(first, stop)
+
+
+def suite_names() -> list[str]:
+    """Suites that ship, sorted."""
+    return sorted(f.name.removesuffix(".yaml") for f in _shipped() if f.name.endswith(".yaml"))
+
+
+def suite_path(name: str) -> Path:
+    """Return the file of a suite that ships, or the path itself where ``name`` is one.
+
+    Raises UsageError where it is neither.
+    """
+    if _is_file_name(name):
+        return Path(name)
+    for entry in _shipped():
+        if entry.name == f"{name}.yaml":
+            return Path(str(entry))
+    raise UsageError(
+        f"SUITE must be one of the suites {', '.join(suite_names())}, the name of a scenario, or"
+        f" a file (*.yaml). Got {name!r} instead."
+        f"{did_you_mean(name, [*suite_names(), *scenario_names()])}"
+    )
+
+
+def is_scenario(name: str) -> bool:
+    """Whether ``name`` stands for one scenario, by name or file, and not for a suite.
+
+    Raises ScenarioError where a file cannot be read.
+    """
+    base, _ = split_parameters(name)
+    if _is_file_name(base):
+        return describes_scenario(read_yaml(base).data)
+    return base not in suite_names() and is_named(name)
+
+
+def describes_scenario(data: Any) -> bool:
+    """Whether the content of a YAML file has more keys of a scenario than of a suite."""
+    keys = set(data) if isinstance(data, dict) else set()
+    return len(keys & set(Scenario.model_fields)) > len(keys & set(SuiteFile.model_fields))
+
+
+def _is_file_name(name: str) -> bool:
+    return name.endswith(_SUFFIXES) or Path(name).is_file()
+
+
+def _shipped() -> list[Traversable]:
+    folder = files("benchnav_scenarios") / "suites"
+    return list(folder.iterdir()) if folder.is_dir() else []
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema (2020-12) of a suite file."""
+    schema = SuiteFile.model_json_schema()
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -1,0 +1,238 @@
+"""The unit of work: one cell for a range of seeds."""
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import pyarrow as pa
+
+from benchnav.arena.world import World
+from benchnav.episode.episode import Episode
+from benchnav.errors import MissingExtraError
+from benchnav.generation.build import build
+from benchnav.isolation import sandbox
+from benchnav.metrics.measure import all_metrics
+from benchnav.navigation.command_check import kind_of
+from benchnav.plugins import Registration
+from benchnav.runner.execute.call_timer import beat
+from benchnav.runner.execute.measurement import failed_metrics, measured, tracebacks_of
+from benchnav.runner.plan.estimate import Load
+from benchnav.runner.plan.job import Cell
+from benchnav.runner.rollouts.latency import latency, peak_memory
+from benchnav.runner.rollouts.rehearsal import Performance, perform
+from benchnav.runner.rollouts.rollout import Assignment, Seeded
+from benchnav.store.parts.part import Part
+from benchnav.store.parts.part_writer import EpisodeFiles, seal
+from benchnav.store.parts.staged import check_rehearsals, staged_episodes
+
+Tick = Callable[[int], None]
+CHUNK = 64  # seeds of a task: enough for lockstep to pay, few enough to lose to an interruption
+EFFORT = 4_000_000  # agent-decisions of a task, as far as a cell can tell beforehand
+
+
+@dataclass(frozen=True)
+class Task:
+    """Runs seeds first … stop - 1 of a cell and stores them as one part."""
+
+    cell: Cell
+    folder: Path  # of the cell
+    first: int
+    stop: int
+    charge: str = ""  # a reason for which every episode fails without running
+    salt: str = ""  # of the run
+    probe: int = -1  # seed in whose world latency is taken; one for each cell
+    fresh: bool = False  # whether it must have a process of its own
+    suspect: bool = False  # whether it must run while no other does
+
+    @property
+    def assignment(self) -> Assignment:
+        """Who runs where, in this run."""
+        return replace(self.cell.assignment, salt=self.salt)
+
+    @property
+    def seeds(self) -> range:
+        """What it runs."""
+        return range(self.first, self.stop)
+
+    @property
+    def company(self) -> str:
+        """Who may share a process: the code of one entry, and of those that drive beside it."""
+        entry = self.cell.entry
+        return repr((entry.label, entry.hash, entry.source_hash, self.cell.scenario.driver_specs))
+
+    @property
+    def load(self) -> Load:
+        """For the estimate of the time that is left."""
+        return Load(self.cell.entry.label, self.cell.effort * len(self.seeds))
+
+    @property
+    def most_calls(self) -> int:
+        """How often navigators may be called for it, whoever fails, and worlds be built."""
+        cell, seeds = self.cell, len(self.seeds)
+        drivers = 1 + len(cell.scenario.driver_specs)
+        passes = (1 + cell.entry.rehearsal) * seeds * (seeds.bit_length() + 2) + 1
+        return drivers * passes * (cell.scenario.clock.steps + 10) + 10 * seeds + 100
+
+    def alone(self) -> list["Task"]:
+        """The same, seed by seed."""
+        return [replace(self, first=seed, stop=seed + 1) for seed in self.seeds]
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What there is to say about a finished task."""
+
+    episodes: int
+    redraws: int  # draws of worlds that were thrown away as unsolvable
+    failures: tuple[tuple[int, str], ...] = field(default=())  # (seed, reason)
+    unled: tuple[tuple[int, str], ...] = field(
+        default=()
+    )  # (seed, team): its leader never succeeded
+    remarks: tuple[tuple[int, str], ...] = field(default=())  # (seed, what the navigator tells)
+    missing: tuple[tuple[str, str], ...] = field(default=())  # (metric, how it failed), by value
+    lacks: str = ""  # what is not installed, and how to: then nothing was stored
+    tracebacks: Mapping[str, str] = field(default_factory=dict)  # by kind of reason, of one each
+
+
+def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
+    """Ranges (first, stop) that cover ``seeds``, each of which costs ``effort``."""
+    size = max(1, min(CHUNK, int(EFFORT / max(effort, 1.0))))
+    run: list[int] = []
+    for seed in sorted(seeds):
+        if run and (seed != run[-1] + 1 or len(run) == size):
+            yield run[0], run[-1] + 1
+            run = []
+        run.append(seed)
+    if run:
+        yield run[0], run[-1] + 1
+
+
+@dataclass(frozen=True)
+class Played:
+    """What a worker says of the episodes that it wrote; all else stands in them."""
+
+    unled: tuple[tuple[int, str], ...] = ()
+    lacks: str = ""
+
+
+@dataclass(frozen=True)
+class Measuring:
+    """How the episodes of a task are measured."""
+
+    plugins: tuple[str, ...] = ()  # names of metrics that are not part of benchnav
+    registrations: tuple[Registration, ...] = ()  # among which some of them may be
+    main: Mapping[str, str] = field(default_factory=dict)  # the script that registered them
+    timeout: float = 300.0  # [s] that one value of theirs may take
+
+
+def work(task: Task, tick: Tick = lambda _: None) -> Outcome:
+    """Play and measure a task in this process, where nothing is guarded.
+
+    Its part is on disk when this returns, unless an extra lacks.
+
+    Args:
+        task: what to run.
+        tick: called with the number of episodes that were just finished.
+
+    Raises:
+        UnsolvableError: the scenario cannot be drawn.
+        StoreError: the disk refuses.
+    """
+    played = play(task)
+    if played.lacks:
+        return Outcome(0, 0, lacks=played.lacks)
+    return measure_part(task, played, lambda episodes: _measured_here(episodes, tick))
+
+
+def play(task: Task) -> Played:
+    """Run the episodes of a task, and leave them for `measure_part`; raises as `work`."""
+    try:
+        return _play(task)
+    except MissingExtraError as error:
+        return Played(lacks=str(error))
+
+
+def _play(task: Task) -> Played:
+    cell = task.cell
+    if task.assignment.isolated:
+        sandbox.hide()  # before there is anything to hide
+    worlds = [(seed, _built(cell, seed)) for seed in task.seeds]
+    unled: list[tuple[int, str]] = []
+    with EpisodeFiles(Part(task.folder, task.first, task.stop)) as files:
+        for batch in perform(task.assignment, worlds, task.charge):
+            beat()
+            rehearsals = [e for performance in batch for e in performance.rehearsed.episodes]
+            files.add(_timed(task, batch), rehearsals)
+            unled += [(p.episode.identity.seed, team) for p in batch for team in p.unled]
+        files.finish()
+    return Played(tuple(sorted(unled)))
+
+
+def _built(cell: Cell, seed: int) -> World:
+    beat()
+    return build(cell.scenario, cell.split, seed)
+
+
+def measure_part(
+    task: Task, played: Played, measure: Callable[[Iterator[Episode]], pa.Table]
+) -> Outcome:
+    """Measure what a worker left, and seal it.
+
+    Raises CorruptPartError where this is not what the task asked for, StoreError where the
+    disk refuses.
+    """
+    part = Part(task.folder, task.first, task.stop)
+    expected = [task.assignment.identity(seed) for seed in task.seeds]
+    seen: list[Seen] = []
+    results = measure(_seen(staged_episodes(part, expected), seen))
+    check_rehearsals(part, expected, task.assignment.rehearsals)
+    seal(part, results, len(expected))
+    return Outcome(
+        len(expected), sum(one.redraws for one in seen),
+        tuple(sorted((one.seed, one.failure) for one in seen if one.failure)),
+        played.unled,
+        tuple(sorted((one.seed, text) for one in seen for text in one.remarks)),
+        tuple(failed_metrics(results)),
+        tracebacks={kind_of(one.failure): one.traceback for one in seen if one.traceback}
+        | tracebacks_of(results),
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What a summary tells of an episode."""
+
+    seed: int
+    redraws: int
+    failure: str
+    remarks: tuple[str, ...]
+    traceback: str
+
+
+def _seen(episodes: Iterator[Episode], seen: list[Seen]) -> Iterator[Episode]:
+    for e in episodes:
+        seen.append(Seen(e.identity.seed, e.world.redraws, e.failure, e.remarks, e.traceback))
+        yield e
+
+
+def _measured_here(episodes: Iterator[Episode], tick: Tick) -> pa.Table:
+    return measured(_ticking(episodes, tick), all_metrics())
+
+
+def _timed(task: Task, batch: list[Performance]) -> list[Episode]:
+    """The episodes with peak memory, and with latency where it is to be taken."""
+    timed = []
+    for performance in batch:
+        episode, grant = performance.episode, tuple(performance.rehearsed.grant)
+        seeded: Seeded = (episode.identity.seed, episode.world)
+        wanted = seeded[0] == task.probe and not episode.failure
+        alone = latency(task.assignment, seeded, grant) if wanted else None
+        timings = replace(episode.timings, latency=alone, memory=peak_memory())
+        timed.append(replace(episode, timings=timings))
+    return timed
+
+
+def _ticking(episodes: Iterable[Episode], tick: Tick) -> Iterator[Episode]:
+    for episode in episodes:
+        yield episode
+        tick(1)

@@ -1,0 +1,1 @@
+"""The execution of tasks on a Ray cluster."""

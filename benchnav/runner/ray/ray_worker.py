@@ -1,0 +1,96 @@
+"""Runs tasks on another machine, in a worker of its own, and hands over what it wrote."""
+
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from hashlib import sha256
+from pathlib import Path
+from tempfile import mkdtemp
+
+from benchnav.errors import BenchnavError
+from benchnav.plugins import Registration
+from benchnav.runner.execute.executor import Crew
+from benchnav.runner.execute.progress import Progress
+from benchnav.runner.plan.limits import Limits
+from benchnav.runner.plan.task import Outcome, Task
+from benchnav.store.parts.part import FILES, SEAL, Part
+from benchnav.store.runs.manifest import versions
+from benchnav.store.runs.scenario_files import FOLDER, stage_files
+from benchnav.system.temporary_folder import TemporaryFolder
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """A task, or the piece of one, that is done."""
+
+    task: Task
+    outcome: Outcome
+    files: Mapping[str, bytes]  # of its part, by suffix; none where nothing was stored
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """What a task raised: a BenchnavError."""
+
+    name: str
+    text: str
+
+
+class Foreman:
+    """Has one worker, and does with it what the local executor does.
+
+    Navigators run in the worker: whatever they do, the foreman survives and charges them.
+    If it dies itself, its machine did, and nobody is to blame.
+    """
+
+    def __init__(
+        self, limits: Limits, path: Sequence[str], registrations: Sequence[Registration] = ()
+    ) -> None:
+        sys.path += [folder for folder in path if folder not in sys.path]
+        main = sys.modules["__main__"]  # of who started this process: no worker is to run it
+        main.__spec__, main.__file__ = None, None
+        self._home = TemporaryFolder("ray")
+        self._folders: dict[str, Path] = {}  # of scenarios' files, by hash
+        self._crew = Crew(1, Progress(), limits, registrations)
+
+    def introduce(self) -> dict[str, str]:
+        """The versions here of what has a say in the numbers."""
+        return versions()
+
+    def work(self, task: Task, files: Mapping[str, bytes]) -> list[Delivery] | Refusal:
+        """Run a task. ``files`` are those that its scenario names, for where they lack."""
+        try:
+            here = replace(task, folder=self._home.path / "parts" / task.cell.key)
+            finished = self._crew.run([self._staged(here, files)])
+            return [self._delivery(task, piece, outcome) for piece, outcome in finished]
+        except BenchnavError as error:
+            return Refusal(type(error).__name__, str(error))
+
+    def leave(self) -> None:
+        """Dismiss the worker, and leave nothing behind."""
+        self._crew.dismiss()
+        self._home.remove()
+
+    def _delivery(self, asked: Task, piece: Task, outcome: Outcome) -> Delivery:
+        part, files = Part(piece.folder, piece.first, piece.stop), {}
+        for path in [part.path(suffix) for suffix in (*FILES, SEAL)]:
+            if path.exists():
+                files[path.name.removeprefix(part.stem)] = path.read_bytes()
+                path.unlink()
+        done = replace(piece, folder=asked.folder, cell=asked.cell)
+        return Delivery(done, outcome, files)
+
+    def _staged(self, task: Task, files: Mapping[str, bytes]) -> Task:
+        """The task, its scenario's files found here."""
+        scenario = task.cell.scenario
+        if all((scenario.folder / name).is_file() for name in files):
+            return task
+        home = self._home.path
+        if scenario.hash not in self._folders:
+            (home / FOLDER).mkdir(exist_ok=True)
+            shas = {name: sha256(content).hexdigest() for name, content in files.items()}
+            for name, content in files.items():
+                (home / FOLDER / shas[name]).write_bytes(content)
+            self._folders[scenario.hash] = stage_files(home, shas, Path(mkdtemp(dir=home)))
+        moved = scenario.moved_to(self._folders[scenario.hash])
+        return replace(task, cell=replace(task.cell, scenario=moved))

@@ -1,0 +1,1 @@
+"""Rollouts: one navigator in many worlds, and the record of each episode."""

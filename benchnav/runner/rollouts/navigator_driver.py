@@ -1,0 +1,220 @@
+"""One navigator at work in a batch: what it is told, what it sees, what it answers."""
+
+from collections.abc import Callable, Sequence
+from time import perf_counter
+from typing import Any, get_args
+
+import numpy as np
+
+from benchnav.arena.world import World
+from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.episode.episode import Status
+from benchnav.errors import MissingExtraError
+from benchnav.navigation.briefing import Briefing, brief
+from benchnav.navigation.command_check import CallFailed, checked, remarks_of, said
+from benchnav.navigation.navigator import CommandKind, Navigator, Need
+from benchnav.navigation.observation import Observation
+from benchnav.navigation.plugin.trace import trace
+from benchnav.navigation.rehearsal import Rehearsal, copied
+from benchnav.navigation.tracks import granted_map
+from benchnav.runner.execute.call_timer import Call, calling
+from benchnav.runner.rollouts.tamper_guard import Guard
+from benchnav.sensors.sense import sense
+from benchnav.world.simulation import Simulation
+
+PROPERTIES: dict[str, Callable[[Any], Any]] = {  # of a navigator that a run asks for, checked
+    "required": lambda value: frozenset(map(Need, value)),
+    "command": lambda value: _one_of(value, get_args(CommandKind)),
+    "reproducible": bool,
+}
+
+
+class Driver:
+    """A navigator and the agents that it drives in each world of a batch.
+
+    Everything that it hands to the navigator is a copy or read-only.
+    """
+
+    def __init__(
+        self,
+        navigator: Navigator,
+        simulation: Simulation,
+        which: int,
+        track: str,
+        blame: str = "",
+        rehearsals: Sequence[tuple[Rehearsal, ...]] = (),
+        guard: Guard | None = None,
+    ) -> None:
+        self.navigator = navigator
+        self.simulation = simulation
+        self.which = which
+        self.track = track
+        self._blame = blame  # what its reasons start with
+        self._guard = guard  # of the code that runs it, where it shares the process
+        worlds = simulation.worlds
+        self._rehearsals = rehearsals or [()] * len(worlds)
+        self.chosen = _chosen(worlds, which)  # (B, An) agent index, -1: padding
+        with calling("__init__"):
+            asked = [_asked(navigator, name, blame) for name in PROPERTIES]
+        needs, self._command, self.reproducible = asked
+        self._needs = frozenset(needs)
+        self._row = np.arange(len(worlds))[:, None]
+        self._goal = np.zeros((*self.chosen.shape, 2))
+        for b, world in enumerate(worlds):
+            mine = self.chosen[b][self.chosen[b] >= 0]
+            self._goal[b, : len(mine)] = world.agents.goal[mine]
+        self._maps = [granted_map(world, track) for world in worlds]
+        self._moving = track == "known" and any(world.relocates for world in worlds)
+
+    def reset(self, generators: Sequence[np.random.Generator]) -> float:
+        """Brief the navigator for all worlds. Returns the seconds that it took.
+
+        Raises CallFailed where it raises.
+        """
+        worlds = self.simulation.worlds
+        briefings = [
+            self._briefing(b, world, rng)
+            for b, (world, rng) in enumerate(zip(worlds, generators, strict=True))
+        ]
+        rows = np.arange(len(worlds))
+        began = perf_counter()
+        try:
+            with calling("reset"):
+                self.navigator.reset(briefings, rows)
+        except CallFailed as failed:
+            reason = f"{self._blame}{failed.reason}"
+            raise CallFailed(reason, failed.suspects, failed.traceback) from None
+        except MissingExtraError:
+            raise  # what is not installed is no failure of the navigator
+        except (Exception, SystemExit) as error:
+            reason, traceback = _raised("reset", error)
+            raise CallFailed(self._blame + reason, traceback=traceback) from error
+        seconds = perf_counter() - began
+        self._require_intact(self._blame)
+        return seconds
+
+    def mark_twists(self, twist: BoolArray) -> None:
+        """Set ``twist`` (B, A) for its agents where it answers twists."""
+        world, agent = np.nonzero(self.chosen >= 0)
+        twist[world, self.chosen[world, agent]] = self._command == "twist"
+
+    def act(self, command: FloatArray, time: float) -> float:
+        """Put its answers for all running worlds into ``command`` (B, A, 2).
+
+        Args:
+            command: receives the commands of the agents that it drives.
+            time: [s] now, the same in every running world.
+
+        Returns the seconds that its call took. Raises CallFailed where the call raises
+        or answers what is not a command.
+        """
+        observation = self._observe(time)
+        active = self._active[observation.rows]
+        began = perf_counter()
+        try:
+            with calling("act", time):
+                answer = self.navigator.act(observation)
+                seconds = perf_counter() - began
+                told = checked(answer, active)
+            self._require_intact()
+        except CallFailed as failed:
+            who = None if failed.suspects is None else observation.rows[failed.suspects]
+            raise CallFailed(self._at(failed.reason, time), who, failed.traceback) from None
+        except MissingExtraError:
+            raise  # what is not installed is no failure of the navigator
+        except (Exception, SystemExit) as error:
+            reason, traceback = _raised("act", error, time)
+            raise CallFailed(self._at(reason, time), traceback=traceback) from error
+        world, agent = np.nonzero(active)
+        row = observation.rows[world]
+        command[row, self.chosen[row, agent]] = told[world, agent]
+        return seconds
+
+    def remarks(self, row: int) -> tuple[str, ...]:
+        """What it has to tell of the world in ``row``; what it cannot tell is lost."""
+        try:
+            with calling("remarks"):
+                return tuple(remarks_of(self.navigator.remarks(row)))
+        except (Exception, SystemExit) as error:
+            return (_raised("remarks", error)[0],)
+
+    def _require_intact(self, blame: str = "") -> None:
+        replaced = self._guard.replaced() if self._guard is not None else ""
+        if replaced:
+            raise CallFailed(f"{blame}it replaced {replaced}, which is no part of it")
+
+    def _at(self, reason: str, time: float) -> str:
+        return f"{self._blame}{reason} at t = {time:g} s"
+
+    def _observe(self, time: float) -> Observation:
+        simulation, at = self.simulation, (self._row, self.chosen)
+        self._active = (
+            (self.chosen >= 0)
+            & simulation.running[:, None]
+            & (simulation.status[at] == int(Status.ACTIVE))
+            & simulation.present[at]
+        )
+        present = np.where(self._active, self.chosen, -1)
+        rays, neighbours, edges = sense(simulation, present, self._needs)
+        if self._moving:
+            self._renew_maps()
+        everything = Observation(
+            np.arange(len(self.chosen)), np.full(len(self.chosen), time), self._active.copy(),
+            self._own(simulation.position), self._own(simulation.heading),
+            self._own(simulation.velocity), self._goal.copy(), tuple(self._maps),
+            rays, neighbours, edges,
+        )  # fmt: skip
+        if simulation.running.all():
+            return everything
+        return everything.select(np.flatnonzero(simulation.running))
+
+    def _own(self, array: FloatArray) -> FloatArray:
+        own = array[self._row, self.chosen]
+        own[self.chosen < 0] = 0.0
+        return own
+
+    def _renew_maps(self) -> None:
+        simulation = self.simulation
+        for b, world in enumerate(simulation.worlds):
+            held, revision = self._maps[b], int(simulation.revision[b])
+            if held is not None and held.revision != revision:
+                position = simulation.body_position[b].copy()
+                self._maps[b] = granted_map(world, self.track, position, revision)
+
+    def _briefing(self, b: int, world: World, rng: np.random.Generator) -> Briefing:
+        clock = world.clock
+        return brief(
+            world.agents, self.chosen[b][self.chosen[b] >= 0], dt=clock.dt, horizon=clock.horizon,
+            goal_tolerance=world.rules.goal_tolerance, decision_budget=clock.decision_budget,
+            map=self._maps[b], rng=rng, rehearsals=tuple(map(copied, self._rehearsals[b])),
+        )  # fmt: skip
+
+
+def _one_of(value: Any, choices: Sequence[str]) -> str:
+    if value not in choices:
+        raise ValueError(f"it must be {' or '.join(choices)}")
+    return str(value)
+
+
+def _asked(navigator: Navigator, name: str, blame: str) -> Any:
+    """A property of it. Raises CallFailed where it raises, or is not what it must be."""
+    try:
+        return PROPERTIES[name](getattr(navigator, name))
+    except MissingExtraError:
+        raise
+    except (Exception, SystemExit) as error:
+        raise CallFailed(f"{blame}{name} raised {said(error)}", traceback=trace(error)) from error
+
+
+def _raised(call: Call, error: BaseException, time: float = 0.0) -> tuple[str, str]:
+    """(reason, traceback) of what a call raised; to read it calls the plugin's code too."""
+    with calling(call, time):
+        return f"{call} raised {said(error)}", trace(error)
+
+
+def _chosen(worlds: Sequence[World], which: int) -> IntArray:
+    mine = [np.flatnonzero(world.agents.driver == which) for world in worlds]
+    chosen = np.full((len(worlds), max(map(len, mine))), -1)
+    for b, agents in enumerate(mine):
+        chosen[b, : len(agents)] = agents
+    return chosen

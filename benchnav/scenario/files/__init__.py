@@ -1,0 +1,1 @@
+"""Meshes, occupancy images and recorded tracks that scenarios name."""

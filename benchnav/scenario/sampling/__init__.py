@@ -1,0 +1,1 @@
+"""Distributions of numbers, and regions that points are drawn from."""

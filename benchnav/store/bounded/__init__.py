@@ -1,0 +1,1 @@
+"""Readers whose memory and time are bounded, for files from strangers."""

@@ -1,0 +1,1 @@
+"""Parts of a run: episodes, results and their seal."""

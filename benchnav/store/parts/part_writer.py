@@ -1,0 +1,236 @@
+"""Writes one part: everything under temporary names, then renamed, the seal last."""
+
+import hashlib
+import os
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any, Self
+
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from benchnav.episode.episode import Episode
+from benchnav.errors import CorruptPartError, StoreError
+from benchnav.store.parts.episodes import DICTIONARY, EPISODES, to_table
+from benchnav.store.parts.part import Part
+from benchnav.store.parts.results import RESULTS
+from benchnav.store.parts.seal import (
+    EPISODES_FILE,
+    FILES,
+    REHEARSALS_FILE,
+    RESULTS_FILE,
+    SEAL,
+    read_seal,
+)
+from benchnav.store.runs import checked_json
+
+TEMPORARY = ".writing-"  # names of files that are not finished start with this
+
+
+@dataclass(frozen=True)
+class _Stream:
+    file: IO[bytes]
+    writer: pq.ParquetWriter
+
+
+class EpisodeFiles:
+    """The files of a part's episodes and rehearsals, under temporary names; `seal` comes later.
+
+    Every method raises StoreError where the disk refuses (full, read-only).
+    """
+
+    def __init__(self, part: Part) -> None:
+        self.part = part
+        self._finished = False
+        self._streams: dict[str, _Stream] = {}
+        self._open(EPISODES_FILE)
+
+    def add(self, episodes: Sequence[Episode], rehearsals: Sequence[Episode] = ()) -> None:
+        """Append scored episodes, and the rehearsals of some."""
+        try:
+            if episodes:
+                self._streams[EPISODES_FILE].writer.write_table(to_table(episodes))
+            if rehearsals:
+                if REHEARSALS_FILE not in self._streams:
+                    self._open(REHEARSALS_FILE)
+                self._streams[REHEARSALS_FILE].writer.write_table(to_table(rehearsals))
+        except OSError as error:
+            raise refused(self.part, error) from error
+
+    def finish(self) -> None:
+        """Make them whole and durable."""
+        try:
+            for stream in self._streams.values():
+                stream.writer.close()
+                _sync(stream.file)
+        except OSError as error:
+            raise refused(self.part, error) from error
+        self._finished = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        if self._finished and raised[1] is None:
+            return
+        for stream in self._streams.values():
+            with suppress(OSError, pa.ArrowException):  # what made it fail is already on its way up
+                stream.writer.close()
+            with suppress(OSError):
+                stream.file.close()
+        discard(self.part)
+
+    def _open(self, suffix: str) -> None:
+        try:
+            self.part.folder.mkdir(parents=True, exist_ok=True)
+            file = temporary(self.part, suffix).open("wb")
+        except OSError as error:
+            raise refused(self.part, error) from error
+        writer = pq.ParquetWriter(
+            file, EPISODES, compression="zstd", use_dictionary=DICTIONARY,
+            write_statistics=["seed"],
+        )  # fmt: skip
+        self._streams[suffix] = _Stream(file, writer)
+
+
+class PartWriter:
+    """Collects batches of episodes of a part; nothing is visible before `seal`.
+
+    Every method raises StoreError where the disk refuses (full, read-only).
+    """
+
+    def __init__(self, part: Part) -> None:
+        self.part = part
+        self._files = EpisodeFiles(part)
+        self._results: list[pa.Table] = []
+        self._rows = 0
+        self._sealed = False
+
+    def add(
+        self, episodes: Sequence[Episode], results: pa.Table, rehearsals: Sequence[Episode] = ()
+    ) -> None:
+        """Append scored episodes, the table of `RESULTS` measured on them, and rehearsals."""
+        self._files.add(episodes, rehearsals)
+        self._rows += len(episodes)
+        self._results.append(results)
+
+    def seal(self) -> None:
+        """Make the part visible, complete and durable."""
+        self._files.finish()
+        seal(self.part, pa.concat_tables([RESULTS.empty_table(), *self._results]), self._rows)
+        self._sealed = True
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *raised: object) -> None:
+        self._files.__exit__(*raised)
+        if not self._sealed:
+            discard(self.part)
+
+
+def seal(part: Part, results: pa.Table, episodes: int) -> None:
+    """Make a part visible whose `EpisodeFiles` are finished, with the values measured on them.
+
+    Raises StoreError where the disk refuses.
+    """
+    try:
+        with temporary(part, RESULTS_FILE).open("wb") as file:
+            pq.write_table(results, file, compression="zstd")
+            _sync(file)
+        written = [suffix for suffix in FILES if temporary(part, suffix).exists()]
+        sealed = {suffix: _facts(temporary(part, suffix)) for suffix in written}
+        with temporary(part, SEAL).open("wb") as file:
+            file.write(checked_json.dump({**sealed, "episodes": episodes}).encode())
+            _sync(file)
+        for suffix in (*written, SEAL):
+            temporary(part, suffix).replace(part.path(suffix))
+        _sync_folder(part.folder)
+    except OSError as error:
+        discard(part)
+        raise refused(part, error) from error
+
+
+def discard(part: Part) -> None:
+    """Remove what was written of a part and is not sealed."""
+    for suffix in (*FILES, SEAL):
+        with suppress(OSError):
+            temporary(part, suffix).unlink(missing_ok=True)
+
+
+def temporary(part: Part, suffix: str) -> Path:
+    """Where a file of a part is until it is sealed."""
+    return part.folder / f"{TEMPORARY}{part.stem}{suffix}"
+
+
+def receive(part: Part, files: Mapping[str, bytes]) -> None:
+    """Store a part that was written elsewhere; ``files`` are its own by suffix.
+
+    Raises StoreError where the disk refuses, CorruptPartError where a file is not what was sealed.
+    """
+    _refuse_unsealed(part, files)
+    written = [suffix for suffix in (*FILES, SEAL) if suffix in files]  # the seal last
+    temporary = {suffix: part.folder / f"{TEMPORARY}{part.stem}{suffix}" for suffix in written}
+    try:
+        part.folder.mkdir(parents=True, exist_ok=True)
+        for suffix, path in temporary.items():
+            with path.open("wb") as file:
+                file.write(files[suffix])
+                _sync(file)
+        for suffix, path in temporary.items():
+            path.replace(part.path(suffix))
+        _sync_folder(part.folder)
+    except OSError as error:
+        raise refused(part, error) from error
+    finally:
+        for path in temporary.values():
+            with suppress(OSError):
+                path.unlink(missing_ok=True)
+
+
+def _refuse_unsealed(part: Part, files: Mapping[str, bytes]) -> None:
+    try:
+        seal = read_seal(files[SEAL].decode(), len(part.seeds))
+        sealed = {suffix: facts["sha256"] for suffix, facts in seal.items()}
+    except (KeyError, ValueError) as error:
+        raise CorruptPartError(f"{part.path(SEAL)} must come sealed. It cannot be read.") from error
+    found = {
+        suffix: hashlib.sha256(files[suffix]).hexdigest() for suffix in files if suffix != SEAL
+    }
+    if sealed != found:
+        raise CorruptPartError(f"{part.path(SEAL)} must fit what it came with. It does not.")
+
+
+def refused(part: Part, error: OSError) -> StoreError:
+    """What is said where the disk refuses."""
+    run = part.folder.parent.parent
+    return StoreError(
+        f"{part.folder} must be writable and have room."
+        f" The system says: {error.strerror or error}."
+        " Every part that was finished is safe; make room and run the same suite again"
+        f" with --out {run} to go on from there."
+    )
+
+
+def _sync(file: Any) -> None:
+    file.flush()
+    os.fsync(file.fileno())
+    file.close()
+
+
+def _sync_folder(folder: Path) -> None:
+    if not hasattr(os, "O_DIRECTORY"):  # Windows opens no folders
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(handle)
+    finally:
+        os.close(handle)
+
+
+def _facts(path: Path) -> dict[str, Any]:
+    with path.open("rb") as file:
+        found = hashlib.file_digest(file, "sha256").hexdigest()
+    return {"bytes": path.stat().st_size, "sha256": found}

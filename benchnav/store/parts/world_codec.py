@@ -1,0 +1,116 @@
+"""World ↔ plain JSON values, exact for floats.
+
+Every dataclass becomes an object of its fields, every array ``[dtype, shape,
+values]`` in C order, every enum its number. Python writes a float with the fewest
+digits that read back to the same bits, so a round trip changes nothing.
+"""
+
+import json
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from functools import cache
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from benchnav.arena.world import World
+from benchnav.arrays import AnyArray
+from benchnav.config.document import shown
+
+_DTYPES = ("<f8", "<i8", "|i1", "|b1")
+_PLAIN = {bool: (bool,), int: (int,), float: (int, float), str: (str,)}  # JSON has these itself
+MOST_TEXT = 64 << 20  # characters of a world; one of a million triangles takes 50 MB
+_MOST_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of values
+
+
+def world_to_json(world: World) -> str:
+    """The world as one line of JSON (infinities are written as Python does: ``Infinity``)."""
+    return json.dumps(encode(world), separators=(",", ":"))
+
+
+def world_from_json(text: str) -> World:
+    """The world that was written.
+
+    Raises:
+        KeyError, TypeError, ValueError: the text is not an encoded world.
+    """
+    if len(text) > MOST_TEXT or text.count("[") + text.count("{") > _MOST_CONTAINERS:
+        raise ValueError(f"a world must have at most {MOST_TEXT} characters; it has {len(text)}")
+    world: World = decode(World, json.loads(text))
+    agents = world.agents
+    if any(len(getattr(agents, f.name)) != len(agents) for f in fields(agents)):
+        raise ValueError("a world must have as many of each array of its agents")
+    return world
+
+
+def encode(value: Any) -> Any:
+    """Plain JSON values of a dataclass, array, enum, tuple or number."""
+    if isinstance(value, np.ndarray):
+        return [value.dtype.str, list(value.shape), value.ravel().tolist()]
+    if is_dataclass(value) and not isinstance(value, type):
+        return {f.name: encode(getattr(value, f.name)) for f in fields(value)}
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, tuple | list):
+        return [encode(item) for item in value]
+    if isinstance(value, np.generic):
+        return value.item()
+    return value
+
+
+def decode(kind: Any, value: Any) -> Any:
+    """Return the value of type ``kind`` that `encode` turned into ``value``.
+
+    Raises:
+        KeyError, TypeError, ValueError: ``value`` is not of this type, or no value of
+            this type can be encoded.
+    """
+    kind = _unalias(kind)
+    origin = get_origin(kind) or kind
+    if origin is np.ndarray:
+        return _decode_array(*value)
+    if origin in (Union, UnionType):
+        if value is None:
+            return None
+        (kind,) = (option for option in get_args(kind) if option is not NoneType)
+        return decode(kind, value)
+    if origin is tuple:
+        return _decode_tuple(get_args(kind), value)
+    if isinstance(kind, type) and is_dataclass(kind):
+        return kind(**{name: decode(hint, value[name]) for name, hint in _hints(kind).items()})
+    if isinstance(kind, type) and issubclass(kind, Enum):
+        return kind(value)
+    if kind in _PLAIN:
+        if type(value) not in _PLAIN[kind]:
+            raise TypeError(f"a value must be of type {kind.__name__}; got {shown(value)}")
+        return value
+    raise TypeError(f"a world must not hold values of type {kind}")
+
+
+def _unalias(kind: Any) -> Any:
+    """Return the type that an alias stands for: NDArray is an alias since NumPy 2.5.
+
+    Arguments of the alias are dropped: an array says its own dtype.
+    """
+    while (origin := get_origin(kind) or kind) and hasattr(origin, "__value__"):
+        kind = origin.__value__
+    return kind
+
+
+def _decode_array(dtype: str, shape: list[int], items: list[Any]) -> AnyArray:
+    if dtype not in _DTYPES:
+        raise ValueError(f"an array must be of {', '.join(_DTYPES)}; got {str(dtype)[:20]!r}")
+    return np.array(items, dtype=np.dtype(dtype)).reshape(shape)
+
+
+def _decode_tuple(kinds: tuple[Any, ...], value: list[Any]) -> tuple[Any, ...]:
+    if len(kinds) == 2 and kinds[1] is Ellipsis:
+        return tuple(decode(kinds[0], item) for item in value)
+    return tuple(decode(kind, item) for kind, item in zip(kinds, value, strict=True))
+
+
+@cache
+def _hints(kind: type) -> dict[str, Any]:
+    hints = get_type_hints(kind)
+    return {f.name: hints[f.name] for f in fields(kind)}

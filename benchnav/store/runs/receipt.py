@@ -1,0 +1,69 @@
+"""Receipts: which runs were verified on this machine, by their content.
+
+A receipt lies in the user's own folder and not in the run, because what a run says of
+itself its author may have written. It holds for exactly this content, and for this
+state of the code.
+"""
+
+import json
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from pathlib import Path
+
+from benchnav.kernels import kernels_name
+from benchnav.plugins import METRICS
+from benchnav.store.runs.manifest import versions
+from benchnav.system.user_folders import user_state
+
+
+def receipts_folder() -> Path:
+    """Return where they are kept: ``$XDG_STATE_HOME/benchnav/verified``.
+
+    Raises OSError where this user has no folder for it.
+    """
+    state = user_state()
+    if state.path is None:
+        raise PermissionError(state.reason)
+    return state.path / "verified"
+
+
+def any_receipts() -> bool:
+    """Whether runs were verified on this machine at all."""
+    try:
+        return receipts_folder().is_dir()
+    except OSError:
+        return False
+
+
+def keep_receipt(digest: str, unknown: Iterable[str]) -> None:
+    """A run with this content is verified, but for values of ``unknown`` metrics.
+
+    Raises OSError where it cannot be written.
+    """
+    path = receipts_folder() / f"{digest}.json"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    said = {
+        "content": digest, "code": _code(), "unknown": sorted(unknown),
+        "when": datetime.now(UTC).isoformat(timespec="seconds"),
+    }  # fmt: skip
+    path.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
+
+
+def drop_receipt(digest: str) -> None:
+    """It is not, after all."""
+    (receipts_folder() / f"{digest}.json").unlink(missing_ok=True)
+
+
+def has_receipt(digest: str) -> bool:
+    """True where a run with this content was verified here, by this code and these metrics."""
+    try:
+        said = json.loads((receipts_folder() / f"{digest}.json").read_text(encoding="utf-8"))
+        installed = set(METRICS.names()) & set(said["unknown"])
+        return bool(said["content"] == digest and said["code"] == _code() and not installed)
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def _code() -> str:
+    """Of the version, and of the kernels that re-simulate."""
+    return f"{versions().get('benchnav')} {kernels_name('benchnav')}"

@@ -1,0 +1,1 @@
+"""Text for people: plurals and safe printing."""

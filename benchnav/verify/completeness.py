@@ -1,0 +1,56 @@
+"""Which parts a run must have, and which it has."""
+
+from collections.abc import Iterator
+from itertools import islice
+
+from benchnav.errors import CorruptPartError
+from benchnav.runner.plan.job import Cell
+from benchnav.store.parts.part import Part, parts_of
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.spans import count, twice, union, without
+from benchnav.text.plural import counted
+from benchnav.verify.finding import Report
+from benchnav.verify.rebuilt_suite import Restored
+
+_SHOWN = 10  # seeds of each kind
+
+
+def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[Cell, Part]]:
+    """Every part with the cell that it is of; the report says what lacks or is too much."""
+    stored = {str(c["key"]): c for c in run.manifest.cells}
+    for cell in suite.cells:
+        where = f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
+        said = stored.get(cell.key, {"key": cell.key})
+        reason = str(said.get("reason", ""))
+        if reason:
+            if parts_of(run.cell(cell.key)):
+                report.find("coverage", where, f"is n/a ({reason}), and has episodes")
+            report.counts["n/a cells"] += 1
+            continue
+        try:
+            parts = run.parts_in(said)
+        except CorruptPartError as error:
+            report.find("manifest", where, str(error))
+            continue
+        _check_seeds(parts, suite.seeds, where, report)
+        for part in parts:
+            yield cell, part
+    known = {run.cell(cell.key) for cell in suite.cells}
+    for path in sorted((run.path / "parts").glob("*")):
+        if path not in known and run.key_of(path):
+            report.notes["cell of other source, which an unfinished --again left"] += 1
+        elif path not in known:
+            report.find("coverage", str(run.shown / "parts" / path.name), "is no cell of the suite")
+
+
+def _check_seeds(parts: list[Part], seeds: range, where: str, report: Report) -> None:
+    held = [(part.first, part.stop) for part in parts]
+    whole = [(seeds.start, seeds.stop)]
+    for text, found in (
+        ("missing", without(whole, held)), ("stored twice", twice(held)),
+        ("not of the suite", without(union(held), whole)),
+    ):  # fmt: skip
+        if found:
+            some = islice((seed for span in found for seed in range(*span)), _SHOWN)
+            few = ", ".join(map(str, some)) + (", …" if count(found) > _SHOWN else "")
+            report.find("coverage", where, f"{counted(count(found), 'seed')} {text}: {few}")

@@ -1,0 +1,29 @@
+"""Everything that is wanted of one part."""
+
+from dataclasses import dataclass
+
+from benchnav.verify.finding import Report
+from benchnav.verify.part_check import PartCheck, check_part
+from benchnav.verify.reference.fcl_check import judge
+from benchnav.verify.reference.reference_check import check_twin
+
+
+@dataclass(frozen=True)
+class Examination:
+    """A part, and what to do with it."""
+
+    check: PartCheck
+    twin: tuple[int, ...]  # seeds of the episodes that the slow twin replays
+    referee: bool
+
+
+def examine(task: Examination) -> Report:
+    """Re-simulate the part, and what else is wanted."""
+    report, scored, rehearsed = check_part(task.check)
+    for pair in scored + rehearsed:
+        if pair.stored.identity.seed in task.twin:
+            check_twin(pair.again.world, pair.again, pair.where, report)
+    if task.referee:
+        for pair in scored + rehearsed:
+            judge(pair, report)
+    return report

@@ -1,0 +1,27 @@
+"""Whether the code that is installed here is the code that a run's episodes were made by."""
+
+from benchnav.runner.plan.contestant import Entry, source_of
+from benchnav.source.importable import MAIN
+from benchnav.source.module import locate
+from benchnav.verify.untrusted_spec import is_by_module, is_program
+
+
+def compare_source(entry: Entry, packed: bool) -> str:
+    """Return a sentence about the navigator ``entry`` of a run; nothing of it is imported.
+
+    ``packed``: the run came in a pack. What a stranger names is then not looked for.
+    """
+    if not entry.source_hash:
+        return f"{entry.label}: not recorded, so that nobody can say whether the same is installed"
+    if packed and (is_program(entry.spec) or is_by_module(entry.spec)):
+        return f"{entry.label}: not compared, for somebody else's pack names it by file or module"
+    modules = [place.partition(":")[0] for place in entry.places]
+    if MAIN in modules:
+        return f"{entry.label}: a notebook or script defined it, which cannot be compared"
+    missing = sorted({module for module in modules if locate(module) is None})
+    if missing:
+        return f"{entry.label}: not installed here (no module {', '.join(missing)})"
+    found = source_of(entry).hash
+    if found == entry.source_hash:
+        return f"{entry.label}: the source that ran is installed here ({found})"
+    return f"{entry.label}: another source is installed here ({found}; {entry.source_hash} ran)"

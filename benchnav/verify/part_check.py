@@ -1,0 +1,201 @@
+"""Checks one part of a run: every episode, rehearsal and value in it."""
+
+from collections import OrderedDict
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from typing import Any
+
+from benchnav.arena.world import World
+from benchnav.arrays import FloatArray
+from benchnav.episode.episode import Episode
+from benchnav.errors import BenchnavError, CorruptPartError, ForeignRowError
+from benchnav.generation.build import build
+from benchnav.generation.rehearsal_world import rehearsal_world
+from benchnav.plugins import METRICS
+from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.task import Measuring
+from benchnav.runner.rollouts.rollout import Assignment, batches
+from benchnav.runner.rollouts.seeding import phases
+from benchnav.store.parts.part import Part
+from benchnav.verify.difference import first_difference
+from benchnav.verify.episode_check import check_commands, check_timings, compare
+from benchnav.verify.finding import Report
+from benchnav.verify.metric_check import check_values, expected_metrics, measured_again
+from benchnav.verify.rehearsal_check import check_rehearsals
+from benchnav.verify.resimulation import resimulate, unfit
+
+_KEPT = 256  # worlds that a process remembers: other navigators meet the same
+_WORLDS: OrderedDict[tuple[str, str, int], World] = OrderedDict()
+
+
+@dataclass(frozen=True)
+class PartCheck:
+    """What is to be checked of a part, and against what."""
+
+    cell: Cell
+    part: Part
+    salt: str
+    probe: int  # the seed with which latency stands
+    version: str  # of the benchnav that made the run
+    metrics: Mapping[str, bool]  # that are installed here, and whether they are verifiable
+    measuring: Measuring | None  # how those of plugins are measured; None: in this process
+
+    @property
+    def assignment(self) -> Assignment:
+        """Who ran where."""
+        return replace(self.cell.assignment, salt=self.salt)
+
+    @property
+    def shown(self) -> str:
+        """The cell, as findings name it."""
+        cell = self.cell
+        return f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
+
+    def place(self, episode: Episode) -> str:
+        """An episode of it, as findings name it."""
+        rehearsal = episode.identity.rehearsal
+        more = f", rehearsal {rehearsal}" if rehearsal else ""
+        return f"{self.shown}, seed {episode.identity.seed}{more}"
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A stored episode, and the one that its commands lead to in the world drawn anew."""
+
+    stored: Episode
+    again: Episode
+    touched: FloatArray  # (N, 2) [m] where the agent of each event was when it first touched
+    where: str
+
+
+def check_part(task: PartCheck) -> tuple[Report, list[Pair], list[Pair]]:
+    """(what disagrees, scored episodes, rehearsals) of a part."""
+    report = Report()
+    try:
+        scored = list(task.part.episodes())
+        rehearsed = list(task.part.rehearsals())
+        rows = task.part.results().to_pylist()
+    except CorruptPartError as error:
+        kind = "identity" if isinstance(error, ForeignRowError) else "seal"
+        report.find(kind, task.shown, str(error).split(" Delete ")[0])
+        return report, [], []
+    seeds = [e.identity.seed for e in scored]
+    if seeds != list(task.part.seeds):
+        report.find("coverage", task.shown, f"{task.part.stem} must hold its seeds; got {seeds}")
+    try:
+        fit = [e for e in scored if _identified(task, e, report)]
+        fit_rehearsed = [e for e in rehearsed if _identified(task, e, report)]
+        pairs = _again(task, fit, report)
+        practice = _again(task, fit_rehearsed, report)
+    except (BenchnavError, ArithmeticError, MemoryError, ValueError) as error:
+        report.find("world", task.shown, f"cannot be made again: {type(error).__name__}: {error}")
+        return report, [], []
+    _check_rehearsals(task, fit, fit_rehearsed, report)
+    _check_values(task, pairs, rows, report)
+    report.counts["episodes"] += len(pairs)
+    report.counts["rehearsals"] += len(practice)
+    return report, pairs, practice
+
+
+def _identified(task: PartCheck, episode: Episode, report: Report) -> bool:
+    """Report an episode of another cell, seed or navigator; True where it is of this part."""
+    who = episode.identity
+    right = replace(task.assignment.identity(who.seed), rehearsal=who.rehearsal)
+    place = task.place(episode)
+    text = first_difference(who, right, "identity")
+    if text:
+        report.find("identity", place, text)
+    if who.seed not in task.part.seeds:
+        report.find("identity", place, f"seed {who.seed} is not one of {task.part.stem}")
+        return False
+    return True
+
+
+def _again(task: PartCheck, episodes: Sequence[Episode], report: Report) -> list[Pair]:
+    """Re-simulate what can be, and compare."""
+    checked: list[tuple[World, Episode]] = []
+    for episode in episodes:
+        world, place = _world(task, episode), task.place(episode)
+        text = first_difference(episode.world, world, "world")
+        if text:
+            report.find("world", place, f"{text} (drawn anew)")
+        wrong = unfit(world, episode)
+        if wrong:
+            report.find("command", place, wrong)
+        else:
+            checked.append((world, episode))
+    pairs = []
+    for batch in _batches(checked):
+        for (_, stored), (again, wrong, touched) in zip(batch, resimulate(batch), strict=True):
+            place = task.place(stored)
+            if wrong:
+                report.find("state", place, wrong)
+            compare(stored, again, place, report)
+            check_commands(stored, again, place, report)
+            probe = not stored.identity.rehearsal and stored.identity.seed == task.probe
+            check_timings(stored, probe, place, report)
+            pairs.append(Pair(stored, again, touched, place))
+    return pairs
+
+
+def _batches(
+    checked: Sequence[tuple[World, Episode]],
+) -> Iterator[list[tuple[World, Episode]]]:
+    seeded = [(place, world) for place, (world, _) in enumerate(checked)]
+    for batch in batches(seeded):
+        yield [checked[place] for place, _ in batch]
+
+
+def _world(task: PartCheck, episode: Episode) -> World:
+    """The world of an episode, drawn anew."""
+    cell, seed, k = task.cell, episode.identity.seed, episode.identity.rehearsal
+    key = cell.scenario.hash, cell.split, seed
+    world = _WORLDS.get(key)
+    if world is None:
+        world = _WORLDS[key] = build(cell.scenario, cell.split, seed)
+        while len(_WORLDS) > _KEPT:
+            _WORLDS.popitem(last=False)
+    if not k:
+        return world
+    return rehearsal_world(world, phases(task.salt, *key, k))[0]
+
+
+def _check_rehearsals(
+    task: PartCheck, scored: Sequence[Episode], rehearsed: Sequence[Episode], report: Report
+) -> None:
+    def seed_of(episode: Episode) -> int:
+        return episode.identity.seed
+
+    made = {seed: list(group) for seed, group in groupby(rehearsed, seed_of)}
+    for episode in scored:
+        own = made.pop(seed_of(episode), [])
+        check_rehearsals(task.assignment, episode, own, task.place(episode), report)
+    for seed in made:
+        report.find("rehearsal", task.shown, f"seed {seed} has rehearsals, and no episode")
+
+
+def _check_values(
+    task: PartCheck, pairs: Sequence[Pair], rows: Sequence[dict[str, Any]], report: Report
+) -> None:
+    """Of episodes that could be re-simulated; others were reported."""
+    by_seed: dict[int, list[dict[str, Any]]] = {}
+    for row in rows:
+        by_seed.setdefault(row["seed"], []).append(row)
+    stored = {row["metric"] for row in rows}
+    names = expected_metrics(stored, task.version, task.metrics)
+    if pairs:
+        report.unmeasured |= set(METRICS.names()) - stored
+    again = [replace(pair.again, identity=task.assignment.identity(_seed(pair))) for pair in pairs]
+    right = measured_again(again, names, task.measuring)
+    for pair, expected in zip(pairs, right, strict=True):
+        check_values(by_seed.pop(_seed(pair), []), expected, task.metrics, pair.where, report)
+    for seed in by_seed:
+        if seed not in task.part.seeds:
+            report.find(
+                "metric", task.shown, f"there are values for seed {seed}, which is not here"
+            )
+
+
+def _seed(pair: Pair) -> int:
+    return pair.stored.identity.seed

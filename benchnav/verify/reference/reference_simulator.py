@@ -1,0 +1,295 @@
+"""The slow twin of the kernels that step a world: every pair, no grid, no shortcut.
+
+Written from what `benchnav.world.step` and the rules of `benchnav.arena.world` say, with
+other formulas, trigonometry of libm and numpy alone: a fault in a kernel is not repeated
+here. It agrees with the kernels within rounding. Whoever reads a kernel may look here
+for what it must do.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchnav.arena.agents import Dynamics
+from benchnav.arena.solid import Kind
+from benchnav.arena.world import Afterwards, Charge, ContactRule, World
+from benchnav.arrays import BoolArray, ByteArray, FloatArray
+from benchnav.episode.episode import Status
+from benchnav.verify.reference.reference_contacts import Event, Ledger, Partner
+from benchnav.verify.reference.reference_geometry import first_touch, inside, law_position, nearest
+
+MAX_HITS = 8  # touches of one agent within a substep, after which it is wedged
+CLOSE = 1e-9  # [s] touches that are nearer in time than this may come in either order
+_NOBODY: Partner = ("goal", 0)
+
+
+@dataclass
+class _Touch:
+    time: float
+    agent: int
+    partner: Partner
+    capsule: int = -1  # of the solid
+
+
+class Twin:
+    """One world: state as arrays over its agents (A, …)."""
+
+    def __init__(self, world: World) -> None:
+        self.world, self.steps = world, 0
+        crew = world.agents
+        self.position: FloatArray = crew.start.copy()
+        self.heading: FloatArray = crew.heading.copy()
+        self.status: ByteArray = np.zeros(len(crew), np.int8)
+        self.velocity = np.zeros((len(crew), 2))
+        self.arrival = np.full(len(crew), math.nan)
+        self.hits = np.zeros(len(crew), np.int64)
+        self.halted = np.zeros(len(crew), np.bool_)
+        self.placed = [False] * len(world.bodies)
+        self.bodies = np.array([law_position(b, 0.0, False) for b in world.bodies]).reshape(-1, 2)
+        self.ledger = Ledger()
+        self.doubtful = False  # rounding may decide what happened in this decision
+        self.touches = 0  # so far
+        self._flatten()
+
+    def _flatten(self) -> None:
+        """All capsules of what never moves, and of bodies in their frames, in one array each."""
+        none = np.zeros((0, 5))
+        solids = self.world.solids
+        self._fixed = np.vstack([none, *(s.capsules for s in solids)])
+        self._solid = [k for k, s in enumerate(solids) for _ in s.capsules]
+        carried = [body.solid.capsules for body in self.world.bodies]
+        self._carried = np.vstack([none, *carried])
+        self._owner = np.array([m for m, c in enumerate(carried) for _ in c], np.int64)
+
+    @property
+    def present(self) -> BoolArray:
+        """(A,) who is a body in the arena."""
+        rules = self.world.rules
+        gone = (self.status == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
+        gone |= (self.status == int(Status.ENDED)) & (rules.on_end == Afterwards.VANISH)
+        here: BoolArray = ~gone
+        return here
+
+    @property
+    def active(self) -> BoolArray:
+        """(A,) whose attempt goes on."""
+        going_on: BoolArray = self.status == int(Status.ACTIVE)
+        return going_on
+
+    def step(self, command: FloatArray, twist: BoolArray) -> FloatArray:
+        """One decision: commands (A, 2) of the kinds ``twist`` (A,). Returns the executed ones."""
+        clock = self.world.clock
+        h = clock.dt / clock.substeps
+        self._relocate(self.steps * clock.dt)
+        self.halted[:] = False
+        self.doubtful = False
+        self._turning = (self.world.agents.dynamics == int(Dynamics.UNICYCLE)) | twist
+        drive = np.zeros_like(self.position)
+        for i in np.flatnonzero(self.active):
+            drive[i] = self._limited(int(i), command[i], bool(twist[i]))
+        for s in range(clock.substeps):
+            self._substep(drive, (self.steps * clock.substeps + s) * h, h)
+        self.steps += 1
+        return drive
+
+    def _relocate(self, time: float) -> None:
+        """What stands elsewhere from now on, unless somebody is in its circle there."""
+        for m, body in enumerate(self.world.bodies):
+            moves = body.solid.kind == Kind.STATIC and not self.placed[m]
+            if not moves or time < body.law.times[-1]:
+                continue
+            there, bound = body.law.points[-1], body.solid.bounding_radius
+            away = np.hypot(*(self.position - there).T) - self.world.agents.radius - bound
+            others = [
+                np.hypot(*(self.bodies[k] - there)) - bound - other.solid.bounding_radius
+                for k, other in enumerate(self.world.bodies)
+                if other.solid.kind != Kind.STATIC
+            ]
+            if not (away[self.present] < 0.0).any() and not (np.array(others) < 0.0).any():
+                self.placed[m] = True
+                self.bodies[m] = there
+
+    def _limited(self, i: int, command: FloatArray, twist: bool) -> FloatArray:
+        crew, heading = self.world.agents, self.heading[i]
+        top, turn = crew.max_speed[i], crew.max_turn_rate[i]
+        if not self._turning[i]:
+            speed = math.hypot(*command)
+            limited: FloatArray = command * (min(1.0, top / speed) if speed > 0.0 else 1.0)
+            return limited
+        forward, rate = command
+        if not twist:
+            aim = math.atan2(command[1], command[0]) - heading
+            speed = math.hypot(*command)
+            forward = max(0.0, speed * math.cos(aim))
+            rate = math.remainder(aim, 2.0 * math.pi) / self.world.clock.dt if speed else 0.0
+        return np.array([min(max(forward, 0.0), top), min(max(rate, -turn), turn)])
+
+    def _substep(self, drive: FloatArray, begin: float, h: float) -> None:
+        self.hits[:] = 0
+        moving = self.active & ~self.halted
+        self.velocity = np.where(moving[:, None], drive, 0.0)
+        for i in np.flatnonzero(moving & self._turning):
+            angle = self.heading[i] + 0.5 * drive[i, 1] * h
+            self.velocity[i] = drive[i, 0] * np.array([math.cos(angle), math.sin(angle)])
+        goals = [
+            law_position(b, begin + h, self.placed[m]) for m, b in enumerate(self.world.bodies)
+        ]
+        target = np.array(goals).reshape(-1, 2)
+        self._carry = (target - self.bodies) / h
+        left = h
+        while (touch := self._earliest()) is not None and touch.time <= left:
+            self._drift(touch.time)
+            left -= touch.time
+            self._meet(touch, begin + h - left)
+        self._drift(left)
+        self.bodies = target
+        self._turn(drive, h)
+        self._follow_up(begin + h)
+
+    def _drift(self, time: float) -> None:
+        self.position = self.position + self.velocity * time
+        self.bodies = self.bodies + self._carry * time
+
+    def _turn(self, drive: FloatArray, h: float) -> None:
+        for i in np.flatnonzero(self.active):
+            if self._turning[i]:
+                self.heading[i] += drive[i, 1] * h
+            elif drive[i].any():
+                self.heading[i] = math.atan2(drive[i, 1], drive[i, 0])
+
+    def _earliest(self) -> _Touch | None:
+        """The next touch of all; of simultaneous ones that of the first agent."""
+        who = np.flatnonzero(self.active & (self.hits < MAX_HITS))
+        if len(who) == 0:
+            return None
+        found = self._touches(who)
+        best = min(found, key=lambda touch: (touch.time, touch.agent))
+        if self.hits.max() > MAX_HITS // 2 or _rivals(best, found):
+            self.doubtful = True
+        return best if best.time < math.inf else None
+
+    def _touches(self, who: np.ndarray) -> list[_Touch]:
+        """The first touch of every agent in ``who`` (N,), in the order of the rules for ties."""
+        world, r = self.world, self.world.agents.radius
+        p, v = self.position[who][:, None], self.velocity[who][:, None]
+        goal, tolerance = world.agents.goal[who][:, None], np.array(world.rules.goal_tolerance)
+        away = np.hypot(*(p - goal)[:, 0].T)
+        home = np.where(away <= tolerance, 0.0, first_touch(p, v, goal, goal, tolerance)[:, 0])
+        f, c = self._fixed, self._carried
+        fixed = first_touch(p, v, f[:, :2], f[:, 2:4], r[who][:, None] + f[:, 4])
+        at, carry = self.bodies[self._owner], self._carry[self._owner]
+        bodies = first_touch(p - at, v - carry, c[:, :2], c[:, 2:4], r[who][:, None] + c[:, 4])
+        zero = np.zeros(2)
+        reach = r[who][:, None] + r
+        others = first_touch(p - self.position, v - self.velocity, zero, zero, reach)
+        others[np.arange(len(who)), who] = math.inf
+        others[:, ~self.present] = math.inf
+        found = []
+        for row, i in enumerate(who):
+            touch = _Touch(float(home[row]), int(i), _NOBODY)
+            for name, times in (("solid", fixed), ("body", bodies), ("agent", others)):
+                k = int(np.argmin(times[row])) if times.shape[1] else -1
+                if k >= 0 and times[row, k] < touch.time:
+                    touch = self._named(name, k, float(times[row, k]), int(i))
+            found.append(touch)
+        return found
+
+    def _named(self, name: str, k: int, time: float, i: int) -> _Touch:
+        if name == "solid":
+            return _Touch(time, i, (name, self._solid[k]), k)
+        return _Touch(time, i, (name, int(self._owner[k]) if name == "body" else k))
+
+    def _meet(self, touch: _Touch, time: float) -> None:
+        self.touches += 1
+        i, (name, k) = touch.agent, touch.partner
+        if name == "goal":
+            self.arrival[i] = time
+            self._finish(i, Status.ARRIVED, time)
+            return
+        self.hits[i] += 1
+        if name == "agent":
+            self._meet_agent(i, k, time)
+            return
+        away, carried = self._away(i, name, k, touch.capsule)
+        normal = _unit(away)
+        closing = float((carried - self.velocity[i]) @ normal)
+        self.ledger.record(i, touch.partner, time, closing, True)
+        self._respond(i, normal, closing, time)
+
+    def _away(self, i: int, name: str, k: int, capsule: int) -> tuple[FloatArray, FloatArray]:
+        """(from the partner's nearest point to agent i, the partner's velocity)."""
+        if name == "solid":
+            c = self._fixed[capsule]
+            return self.position[i] - nearest(self.position[i], c[:2], c[2:4]), np.zeros(2)
+        shapes = self._carried[self._owner == k]
+        local = self.position[i] - self.bodies[k]
+        away = local - nearest(local, shapes[:, :2], shapes[:, 2:4])
+        gap = np.hypot(*away.T) - shapes[:, 4]
+        return away[int(np.argmin(gap))], self._carry[k]
+
+    def _meet_agent(self, i: int, j: int, time: float) -> None:
+        """Each gives up only its own motion towards the other."""
+        self.hits[j] += 1
+        normal = _unit(self.position[i] - self.position[j])
+        own, other = float(self.velocity[i] @ normal), float(self.velocity[j] @ normal)
+        active = bool(self.active[j])
+        self.ledger.record(i, ("agent", j), time, other - own, True)
+        charged = active or self.world.rules.charge == Charge.BOTH
+        self.ledger.record(j, ("agent", i), time, other - own, charged)
+        if active:
+            self._respond(j, -normal, max(other - max(own, 0.0), 0.0), time)
+        self._respond(i, normal, max(min(other, 0.0) - own, 0.0), time)
+
+    def _respond(self, i: int, normal: FloatArray, give: float, time: float) -> None:
+        rule = self.world.rules.contact
+        if rule == ContactRule.END:
+            self._finish(i, Status.ENDED, time)
+        elif rule == ContactRule.STOP or self.hits[i] >= MAX_HITS:
+            self.velocity[i] = 0.0
+            self.halted[i] |= rule == ContactRule.STOP
+        else:
+            self.velocity[i] += give * normal
+
+    def _finish(self, i: int, status: Status, time: float) -> None:
+        self.status[i] = int(status)
+        self.velocity[i] = 0.0
+        self.ledger.close_all(i, time)
+
+    def _follow_up(self, time: float) -> None:
+        present = self.present
+        for event in list(self.ledger.opened.values()):
+            gap = self.gap(event) if present[event.agent] else math.inf
+            self.ledger.follow_up(event, gap, time)
+
+    def gap(self, event: Event) -> float:
+        """[m] between the two of an event now; negative: overlap; inf where one is gone."""
+        i, (name, k) = event.agent, event.partner
+        p, r = self.position[i], float(self.world.agents.radius[i])
+        if name == "agent":
+            if not self.present[k]:
+                return math.inf
+            return math.hypot(*(p - self.position[k])) - r - float(self.world.agents.radius[k])
+        solid = self.world.solids[k] if name == "solid" else self.world.bodies[k].solid
+        local = p if name == "solid" else p - self.bodies[k]
+        c = solid.capsules
+        away = local - nearest(local, c[:, :2], c[:, 2:4])
+        gap = float((np.hypot(*away.T) - c[:, 4]).min()) - r
+        within = name == "body" and not solid.is_disc and inside(local, solid.loops)
+        return -gap - 2.0 * r if within else gap
+
+
+def _unit(vector: FloatArray) -> FloatArray:
+    length = math.hypot(*vector)
+    return vector / length if length > 0.0 else np.array([1.0, 0.0])
+
+
+def _rivals(best: _Touch, found: list[_Touch]) -> bool:
+    """May another touch, with one of the same two agents, just as well come first?"""
+    mine = {best.agent, best.partner[1] if best.partner[0] == "agent" else best.agent}
+    for other in found:
+        theirs = {other.agent, other.partner[1] if other.partner[0] == "agent" else other.agent}
+        close = other is not best and other.time - best.time < CLOSE and theirs != mine
+        if close and mine & theirs:
+            return True
+    return False

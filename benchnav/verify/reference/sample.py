@@ -1,0 +1,27 @@
+"""Which episodes the slow twin replays: few, and from everywhere."""
+
+from collections import defaultdict
+from collections.abc import Sequence
+
+from benchnav.verify.part_check import PartCheck
+
+
+def sampled(checks: Sequence[PartCheck], count: int) -> list[list[int]]:
+    """For every part the seeds of ``count`` episodes in all.
+
+    Scenarios take turns, and so do the cells of a scenario, each with its next seed: the
+    sample is spread, and the same whenever it is taken.
+    """
+    chosen: list[list[int]] = [[] for _ in checks]
+    waiting: dict[str, list[tuple[int, int, int]]] = defaultdict(list)
+    for i, check in enumerate(checks):
+        for turn, seed in enumerate(check.part.seeds):
+            waiting[check.cell.scenario.identity].append((turn, i, seed))
+    queues = [sorted(queue) for _, queue in sorted(waiting.items())]
+    for round_ in range(max(map(len, queues), default=0)):
+        for queue in queues:
+            if round_ < len(queue) and count > 0:
+                _, i, seed = queue[round_]
+                chosen[i].append(seed)
+                count -= 1
+    return chosen

@@ -1,0 +1,189 @@
+"""Runs the navigators of a run again: only this finds commands that were replaced.
+
+They play in workers of their own, as in any run, and what these write is compared here: no
+evaluated code runs where a run is judged.
+"""
+
+import dataclasses
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from benchnav.episode.episode import Episode
+from benchnav.errors import BenchnavError, CorruptPartError
+from benchnav.generation.build import sensing_of
+from benchnav.runner.execute.executor import execute
+from benchnav.runner.execute.progress import Progress
+from benchnav.runner.plan.contestant import Entry, Meeting
+from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.limits import Limits
+from benchnav.runner.plan.task import Task, chunks
+from benchnav.store.parts.part import FILES, SEAL, Part
+from benchnav.store.runs.manifest import ISOLATED
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.verify.finding import Report
+from benchnav.verify.part_check import PartCheck
+from benchnav.verify.untrusted_spec import is_by_module, is_program
+
+_TOLD = ("act ", "reset ", "in rehearsal ", "the scenario's background ")  # raised or answered
+
+Installed = Mapping[str, tuple[Entry | None, str]]  # by label: `installed`
+
+
+@dataclass(frozen=True)
+class Rerun:
+    """Parts to be run again.
+
+    ``folder`` is where, and ``limits`` are those of the run.
+    """
+
+    folder: Path
+    limits: Limits
+    report: Report
+    progress: Progress
+    tasks: list[Task] = field(default_factory=list)
+    stored: dict[tuple[str, int], PartCheck] = field(default_factory=dict)  # by cell and seed
+
+    def add(self, check: PartCheck, entry: tuple[Entry | None, str]) -> None:
+        """Plan what can be run again of a part."""
+        found, why = entry
+        seeds = list(check.part.seeds)
+        if found is None:
+            self._leave_out(seeds, why)
+            return
+        try:
+            failures = {e.identity.seed: e.failure for e in check.part.episodes()}
+        except CorruptPartError:
+            self._leave_out(seeds, "its part cannot be read")
+            return
+        for seed in seeds:
+            failure = failures.get(seed, "")
+            if not _may_fail_again(failure):
+                self._leave_out([seed], f"it failed because {failure}")
+        again = [seed for seed in seeds if _may_fail_again(failures.get(seed, ""))]
+        folder = self.folder / check.cell.key
+        for first, stop in chunks(again, check.cell.effort):
+            self.tasks.append(Task(check.cell, folder, first, stop, salt=check.salt))
+        self.stored.update(((check.cell.key, seed), check) for seed in again)
+
+    def run(self, workers: int) -> None:
+        """Run, and report every episode that is not repeated to the last bit."""
+        tasks = sorted(self.tasks, key=lambda task: -task.cell.effort * len(task.seeds))
+        self.progress.expect(task.load for task in tasks)
+        if not tasks:
+            return
+        with closing(execute(tasks, workers, self.progress, self.limits)) as finished:
+            for task, outcome in finished:
+                if outcome.lacks:
+                    self._leave_out(task.seeds, outcome.lacks, counted=True)
+                else:
+                    self._compare(task)
+
+    def _leave_out(self, seeds: Sequence[int], why: str, counted: bool = False) -> None:
+        self.report.notes[f"episode not run again: {why}"] += len(seeds)
+        if not counted:
+            self.progress.advance(len(seeds))
+
+    def _compare(self, task: Task) -> None:
+        check = self.stored[task.cell.key, task.first]
+        part = Part(task.folder, task.first, task.stop)
+        new = {_place(episode): episode for episode in _episodes(part)}
+        for old in _episodes(check.part):
+            if _place(old) not in new:
+                continue  # of another task; what a rehearsal lacks is found without running anybody
+            again = new[_place(old)]
+            if not (old.reproducible or again.reproducible):
+                why = "a clock decides what its navigator does"
+                self.report.notes[f"episode not run again: {why}"] += not old.identity.rehearsal
+                continue
+            self.report.counts["rerun"] += not old.identity.rehearsal
+            for name in ("digest", "failure", "reproducible", "remarks"):
+                left, right = getattr(old, name), getattr(again, name)
+                if left != right:
+                    text = f"{name} is {_short(left)}, run again {_short(right)}"
+                    self.report.find("rerun", check.place(old), text)
+        for suffix in (*FILES, SEAL):
+            part.path(suffix).unlink(missing_ok=True)
+
+
+def _episodes(part: Part) -> Iterator[Episode]:
+    yield from part.episodes()
+    yield from part.rehearsals()
+
+
+def _place(episode: Episode) -> tuple[int, int]:
+    return episode.identity.seed, episode.identity.rehearsal
+
+
+def _may_fail_again(failure: str) -> bool:
+    return not failure or failure.startswith(_TOLD)
+
+
+def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry | None, str]:
+    """(the same navigator as it is installed here, ""), or (None, why there is none).
+
+    Nothing that a stranger names by module is imported, and no program of theirs is started:
+    only what is registered here. ``cells`` have the sensors that it is asked about.
+    """
+    if packed and is_program(entry.spec):
+        return None, f"{entry.label} is a program, in somebody else's pack"
+    if packed and is_by_module(entry.spec):
+        return None, f"{entry.label} is named by its module, in somebody else's pack"
+    sensings = tuple(dict.fromkeys(sensing_of(cell.scenario) for cell in cells))
+    meeting = Meeting(sensings, entry.mode == ISOLATED)
+    try:
+        spec, where = {**entry.spec, "label": entry.label}, f"the navigator {entry.label!r}"
+        found = meeting.entry(spec, where)
+    except BenchnavError as error:
+        return None, f"{entry.label} cannot be made here: {_short(str(error))}"
+    if found.lacks:
+        return None, f"{entry.label} cannot be made here: {found.lacks}"
+    if found.hash != entry.hash:
+        return None, f"{entry.label} is another one here ({found.source} instead of {entry.source})"
+    if entry.source_hash and found.source_hash != entry.source_hash:
+        return None, f"{entry.label} has another source here"
+    return found, ""
+
+
+def all_installed(run: RunFolder, cells: Sequence[Cell]) -> Installed:
+    """Who of a run is installed here, and why others are not."""
+    packed = run.packed is not None
+    entries = {cell.entry.label: cell.entry for cell in cells}
+    return {label: installed(entry, packed, cells) for label, entry in entries.items()}
+
+
+def check_reasons(
+    run: RunFolder, cells: Sequence[Cell], entries: Installed, report: Report
+) -> None:
+    """Report cells that are n/a and need not be, or the other way round."""
+    said = {str(c["key"]): str(c.get("reason", "")) for c in run.manifest.cells}
+    for cell in cells:
+        label = cell.entry.label
+        entry, why = entries[label]
+        stored = said.get(cell.key, "")
+        if entry is None:
+            if stored:
+                report.notes[f"reason of a cell that is n/a: {why}"] += 1
+            continue
+        if entry.uses_map != cell.entry.uses_map:
+            where = f"{cell.scenario.identity}, {label}"
+            says = "uses" if entry.uses_map else "does not use"
+            report.find("rerun", where, f"the navigator says that it {says} the map")
+        if entry.training != cell.entry.training:
+            where = f"{cell.scenario.identity}, {label}"
+            what = f"training is {cell.entry.training}, but the navigator says {entry.training}"
+            report.find("rerun", where, what)
+        right = dataclasses.replace(cell, entry=entry).reason
+        report.counts["rerun n/a"] += bool(stored)
+        if right != stored:
+            where = f"{cell.scenario.identity}, {cell.track}, {label}"
+            report.find("rerun", where, f"n/a: {stored!r}, but the navigator says {right!r}")
+
+
+def _short(value: Any) -> str:
+    text = value if isinstance(value, str) else repr(value)
+    text = re.sub(r"\s+", " ", text)
+    return text if len(text) <= 120 else text[:117] + "..."

@@ -1,0 +1,215 @@
+"""Checks a whole run, part by part, in worker processes."""
+
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
+from multiprocessing import active_children, get_context
+from pathlib import Path
+
+from benchnav.errors import BenchnavError, StoreError
+from benchnav.metrics.declared import declared_metrics
+from benchnav.plugins import registrations
+from benchnav.processes.main_module import main_module
+from benchnav.processes.process_tree import end_with_parent
+from benchnav.runner.execute.progress import Progress
+from benchnav.runner.plan.installed_differences import caveats_of
+from benchnav.runner.plan.limits import Limits
+from benchnav.runner.plan.task import Measuring
+from benchnav.store.runs.manifest import Manifest, versions
+from benchnav.store.runs.pinned_run import changed_since, pinned, pinned_digest
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.system.temporary_folder import TemporaryFolder
+from benchnav.threads import core_count
+from benchnav.verify.completeness import covered
+from benchnav.verify.examination import Examination, examine
+from benchnav.verify.finding import Report
+from benchnav.verify.installed_source import compare_source
+from benchnav.verify.part_check import PartCheck
+from benchnav.verify.rebuilt_suite import restore
+from benchnav.verify.reference.fcl_check import require_referee
+from benchnav.verify.reference.sample import sampled
+from benchnav.verify.rerun import Rerun, all_installed, check_reasons
+
+VERIFIABLE = 3  # schema from which on a run holds all that this needs
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What to do beyond re-simulating."""
+
+    twin: int = 20  # episodes to be replayed through the slow twin
+    referee: bool = False  # judge every contact again with trimesh and python-fcl
+    rerun: bool = False  # run the navigators again
+
+
+def verify(
+    run: RunFolder,
+    wanted: Wanted = Wanted(),
+    *,
+    workers: int | None = None,
+    progress: Progress | None = None,
+) -> Report:
+    """Re-simulate a run and check everything in it.
+
+    Args:
+        run: the run; it is only read, as it is when this begins.
+        wanted: what to do beyond that.
+        workers: processes; None: as many as there are cores; 0: in this process.
+        progress: is told of every finished episode.
+
+    Raises:
+        StoreError: an older benchnav made the run, which did not keep what this needs.
+        MissingExtraError: the referee is wanted, and python-fcl or trimesh is not installed.
+    """
+    if wanted.referee:
+        require_referee()
+    told = progress if progress is not None else Progress()
+    run = pinned(run)
+    report = Report(content=pinned_digest(run))
+    with TemporaryFolder("verify") as root:
+        count = core_count() if workers is None else workers
+        tasks = tasks_of(run, root.path, wanted, report, guarded=count > 0)
+        episodes = sum(len(task.check.part.seeds) for task in tasks)
+        told.begin(episodes * (2 if wanted.rerun else 1), 0)
+        try:
+            fit = _examined(tasks, count, report, told)
+            if wanted.rerun:
+                _rerun(run, fit, root.path / "rerun", count, report, told)
+        finally:
+            told.end()
+    changed = changed_since(run)
+    if changed:
+        more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
+        report.find(
+            "changed", str(run.shown),
+            f"{changed[0]}{more} changed while the run was verified: verify it again once nothing"
+            " writes it",
+        )  # fmt: skip
+    report.sort()
+    return report
+
+
+def _examined(
+    tasks: Sequence[Examination], workers: int, report: Report, told: Progress
+) -> list[PartCheck]:
+    """The parts whose worlds could be drawn and read, after everything went to the report."""
+    fit = []
+    for task, part in _done(tasks, workers):
+        report.add(part)
+        told.advance(len(task.check.part.seeds))
+        if all(finding.kind not in ("seal", "world") for finding in part.findings):
+            fit.append(task.check)
+    return fit
+
+
+def _rerun(
+    run: RunFolder, checks: Sequence[PartCheck], folder: Path, workers: int, report: Report,
+    told: Progress,
+) -> None:  # fmt: skip
+    again = Rerun(folder, Limits.of(run.manifest.limits), report, told)
+    entries = all_installed(run, [check.cell for check in checks])
+    for check in checks:
+        again.add(check, entries[check.cell.entry.label])
+    again.run(workers)
+
+
+def tasks_of(
+    run: RunFolder, root: Path, wanted: Wanted, report: Report, *, guarded: bool = True
+) -> list[Examination]:
+    """Return what is to be examined of a pinned run; what its manifest shows goes to the report.
+
+    ``guarded``: metrics of plugins are measured in processes of their own.
+    """
+    if run.manifest.schema < VERIFIABLE:
+        raise StoreError(
+            f"A run must be of schema {VERIFIABLE} or later to be verified. {run.shown} is of"
+            f" schema {run.manifest.schema}: benchnav kept too little then. Run the suite again."
+        )
+    _note_versions(run, report)
+    suite = restore(run, root, report)
+    if suite is None:
+        return []
+    report.caveats += [caveat.text for caveat in caveats_of(run.manifest)]
+    report.claims = _claims(run.manifest) if report.clean else ""
+    entries = {cell.entry.label: cell.entry for cell in suite.cells}
+    report.sources += [compare_source(e, run.packed is not None) for e in entries.values()]
+    if wanted.rerun:
+        check_reasons(run, suite.cells, all_installed(run, suite.cells), report)
+    version = str(run.manifest.versions.get("benchnav", ""))
+    metrics = {name: metric.verifiable for name, metric in declared_metrics()[0].items()}
+    measuring = _measuring(run) if guarded else None
+    checks = [
+        PartCheck(cell, part, run.manifest.salt, suite.seeds.start, version, metrics, measuring)
+        for cell, part in covered(run, suite, report)
+    ]
+    checks.sort(key=lambda c: (c.cell.scenario.identity, c.part.first))  # they share worlds
+    chosen = sampled(checks, wanted.twin)
+    return [
+        Examination(check, tuple(seeds), wanted.referee)
+        for check, seeds in zip(checks, chosen, strict=True)
+    ]
+
+
+def _measuring(run: RunFolder) -> Measuring:
+    timeout = Limits.of(run.manifest.limits).timeout
+    return Measuring((), tuple(registrations()), main_module(), timeout)
+
+
+def _claims(manifest: Manifest) -> str:
+    """What stands in the manifest that nothing else of the run follows from."""
+    suite = manifest.suite
+    shard = f", shard {manifest.shard}" if manifest.shard else ""
+    return (
+        f"suite {suite['name']} at version {suite['version']}{shard}, limits"
+        f" {Limits.of(manifest.limits)}, titles and descriptions of scenarios, made on"
+        f" {manifest.created} by benchnav {manifest.versions.get('benchnav')} on"
+        f" {manifest.platform}"
+    )
+
+
+def _note_versions(run: RunFolder, report: Report) -> None:
+    here = versions()
+    for name, said in run.manifest.versions.items():
+        if name in here and here[name] != said:
+            report.versions.append(f"{name} {said} made the run; {here[name]} is here")
+
+
+def _done(tasks: Sequence[Examination], workers: int) -> Iterator[tuple[Examination, Report]]:
+    if workers == 0:
+        for task in tasks:
+            yield task, examine(task)
+        return
+    context = get_context("spawn")
+    with ProcessPoolExecutor(min(workers, max(len(tasks), 1)), context, _begin) as pool:
+        try:
+            yield from _collected(pool, tasks)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for process in active_children():
+                process.kill()
+            raise
+
+
+def _collected(
+    pool: Executor, tasks: Sequence[Examination]
+) -> Iterator[tuple[Examination, Report]]:
+    running: dict[Future[Report], Examination] = {pool.submit(examine, t): t for t in tasks}
+    try:
+        for future in as_completed(running):
+            yield running[future], future.result()
+    except BrokenProcessPool as error:
+        raise BenchnavError(
+            "Worker processes must stay alive; one was killed (stderr may say why, and memory"
+            " may be short). Try --workers 1."
+        ) from error
+
+
+def _begin() -> None:
+    """Of a worker: one core, Ctrl-C is the parent's, as is its end, and what is printed is talk."""
+    end_with_parent()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.environ["BENCHNAV_THREADS"] = "1"
+    os.dup2(2, 1)

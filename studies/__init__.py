@@ -1,0 +1,1 @@
+"""Studies: tables and pages that are computed once and kept in docs/."""

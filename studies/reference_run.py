@@ -1,0 +1,245 @@
+"""The reference run of a suite, and what is kept of it: ``python -m studies.reference_run RUN``.
+
+Executes the suite `standard` with ten seeds into the folder RUN (one that was broken off goes
+on), packs it beside itself, and writes into docs/leaderboard:
+
+* ``standard-1.md``: the page, with the tables over all scenarios;
+* ``standard-1.csv``: every record of the leaderboard, by the metrics of the page;
+* ``standard-1.json``: salt, hashes, versions, the pack's sha256, the digest of every episode;
+* ``standard-1-sample.bnrun``: a few of its scenarios with one seed, verified here and in CI.
+"""
+
+import argparse
+import csv
+import io
+import json
+import os
+from collections.abc import Iterator
+from datetime import datetime
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import pyarrow.parquet as pq
+
+from benchnav.cli.tables import board
+from benchnav.runner.execute.progress import progress
+from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.run import run_suite
+from benchnav.store.packs.pack import SUFFIX, content_digest, pack
+from benchnav.store.parts.part import EPISODES_FILE, REHEARSALS_FILE
+from benchnav.store.runs.reading import read_episodes
+from benchnav.store.runs.run_folder import RunFolder
+from benchnav.store.runs.scenario_files import sha256_of
+from benchnav.verify.verify import Wanted, verify
+from studies.paper.markdown import table
+
+SUITE = "standard"
+SEEDS = 10
+SALT = "0123456789abcdef0123456789abcdef"  # anybody's, so that anybody can run it again
+METRICS = ("success", "collided", "spl")
+SAMPLE = ("circle/antipodal:agents=8", "leaders/dynamic", "trap/u")
+DIGITS = 16  # of a digest that is kept
+
+
+def execute(folder: Path, seeds: int, scenarios: tuple[str, ...] = ()) -> RunFolder:
+    """Run the suite, or go on with it."""
+    wanted = Selection(scenarios=scenarios, seeds=str(seeds), salt=SALT)
+    run_suite(load_suite(SUITE, wanted), folder, progress=progress(quiet=False))
+    return RunFolder.open(folder)
+
+
+def digests(run: RunFolder) -> dict[str, dict[str, dict[str, list[str]]]]:
+    """Scenario → track → navigator → the first digits of each seed's digest."""
+    found: dict[str, dict[str, dict[str, list[str]]]] = {}
+    for episode in read_episodes(run.path):
+        who = episode.identity
+        cells = found.setdefault(who.scenario, {}).setdefault(who.track, {})
+        cells.setdefault(who.navigator, []).append(episode.digest[:DIGITS])
+    return found
+
+
+def lasted(run: RunFolder) -> float:
+    """[s] from its first to its last file."""
+    began = datetime.fromisoformat(run.manifest.created).timestamp()
+    seals = (path.stat().st_mtime for path in run.path.glob("parts/*/*.json"))
+    return max(seals) - began
+
+
+def facts(run: RunFolder, packed: Path, seconds: float) -> dict[str, Any]:
+    """What identifies the run, and what it took."""
+    manifest = run.manifest
+    return {
+        "suite": f"{manifest.suite['name']}@{manifest.suite['version']}",
+        "suite_hash": manifest.suite_hash,
+        "salt": manifest.salt,
+        "seeds": manifest.suite["seeds"],
+        "created": manifest.created,
+        "seconds": round(seconds),
+        "cores": len(os.sched_getaffinity(0)),
+        "platform": manifest.platform,
+        "versions": dict(manifest.versions),
+        "pack": {
+            "bytes": packed.stat().st_size,
+            "sha256": sha256_of(packed),
+            "content": content_digest(run),
+        },
+        "episodes": _rows(run, EPISODES_FILE),
+        "rehearsals": _rows(run, REHEARSALS_FILE),
+        "digests": {
+            scenario: {
+                track: {who: " ".join(found) for who, found in navigators.items()}
+                for track, navigators in tracks.items()
+            }
+            for scenario, tracks in digests(run).items()
+        },
+    }
+
+
+def _rows(run: RunFolder, suffix: str) -> int:
+    paths = (part.path(suffix) for part in run.parts())
+    return sum(pq.read_metadata(path).num_rows for path in paths if path.exists())
+
+
+def records(run: RunFolder) -> tuple[str, list[dict[str, str]]]:
+    """The leaderboard as CSV, and row by row."""
+    text = board.table([run], "csv", METRICS, recompute=False)
+    return text, list(csv.DictReader(io.StringIO(text)))
+
+
+def page(run: RunFolder, said: dict[str, Any], rows: list[dict[str, str]], note: str) -> str:
+    """The page, in Markdown."""
+    reasons = [cell["reason"] for cell in run.manifest.cells]
+    suite, packed = run.manifest.suite, said["pack"]
+    name = f"{suite['name']}-{suite['version']}"
+    lines = [
+        f"# The reference run of `{said['suite']}`",
+        "",
+        f"{len(suite['scenarios'])} scenarios × {len(suite['tracks'])} tracks ×"
+        f" {len(suite['navigators'])} navigators × {SEEDS} seeds of the test split, made and"
+        " written by `python -m studies.reference_run`. What uses no map ran once for all"
+        " tracks.",
+        "",
+        *table(
+            ["", ""],
+            [
+                ["episodes", f"{said['episodes']:,}, and {said['rehearsals']:,} rehearsals"],
+                ["cells", f"{reasons.count(''):,}; {len(reasons) - reasons.count(''):,} are n/a"],
+                ["begun", said["created"]],
+                ["took", f"{said['seconds'] / 60:.1f} minutes on {said['cores']} cores{note}"],
+                ["platform", said["platform"]],
+                ["versions", ", ".join(f"{k} {v}" for k, v in said["versions"].items())],
+                ["suite's hash", f"`{said['suite_hash']}`"],
+                ["salt", f"`{said['salt']}`"],
+                ["pack", f"{packed['bytes'] / 1e6:.0f} MB, sha256 `{packed['sha256']}`"],
+                ["its content", f"`{packed['content']}`"],
+                ["`benchnav verify`", f"of the sample: {said['verified']}"],
+            ],
+        ),
+        *_how(name, said),
+        "## Over all scenarios",
+        "",
+        *_overall(run),
+        "## Success by scenario",
+        "",
+        "Per cent of the evaluated agents, n/a as –. Intervals and the other metrics are in"
+        f" [{name}.csv]({name}.csv).",
+        "",
+    ]
+    for track in suite["tracks"]:
+        lines += [f"### {track}", "", *_matrix([r for r in rows if r["track"] == track])]
+    return "\n".join(lines)
+
+
+def _how(name: str, said: dict[str, Any]) -> Iterator[str]:
+    yield from (
+        "## Check it",
+        "",
+        f"- `benchnav run {SUITE} --seeds {SEEDS} --salt {said['salt']}` makes it again. Episodes"
+        f" have the digests of [{name}.json]({name}.json) wherever no clock decides; learned"
+        " navigators may differ on another kind of processor.",
+        f"- `benchnav verify {name}-sample.bnrun` checks a sample of it"
+        f" ([{name}-sample.bnrun]({name}-sample.bnrun): {', '.join(f'`{s}`' for s in SAMPLE)}, seed"
+        " 0) without running a navigator. CI does this, and runs some of its navigators again.",
+        f"- All 100 seeds: `benchnav run {SUITE} --out runs/{SUITE}`, which goes on where it was"
+        " broken off; `--shard I/N` and `benchnav merge` share it among machines.",
+        "",
+    )
+
+
+def _overall(run: RunFolder) -> Iterator[str]:
+    """The sections over all scenarios of the whole leaderboard."""
+    text = board.table([run], "markdown", METRICS, recompute=False)
+    for chapter in text.split("\n## "):
+        head, *sections = chapter.removeprefix("## ").split("\n### ")
+        kept = [s for s in sections if s.startswith("all scenarios")]
+        if kept:
+            yield f"### {head.strip()}"
+            yield ""
+        for section in kept:
+            title, _, rest = section.partition("\n")
+            yield f"#### {title}"
+            yield rest.rstrip()
+            yield ""
+
+
+def _matrix(rows: list[dict[str, str]]) -> list[str]:
+    """Success in per cent, scenarios × navigators."""
+    rows = [r for r in rows if r["metric"] == "success" and "/" in r["scenario"]]
+    who = list(dict.fromkeys(r["navigator"] for r in rows))
+    found = {(r["scenario"], r["role"], r["navigator"]): r["value"] for r in rows}
+    places = list(dict.fromkeys((r["scenario"], r["role"]) for r in rows))
+    cells = [
+        [f"{scenario}, {role}s", *(_percent(found.get((scenario, role, n), "")) for n in who)]
+        for scenario, role in places
+    ]
+    return table(["", *who], cells)
+
+
+def _percent(text: str) -> str:
+    return f"{100 * float(text):.0f}" if text not in ("", "nan") else "–"
+
+
+def keep_sample(out: Path, every: dict[str, Any]) -> str:
+    """Run the sample, see that it is one, verify it, pack it to ``out``; the verdict in words."""
+    with TemporaryDirectory() as folder:
+        run = execute(Path(folder) / "sample", 1, SAMPLE)
+        for scenario, tracks in digests(run).items():
+            for track, navigators in tracks.items():
+                for who, (first,) in navigators.items():
+                    if every[scenario][track][who].split()[0] != first:
+                        print(f"{scenario}, {track}, {who}: another episode than in the run")
+        report = verify(run, Wanted(), progress=progress(quiet=False))
+        for finding in report.few(20):
+            print(finding)
+        out.unlink(missing_ok=True)
+        pack(run, out)
+    return f"{len(report.findings)} findings. {'; '.join(report.checked)}"
+
+
+def main() -> None:
+    """Run, verify, pack, write."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
+    parser.add_argument("run", type=Path)
+    parser.add_argument("--out", type=Path, default=Path("docs/leaderboard"))
+    parser.add_argument("--seconds", type=float, help="that it took, if not in one go until now")
+    parser.add_argument("--note", default="", help="to be said beside that")
+    asked = parser.parse_args()
+    run = execute(asked.run, SEEDS)
+    seconds = lasted(run) if asked.seconds is None else asked.seconds
+    packed = asked.run.with_name(asked.run.name + SUFFIX)
+    packed.unlink(missing_ok=True)
+    pack(run, packed)
+    said = facts(run, packed, seconds)
+    text, rows = records(run)
+    name = f"{run.manifest.suite['name']}-{run.manifest.suite['version']}"
+    asked.out.mkdir(parents=True, exist_ok=True)
+    said["verified"] = keep_sample(asked.out / f"{name}-sample{SUFFIX}", said["digests"])
+    (asked.out / f"{name}.csv").write_text(text, encoding="utf-8")
+    (asked.out / f"{name}.json").write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
+    (asked.out / f"{name}.md").write_text(page(run, said, rows, asked.note), encoding="utf-8")
+    print(asked.out / f"{name}.md")
+
+
+if __name__ == "__main__":
+    main()
