@@ -200,12 +200,12 @@ def closure_of(spec):
 
 def test_what_ships_is_told_apart():
     orca = closure_of({"type": "orca"})
-    assert {"orca.kernel", "orca.navigator"} <= orca
+    assert {"controllers.orca.kernel", "controllers.orca.navigator"} <= orca
     straight = closure_of({"type": "straight-line"})
-    assert not any(name.startswith("orca") for name in straight)
+    assert not any(".orca" in name for name in straight)
     pair = {"type": "hierarchical", "planner": {"type": "navmesh"}, "controller": {"type": "dwa"}}
-    assert {"navmesh.funnel", "dwa.kernel"} <= closure_of(pair)
-    assert "recurrent_ppo.actor" in closure_of({"type": "map-orca-ppo"})
+    assert {"planners.navmesh.funnel", "controllers.dwa.kernel"} <= closure_of(pair)
+    assert "learned.recurrent_ppo.actor" in closure_of({"type": "map-orca-ppo"})
     assert not any(name.startswith("benchnav.") for name in closure_of(pair))
 
 
