@@ -8,7 +8,7 @@ PEERS := .venv-peers
 STEP := $(PYTHON) .ci/step.py
 PIP := $(BIN)/python -m pip install -c constraints.txt
 
-.PHONY: setup run test test-all wheels check lint types layers bench clean
+.PHONY: setup run test test-all soak wheels check lint types layers bench clean
 
 setup: $(READY)  ## .venv with everything, at the versions of constraints.txt
 
@@ -36,10 +36,13 @@ layers: $(READY)
 	$(BIN)/lint-imports
 
 test: check $(READY)  ## all checks, and all tests but the long ones
-	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal -m 'not long'
+	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal -m 'not long and not soak'
 
 test-all: check $(READY)  ## all checks and tests, as CI runs them
-	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal
+	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal -m 'not soak'
+
+soak: $(READY)  ## the same attacks and faults as in CI, with many more cases
+	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal -m soak
 
 wheels: $(READY)  ## the built wheel, on every Python that is found
 	$(BIN)/python .ci/try_wheels.py

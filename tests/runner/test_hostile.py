@@ -173,9 +173,17 @@ def test_only_its_own_episodes_fail(honest, where, what):
     _survives(honest, name)
 
 
-@pytest.mark.long
+HARD = ["endless", "hangs", "stops", "hogs", "kills_parent"]
+
+
 @pytest.mark.parametrize("where", WHERE)
-@pytest.mark.parametrize("what", [*QUICK, "endless", "hangs", "stops", "hogs", "kills_parent"])
+@pytest.mark.parametrize(
+    "what",
+    [
+        *(pytest.param(what, marks=pytest.mark.soak) for what in QUICK),
+        *(pytest.param(what, marks=pytest.mark.long) for what in HARD),
+    ],
+)
 def test_only_its_own_episodes_fail_whatever_it_does(honest, where, what):
     name = f"Hostile_{where}_{what}"
     if not (honest[0] / name).exists():

@@ -35,7 +35,7 @@ def test_changed_packs_are_read_or_refused(real):
     tried(real, 120)
 
 
-@pytest.mark.long
+@pytest.mark.soak
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="memory is watched in /proc")
 def test_thousands_of_changed_packs_are_read_or_refused(real):
     tried(real, 2000, 1000)
