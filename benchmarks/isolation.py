@@ -34,7 +34,7 @@ def measure() -> list[dict[str, object]]:
         modes = (here, replace(here, isolated=True))
         turns = [[rate(mode, worlds) for mode in modes] for _ in range(TURNS + 1)][1:]
         inside, apart = (max(column) for column in zip(*turns, strict=True))
-        process_pool.dismiss()
+        process_pool.stop_all()
         worlds_ = f"{count} worlds" if count > 1 else "one world"
         rows.append(
             {

@@ -1,4 +1,4 @@
-"""Array aliases and the axis alphabet that every docstring uses.
+"""Array type aliases, and the axis letters that every docstring uses.
 
 Axes: B worlds, A agents, R rays, K neighbours, E edges, M bodies (dynamic and
 re-placed static obstacles), P primitives (capsules), V vertices, T steps,
@@ -19,4 +19,4 @@ ByteArray = npt.NDArray[np.int8]
 BoolArray = npt.NDArray[np.bool_]
 AnyArray = npt.NDArray[Any]
 
-LARGEST = 1e100  # of a measured value: sums of squares of such values stay finite
+LARGEST = 1e100  # largest measured value: sums of squares of such values stay finite

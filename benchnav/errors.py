@@ -1,28 +1,28 @@
-"""The exception tree. Everything that a user can cause derives from one class.
+"""The exception tree. Every error that a user can cause derives from one class.
 
 BenchnavError
-├── UsageError               asked wrongly: an option, a name, a combination (exit status 2)
-├── InputError               a file is wrong; the text says file:line:key (exit status 2)
+├── UsageError               a wrong option, name or combination (exit status 2)
+├── InputError               a wrong file; the text names file:line:key (exit status 2)
 │   ├── ScenarioError        a scenario, suite or recipe file
 │   ├── MapError             an occupancy map, a .scen file
 │   └── MeshError            a mesh
 ├── UnsolvableError          a scenario that cannot be drawn
 ├── PluginError              a navigator, planner, controller, metric or scenario plugin
-│   ├── UnknownPluginError   no such name (the nearest names are given)
-│   ├── PluginConflictError  two distributions claim one name (both are named)
-│   ├── BrokenPluginError    the plugin fails to import (its cause is given)
-│   └── ConfigError          parameters that its Config refuses
-├── MissingExtraError        an optional dependency is not installed (the pip line is given)
-├── TrainingError            learning went wrong: a number that is no longer finite
-├── NavigatorError           a navigator raised, answered garbage, or broke its contract
-└── StoreError               what lies on disk
-    ├── NoRunError           there is no run where one was named (exit status 2)
+│   ├── UnknownPluginError   unknown name (the message lists the nearest names)
+│   ├── PluginConflictError  two distributions claim one name (the message names both)
+│   ├── BrokenPluginError    the plugin fails to import (the message gives the cause)
+│   └── ConfigError          the plugin's Config refuses the parameters
+├── MissingExtraError        an optional dependency is missing (the message gives the pip line)
+├── TrainingError            training failed: a number is not finite
+├── NavigatorError           a navigator raised, returned garbage, or broke its contract
+└── StoreError               wrong data on disk
+    ├── NoRunError           no run at the given path (exit status 2)
     ├── RunConflictError     the folder holds another suite's run, or another process writes it
-    └── CorruptPartError     a part is cut short, changed or missing
+    └── CorruptPartError     a part is truncated, changed or missing
         └── ForeignRowError  a part holds rows of another cell or seed
 
-Grammar of every message: what must be what; what came instead; the nearest right
-thing; where.
+Every message contains, in this order: what is wrong, what is allowed, what was given, where; then
+the cure.
 """
 
 from collections.abc import Iterable
@@ -30,15 +30,15 @@ from difflib import get_close_matches
 
 
 class BenchnavError(Exception):
-    """Base of everything that benchnav raises on purpose."""
+    """Base class of all errors that benchnav raises on purpose."""
 
 
 class UsageError(BenchnavError):
-    """Something was asked for in a way that cannot be done."""
+    """The request is not possible: a wrong option, name or combination."""
 
 
 class InputError(BenchnavError):
-    """A file says something that it may not say."""
+    """A file has a content that is not allowed."""
 
 
 class ScenarioError(InputError):
@@ -62,7 +62,7 @@ class PluginError(BenchnavError):
 
 
 class UnknownPluginError(PluginError):
-    """No plugin has this name."""
+    """No plugin has the given name."""
 
 
 class PluginConflictError(PluginError):
@@ -80,28 +80,28 @@ class ConfigError(PluginError):
 class MissingExtraError(BenchnavError):
     """An optional dependency is not installed."""
 
-    def __init__(self, what: str, extra: str) -> None:
-        super().__init__(f"{what} needs an extra: pip install 'benchnav[{extra}]'")
+    def __init__(self, feature: str, extra: str) -> None:
+        super().__init__(f"{feature} needs an extra: pip install 'benchnav[{extra}]'")
 
 
 class TrainingError(BenchnavError):
-    """Learning went wrong; what was reached before is kept."""
+    """Training failed; the result so far is kept."""
 
 
 class NavigatorError(BenchnavError):
-    """A navigator raised, or answered something that is not a command."""
+    """A navigator raised, or returned something that is not a command."""
 
 
 class StoreError(BenchnavError):
-    """Something on disk is not what it must be."""
+    """Something on disk is wrong."""
 
 
 class NoRunError(StoreError):
-    """There is no run where one was named."""
+    """There is no run at the given path."""
 
 
 class RunConflictError(StoreError):
-    """The run folder belongs to something else."""
+    """The run folder belongs to another run or process."""
 
 
 class CorruptPartError(StoreError):
@@ -109,11 +109,11 @@ class CorruptPartError(StoreError):
 
 
 class ForeignRowError(CorruptPartError):
-    """A part holds rows of another cell, or of a seed that is not its own."""
+    """A part holds rows of another cell, or of a seed that the cell does not have."""
 
 
 def named(name: str, text: str) -> BenchnavError:
-    """The error of this name with this text, as another process told of it."""
+    """Return the error class ``name`` with this text, as another process reported it."""
     kind = globals().get(name)
     if not (isinstance(kind, type) and issubclass(kind, BenchnavError)):
         kind = BenchnavError
@@ -123,6 +123,6 @@ def named(name: str, text: str) -> BenchnavError:
 
 
 def did_you_mean(name: str, known: Iterable[str]) -> str:
-    """``" Did you mean 'x' or 'y'?"`` for the nearest known names, or ``""``."""
+    """Return ``" Did you mean 'x' or 'y'?"`` for the nearest known names, or ``""``."""
     near = get_close_matches(name, list(known), n=2, cutoff=0.6)
     return f" Did you mean {' or '.join(repr(n) for n in near)}?" if near else ""

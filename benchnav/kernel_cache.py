@@ -1,8 +1,8 @@
-"""Compiled kernels on disk, one file for each signature, believed only if it is what was written.
+"""The on-disk cache of compiled kernels: one checked file per signature.
 
-Numba's own index of data files loses entries where several processes compile at once, raises on
-a damaged file, and runs machine code with a flipped bit. Here each file begins with the sha256
-of the rest and holds its whole key: anything else is compiled again and replaced.
+Numba's own index loses entries if several processes compile at once, raises on a damaged file,
+and runs machine code with a flipped bit. Here each file begins with the sha256 of the rest and
+holds its complete key. A file that fails this check is compiled again and replaced.
 """
 
 import hashlib
@@ -24,11 +24,11 @@ from numba.core.serialize import dumps
 SUFFIX = ".kernel"
 _TEMPORARY = ".writing-"
 _SUM = hashlib.sha256().digest_size
-_STALE = 3600.0  # [s] after which an unfinished file belongs to a process that was killed
+_STALE = 3600.0  # [s] age at which an unfinished file belongs to a killed process
 
 
 class KernelCache(FunctionCache):
-    """The compiled signatures of one function."""
+    """The cached signatures of one function."""
 
     def __init__(self, function: Callable[..., Any], folder: Path) -> None:
         self._name = repr(function)
@@ -40,14 +40,14 @@ class KernelCache(FunctionCache):
         self.enable()
 
     def load_overload(self, signature: Any, target: Any) -> Any:
-        """Return the compiled code; None where it must be compiled."""
+        """Return the compiled code; None if it must be compiled."""
         try:
             return super().load_overload(signature, target)
-        except Exception:  # whole, but not of use to this Numba: of another build, say
+        except Exception:  # an intact file that this Numba cannot use, such as one of another build
             return None
 
     def save_overload(self, signature: Any, compiled: Any) -> None:
-        """Keep the compiled code where it can be kept."""
+        """Save the compiled code if it can be cached."""
         if self._enabled and self._impl.check_cachable(compiled):
             key = self._index_key(signature, compiled.codegen)
             self._cache_file.save(key, self._impl.reduce(compiled))
@@ -58,32 +58,32 @@ class KernelCache(FunctionCache):
 
 
 class _Codec(CompileResultCacheImpl):
-    """What Numba keeps of a compiled function."""
+    """Converts a compiled function to the data that Numba stores."""
 
     def __init__(self) -> None:
-        """Files are found by `_Files`, and not from the place of the source."""
+        """Skip Numba's search by source location: `_Files` finds the files."""
 
     def check_cachable(self, compiled: Any) -> bool:
-        """Whether it can be used by another process."""
+        """Whether another process can use the compiled code."""
         whole = all(part.can_cache for part in compiled.lifted)
         return whole and not compiled.library.has_dynamic_globals
 
 
 @lru_cache
 def _digest_of(source: str) -> str:
-    """Return the sha256 of a source file: Numba's key leaves out the constants of a function."""
+    """Return the sha256 of a source file, as Numba's key ignores the constants of a function."""
     return hashlib.sha256(Path(source).read_bytes()).hexdigest()
 
 
 class _Files:
-    """A file for each key; what cannot be written is not kept."""
+    """One file per key; files that cannot be written are skipped."""
 
     def __init__(self, folder: Path, name: str) -> None:
         self._folder = folder
         self._name = name
 
     def load(self, key: object) -> object | None:
-        """Return what was saved for ``key``; None where nothing was, or it was damaged."""
+        """Return the data saved for ``key``; None if there is none or it is damaged."""
         try:
             raw = self._path(key).read_bytes()
         except OSError:
@@ -94,7 +94,7 @@ class _Files:
         return data if (version, kept) == (numba.__version__, key) else None
 
     def save(self, key: object, data: object) -> None:
-        """Write a whole file at once; nothing where the disk refuses."""
+        """Write a file atomically; do nothing if the disk refuses."""
         content = dumps((numba.__version__, key, data))
         path = self._path(key)
         with suppress(OSError):
@@ -112,7 +112,7 @@ class _Files:
                 Path(temporary).unlink(missing_ok=True)
 
     def flush(self) -> None:
-        """Forget every signature."""
+        """Delete every signature."""
         for path in self._folder.glob(f"{self._name}-*{SUFFIX}"):
             path.unlink(missing_ok=True)
 
@@ -122,7 +122,7 @@ class _Files:
 
 
 def drop_unfinished(folder: Path) -> None:
-    """Remove the files that processes which were killed did not finish."""
+    """Remove the unfinished files of killed processes."""
     for path in folder.glob(f"{_TEMPORARY}*"):
         with suppress(OSError):
             if time.time() - path.stat().st_mtime > _STALE:

@@ -1,12 +1,12 @@
-"""How this project compiles its kernels, and where the compiled code is kept.
+"""Compilation of this project's kernels, and the folder of the compiled code.
 
-No fastmath: only correctly rounded operations may touch the state. No interpreter
-lock, so that rows can be shared between threads. Division follows IEEE 754 (numpy's
-error model) instead of raising: a branch less at every division.
+No fastmath: only correctly rounded operations may touch the state. No global interpreter lock, so
+that threads can share rows. Division follows IEEE 754 (numpy's error model) instead of raising:
+this saves a branch per division.
 
-Numba notices when a cached kernel's own file changes, but not when a kernel that it
-calls does, in another file; it would go on running the old code. So the cache lives
-in a folder named after everything that kernels of a package are made of.
+Numba notices a change of a cached kernel's own file, but not of a kernel that it calls in another
+file, and would run the old code. Therefore the name of the cache folder is a digest of all kernel
+sources of a package.
 """
 
 import hashlib
@@ -29,11 +29,11 @@ from benchnav.system.user_folders import UserFolder, user_cache
 
 F = TypeVar("F", bound=Callable[..., Any])
 _HERE = Path(__file__).parent
-_CONSTANTS = ("arena", "episode")  # packages whose enumerations kernels freeze
+_CONSTANTS = ("arena", "episode")  # packages with enumerations that kernels compile in
 
 
 def kernel(function: F) -> F:
-    """Compile once per signature, cached on disk where there is a folder for it."""
+    """Compile once per signature, and cache on disk if there is a cache folder."""
     folder = cache_folder(function.__module__.partition(".")[0])
     compiled: Any = njit(function, nogil=True, error_model="numpy")
     if folder is not None and Path(function.__code__.co_filename).is_file():
@@ -42,9 +42,9 @@ def kernel(function: F) -> F:
 
 
 def inlined(function: F) -> F:
-    """A part of a kernel, put into its callers before they are compiled.
+    """Compile a part of a kernel that is inlined into its callers.
 
-    For what is called once per agent with many arrays: passing an array costs more than
+    For code that runs once per agent with many arrays: passing an array costs more than
     reading it.
     """
     compiled: F = njit(function, inline="always", error_model="numpy")
@@ -53,7 +53,7 @@ def inlined(function: F) -> F:
 
 @lru_cache
 def kernels_name(package: str) -> str:
-    """Name the state of the code that a top-level package's kernels are compiled from."""
+    """Return a digest name of the code from which a top-level package's kernels are compiled."""
     digest = hashlib.blake2b(numba.__version__.encode(), digest_size=8)
     source = getattr(sys.modules.get(package), "__file__", None)
     roots = {_HERE, Path(source).parent if source else _HERE}
@@ -67,7 +67,7 @@ def kernels_name(package: str) -> str:
 
 @lru_cache
 def cache_folder(package: str) -> Path | None:
-    """Return where compiled kernels of a top-level package are kept; None where nowhere."""
+    """Return the folder of a top-level package's compiled kernels; None if there is none."""
     base = cache_base().path
     if base is None:
         return None
@@ -75,16 +75,16 @@ def cache_folder(package: str) -> Path | None:
     if folder.is_dir():
         drop_unfinished(folder)
     else:
-        _forget_old(base)
+        _remove_old(base)
     return folder
 
 
 def cache_base() -> UserFolder:
     """Return the folder of all compiled kernels: ``$NUMBA_CACHE_DIR``, or the user's cache."""
-    named = str(vars(config)["CACHE_DIR"])
-    if not named:
+    requested = str(vars(config)["CACHE_DIR"])
+    if not requested:
         return user_cache()
-    base = Path(named).absolute()
+    base = Path(requested).absolute()
     try:
         base.mkdir(parents=True, exist_ok=True)
         if os.access(base, os.R_OK | os.W_OK | os.X_OK):
@@ -92,12 +92,12 @@ def cache_base() -> UserFolder:
         cause = "Permission denied"
     except OSError as error:
         cause = str(error.strerror)
-    return UserFolder(user_cache().path, f"NUMBA_CACHE_DIR={named} cannot be used ({cause})")
+    return UserFolder(user_cache().path, f"NUMBA_CACHE_DIR={requested} cannot be used ({cause})")
 
 
-def _forget_old(base: Path) -> None:
-    """Remove the kernels of states of the code that were not used for a month."""
+def _remove_old(base: Path) -> None:
+    """Remove kernel folders that were not used for a month."""
     for folder in base.glob("kernels-*"):
-        with suppress(OSError):  # another process forgets it at the same time
+        with suppress(OSError):  # another process removes it at the same time
             if time.time() - folder.stat().st_mtime > 30 * 86400:
                 shutil.rmtree(folder, ignore_errors=True)

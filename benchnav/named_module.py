@@ -1,4 +1,4 @@
-"""What ``module:attribute`` names, in installed modules and in those of the current folder."""
+"""Resolve ``module:attribute``, in installed modules and in modules of the current folder."""
 
 import os
 import sys
@@ -12,20 +12,20 @@ from typing import Any
 
 from benchnav.errors import PluginError, did_you_mean
 
-_stand_in = ""  # the folder that stands for the current one; "" for none
+_stand_in = ""  # a folder to use instead of the current one; "" for none
 
 
 def load_by_module(name: str) -> Any:
-    """Return what ``module:attribute`` names; the module may lie in the current folder.
+    """Return the object ``module:attribute``; the module may lie in the current folder.
 
-    Raises PluginError where there is no such module or attribute, and what importing raises.
+    Raises PluginError if there is no such module or attribute, and any error of the import.
     """
     module, _, attribute = name.partition(":")
     if not (module and attribute):
-        raise PluginError("it must be a name, or module:Class.")
+        raise PluginError("it must be a plugin name, or module:Class.")
     if module.endswith(".py") or not all(module.split(".")) or os.sep in module:
         plain = Path(module.removesuffix(".py")).name
-        raise PluginError(f"a module is named without folder and ending: {plain}:{attribute}.")
+        raise PluginError(f"write a module without folder and ending: {plain}:{attribute}.")
     with current_folder_importable():
         try:
             found = import_module(module)
@@ -41,9 +41,9 @@ def load_by_module(name: str) -> Any:
 
 @contextmanager
 def current_folder_importable() -> Iterator[None]:
-    """Let modules of the current folder be imported for as long as this lasts.
+    """Make modules of the current folder importable inside this context.
 
-    The folder comes last, so that no file in it replaces a standard or installed module.
+    The folder comes last, so that no file in it shadows a standard or installed module.
     """
     folder = str(current_folder())
     if folder in sys.path:
@@ -59,14 +59,14 @@ def current_folder_importable() -> Iterator[None]:
 
 
 def search_in(folder: str) -> None:
-    """Let ``folder`` stand for the current one: this process works for one that stands there."""
+    """Use ``folder`` as the current folder: this process works for another one started there."""
     global _stand_in
     _stand_in = folder
 
 
 def current_folder() -> Path:
-    """Return the folder in which modules are looked for after all others."""
-    with suppress(OSError):  # it may have been removed
+    """Return the folder that is searched for modules after all others."""
+    with suppress(OSError):  # the current folder may have been removed
         return Path(_stand_in) if _stand_in else Path.cwd()
     return Path()
 
@@ -76,7 +76,7 @@ def _no_module(module: str, attribute: str) -> str:
     near = did_you_mean(first, [path.stem for path in folder.glob("*.py")])
     return (
         f"no module {module!r} is installed or lies in {folder}.{near} Start benchnav in the"
-        f" folder that holds {first}.py, or name that folder in PYTHONPATH."
+        f" folder of {first}.py, or add that folder to PYTHONPATH."
     )
 
 

@@ -1,9 +1,9 @@
-"""Kernels over a range of rows, shared between threads.
+"""Run kernels over a range of rows in several threads.
 
 A kernel is compiled once, without the interpreter lock, as ``kernel(low, high, *args)``
 and writes only the rows low:high, so the result does not depend on the number of
-threads. This costs half the compile time of Numba's own parallel loops, and has no
-threading layer that could disagree with forked or embedded processes.
+threads. This takes half the compile time of Numba's own parallel loops, and has no
+threading layer that could conflict with forked or embedded processes.
 """
 
 import os
@@ -15,7 +15,7 @@ from typing import Any
 
 
 def core_count() -> int:
-    """Cores that this process may run on, or those of the machine where no system call tells."""
+    """Return the number of cores this process may use, or of the machine if that is unknown."""
     if hasattr(os, "sched_getaffinity"):  # Linux
         return len(os.sched_getaffinity(0))
     count = getattr(os, "process_cpu_count", os.cpu_count)  # the former from Python 3.13
@@ -23,7 +23,7 @@ def core_count() -> int:
 
 
 def thread_count() -> int:
-    """Threads that kernels use: BENCHNAV_THREADS, or the cores this process may run on."""
+    """Return the number of threads for kernels: BENCHNAV_THREADS, or `core_count`."""
     return int(os.environ.get("BENCHNAV_THREADS", "0")) or core_count()
 
 
@@ -33,7 +33,7 @@ def _pool(threads: int) -> ThreadPoolExecutor:
 
 
 def run_rows(kernel: Callable[..., None], rows: int, *args: Any, least: int = 16) -> None:
-    """``kernel(low, high, *args)`` over range(rows), in threads of at least ``least`` rows each."""
+    """Run ``kernel(low, high, *args)`` over range(rows), in threads of ``least`` rows or more."""
     parts = min(thread_count(), rows // least)
     if parts <= 1:
         kernel(0, rows, *args)

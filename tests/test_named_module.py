@@ -52,7 +52,7 @@ def test_a_file_here_replaces_no_module_that_is_installed(folder):
 @pytest.mark.parametrize(
     ("name", "cause"),
     [
-        ("nowhere_here:Mine", "Start benchnav in the folder that holds nowhere_here.py"),
+        ("nowhere_here:Mine", "Start benchnav in the folder of nowhere_here.py"),
         ("spelt_herr:Mine", "Did you mean 'spelt_here'"),
         ("spelt_here:Mime", "has no 'Mime'. Did you mean 'Mine'"),
         ("spelt_here.py:Mine", "without folder and ending: spelt_here:Mine"),

@@ -1,1 +1,1 @@
-"""What a drawn world is made of: solids, bodies, agents, clock and rules."""
+"""The parts of a drawn world: solids, bodies, agents, clock and rules."""

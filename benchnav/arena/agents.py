@@ -7,14 +7,14 @@ from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 
 
 class Dynamics(IntEnum):
-    """What an agent's body can do with a command."""
+    """The kinematics of an agent's body."""
 
     HOLONOMIC = 0
     UNICYCLE = 1
 
 
 class Role(IntEnum):
-    """Roles are scored apart."""
+    """The role of an agent; roles are scored separately."""
 
     LEADER = 0
     FOLLOWER = 1
@@ -22,7 +22,7 @@ class Role(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Agents:
-    """Who starts where, wants what, and is driven by whom."""
+    """Starts, goals, bodies and drivers of the agents."""
 
     start: FloatArray  # (A, 2) [m]
     heading: FloatArray  # (A,) [rad] at the start
@@ -41,6 +41,6 @@ class Agents:
 
     @property
     def evaluated(self) -> BoolArray:
-        """(A,) True for the agents that the evaluated navigator drives."""
-        mine: BoolArray = self.driver == 0
-        return mine
+        """(A,) True for the agents of the evaluated navigator."""
+        evaluated: BoolArray = self.driver == 0
+        return evaluated

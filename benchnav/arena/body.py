@@ -1,6 +1,6 @@
-"""Bodies: what moves or is moved by itself and never yields.
+"""Bodies: obstacles that move, or that are moved during the episode, and never yield.
 
-A dynamic obstacle follows a motion law; a static obstacle may be re-placed once
+A dynamic obstacle follows a motion law; a static obstacle may be relocated once
 within the episode. Bodies translate and do not turn.
 """
 
@@ -18,34 +18,32 @@ class LawKind(IntEnum):
 
     TRACK = 0  # piecewise linear in time: back-and-forth, waypoint loop, recorded track
     CIRCLE = 1  # constant angular speed around a centre
-    RELOCATE = 2  # stands, and stands elsewhere from a given time on, once that place is free
+    RELOCATE = 2  # at rest; moves to a second place at a given time, or once that place is free
 
 
 @dataclass(frozen=True, eq=False)
 class Law:
-    """A motion law with its numbers drawn.
+    """A motion law with drawn numbers.
 
-    Position at time t [s] is a pure function of t, except RELOCATE, which waits until
+    The position at time t [s] is a pure function of t, except for RELOCATE, which waits until
     its new place is free.
     """
 
     kind: LawKind
     times: FloatArray  # (W,) [s], rising from 0. CIRCLE: [angular speed rad/s]. RELOCATE: [0, time]
     points: FloatArray  # (W, 2) [m]. CIRCLE: [centre, (radius, phase angle)]. RELOCATE: [old, new]
-    periodic: bool = (
-        False  # TRACK: starts again after its last time (else it stays at its last point)
-    )
+    periodic: bool = False  # TRACK: repeats after its last time (else it stays at its last point)
     phase: float = 0.0  # TRACK: seconds added to the clock
 
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """A solid centred at the origin, and the law that carries it."""
+    """A solid centred at the origin, and its motion law."""
 
     solid: Solid
     law: Law
 
 
 def still(position: FloatArray) -> Law:
-    """A law that stays at ``position`` (2,) [m]."""
+    """Return a law that stays at ``position`` (2,) [m]."""
     return Law(LawKind.TRACK, np.zeros(1), np.asarray(position, float).reshape(1, 2))

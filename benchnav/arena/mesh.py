@@ -1,4 +1,4 @@
-"""A triangle mesh that stands in an arena, kept beside its cross-section.
+"""A triangle mesh in an arena, in addition to its cross-section.
 
 Sensing and contact use the cross-section (a planar solid); the mesh itself is
 for the second, three-dimensional collision checker.

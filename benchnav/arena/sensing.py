@@ -1,4 +1,4 @@
-"""What the agents of a world may perceive: the sensors and their limits."""
+"""The sensors of the agents of a world, and their limits."""
 
 from dataclasses import dataclass
 
@@ -31,7 +31,7 @@ class EdgeSensor:
 
 @dataclass(frozen=True)
 class Sensing:
-    """The sensors of every agent of a world; None where it has none of that kind."""
+    """The sensors of every agent of a world; None for a missing kind."""
 
     rays: RaySensor | None
     neighbours: NeighbourSensor | None

@@ -1,10 +1,10 @@
-"""Solids: the one geometry that is sensed, touched and mapped.
+"""Solids: the one geometry for sensing, contact and maps.
 
 A solid is either a disc or a set of closed loops whose interior lies to the
 *left* of every edge: outer boundaries run counter-clockwise, holes and the
-inside of a walled arena clockwise. A thin wall is a loop that runs there and
-back. Kernels see nothing but capsules: a segment with a radius, where a disc is
-a capsule of length zero and an edge one of radius zero.
+inside of a walled arena clockwise. A thin wall is a loop that runs forth and
+back. Kernels use capsules only: a segment with a radius. A disc is
+a capsule of length zero, and an edge is a capsule of radius zero.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from benchnav.arrays import FloatArray, IntArray
 
 
 class Kind(IntEnum):
-    """What a ray meets or a body touches."""
+    """The kind of object that a ray hits or a body touches."""
 
     NOTHING = 0
     AGENT = 1
@@ -29,23 +29,23 @@ class Kind(IntEnum):
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """One wall, static obstacle, or the shape of a body (then centred at its origin)."""
+    """A wall, a static obstacle, or the shape of a body (then centred at its origin)."""
 
     kind: Kind
     loops: tuple[
         FloatArray, ...
-    ] = ()  # each (V, 2) [m], solid to the left, not repeated at its end
+    ] = ()  # each (V, 2) [m], solid to the left; the first vertex is not repeated at the end
     center: tuple[float, float] = (0.0, 0.0)  # of a disc [m]
-    radius: float = 0.0  # of a disc [m]; 0 where loops say the shape
+    radius: float = 0.0  # of a disc [m]; 0 if loops define the shape
 
     @property
     def is_disc(self) -> bool:
-        """True where the shape is a disc."""
+        """Whether the shape is a disc."""
         return not self.loops
 
     @cached_property
     def capsules(self) -> FloatArray:
-        """(P, 5) x0, y0, x1, y1, radius, edges in loop order."""
+        """(P, 5) x0, y0, x1, y1, radius; edges in loop order."""
         if self.is_disc:
             return np.array([[*self.center, *self.center, self.radius]])
         edges = np.zeros((sum(len(loop) for loop in self.loops), 5))
@@ -60,20 +60,20 @@ class Solid:
 
     @property
     def bounding_radius(self) -> float:
-        """Radius [m] of the smallest circle around the origin (bodies) that holds the shape."""
+        """Radius [m] of the smallest circle around the origin that contains the shape."""
         c = self.capsules
         reach = np.maximum(np.hypot(c[:, 0], c[:, 1]), np.hypot(c[:, 2], c[:, 3])) + c[:, 4]
         return float(reach.max())
 
     def moved(self, offset: FloatArray) -> "Solid":
-        """The same shape, translated by ``offset`` (2,) [m]."""
+        """Return the same shape, translated by ``offset`` (2,) [m]."""
         x, y = float(offset[0]), float(offset[1])
         loops = tuple(loop + np.array([x, y]) for loop in self.loops)
         return Solid(self.kind, loops, (self.center[0] + x, self.center[1] + y), self.radius)
 
 
 def edge_chain(solid: Solid) -> tuple[IntArray, IntArray]:
-    """Previous and next capsule (P,), (P,) of every capsule along its loop; -1 for a disc."""
+    """Return the previous and next capsule (P,), (P,) in each capsule's loop; -1 for a disc."""
     if solid.is_disc:
         return np.array([-1]), np.array([-1])
     before, after, first = [], [], 0

@@ -1,7 +1,7 @@
-"""A drawn world: concrete geometry, agents and clock of one episode, before it starts.
+"""A drawn world: geometry, agents and clock of one episode before it starts.
 
-It is what a scenario generates for one seed, what the simulator steps, and what
-an episode records. It does not know which scenario it came from.
+A scenario generates it for one seed, the simulator steps it, and an episode
+records it. It does not know its scenario.
 """
 
 from dataclasses import dataclass
@@ -16,22 +16,22 @@ from benchnav.arrays import BoolArray
 
 
 class ContactRule(IntEnum):
-    """What touching something does to an agent."""
+    """The effect of a contact on an agent."""
 
     SLIDE = 0  # blocked along the contact normal, free along the tangent
-    STOP = 1  # stands until its next decision
+    STOP = 1  # stands still until its next decision
     END = 2  # its attempt ends
 
 
 class Afterwards(IntEnum):
-    """What becomes of an agent that arrived or ended."""
+    """What happens to an agent's body after it arrived or its attempt ended."""
 
     VANISH = 0
     STAY = 1
 
 
 class Charge(IntEnum):
-    """Who is charged when an agent that arrived or ended, and stayed, is hit."""
+    """Which agent is charged if an agent hits one that arrived or ended, and stayed."""
 
     HITTER = 0
     BOTH = 1
@@ -44,17 +44,17 @@ class Clock:
     dt: float  # between decisions
     substeps: int  # integration steps within one decision
     steps: int  # decisions until the horizon
-    decision_budget: float | None = None  # [s] that a decision may take; scored, not enforced
+    decision_budget: float | None = None  # [s] allowed for a decision; scored, not enforced
 
     @property
     def horizon(self) -> float:
-        """[s]"""
+        """Duration of the episode [s]."""
         return self.steps * self.dt
 
 
 @dataclass(frozen=True)
 class Rules:
-    """What counts as arriving, and what contacts do."""
+    """The conditions of arrival, and the effects of contacts."""
 
     goal_tolerance: float  # [m] between centre and goal
     contact: ContactRule
@@ -65,27 +65,27 @@ class Rules:
 
 @dataclass(frozen=True, eq=False)
 class World:
-    """Everything that the simulator needs to start an episode."""
+    """The complete input of the simulator for one episode."""
 
     bounds: tuple[float, float, float, float]  # xmin, ymin, xmax, ymax [m]
-    solids: tuple[Solid, ...]  # what never moves within the episode; walls first
-    bodies: tuple[Body, ...]  # dynamic obstacles, then static ones that are re-placed within it
+    solids: tuple[Solid, ...]  # immobile within the episode; walls first
+    bodies: tuple[Body, ...]  # dynamic obstacles, then static ones that are relocated within it
     agents: Agents
     teams: tuple[str, ...]
-    sees: BoolArray  # (teams, teams): sees[i, j] is False where team i ignores team j
+    sees: BoolArray  # (teams, teams): sees[i, j] is False if team i ignores team j
     clock: Clock
     rules: Rules
     sensing: Sensing
     stale_solids: tuple[Solid, ...] | None = (
-        None  # as they stood before they moved; None: they did not
+        None  # the solids before they were moved; None: they were not moved
     )
     measurement_area: tuple[float, float, float, float] | None = (
-        None  # where density is measured [m]
+        None  # the area of density measurements [m]
     )
-    meshes: tuple[Mesh, ...] = ()  # of the solids that were cut from meshes
-    redraws: int = 0  # draws that were thrown away because they were not solvable
+    meshes: tuple[Mesh, ...] = ()  # the meshes whose cross-sections are among the solids
+    redraws: int = 0  # unsolvable draws that were rejected
 
     @property
     def relocates(self) -> bool:
-        """True where static geometry moves within the episode."""
+        """Whether static geometry moves within the episode."""
         return any(body.solid.kind == Kind.STATIC for body in self.bodies)

@@ -1,4 +1,4 @@
-"""Worlds from scenarios: (scenario, split, seed) → World, a pure function."""
+"""Build worlds from scenarios: (scenario, split, seed) → World, a pure function."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -32,14 +32,14 @@ _LAYOUT, _STATIC, _ELSEWHERE, _DYNAMIC, _TEAM, _BODY = range(6)  # streams of on
 
 
 def build(scenario: Scenario, split: str, seed: int) -> World:
-    """The world of ``scenario`` for ``seed`` ≥ 0 of ``split`` (train, validation or test).
+    """Return the world of ``scenario`` for ``seed`` ≥ 0 of ``split`` (train, validation or test).
 
-    Every agent's goal can be reached from its start by its disc, in every arrangement
-    of the static obstacles; draws for which that fails are thrown away and counted.
+    Every agent's disc can reach its goal from its start, in every arrangement
+    of the static obstacles; draws that fail this are rejected and counted.
 
     Raises:
-        UsageError: no such split, or a negative seed.
-        UnsolvableError: 100 draws were thrown away; says what found no place.
+        UsageError: an unknown split, or a negative seed.
+        UnsolvableError: 100 draws were rejected; the message names what found no place.
         InputError: a file that the scenario names is wrong.
     """
     if split not in SPLITS:
@@ -62,12 +62,12 @@ def build(scenario: Scenario, split: str, seed: int) -> World:
     worst = "; ".join(f"{text} ({counted(n, 'draw')})" for text, n in reasons.most_common(3))
     raise UnsolvableError(
         f"{scenario.identity}, split {split}, seed {seed}: no world could be drawn in"
-        f" {MAX_ATTEMPTS} draws: {worst}.{_said_of_teams(scenario, failed)}"
+        f" {MAX_ATTEMPTS} draws: {worst}.{_team_message(scenario, failed)}"
     )
 
 
-def _said_of_teams(scenario: Scenario, failed: Mapping[tuple[int, Part], Fault]) -> str:
-    """Of teams whose members found no start or goal: where that stands, and the cure."""
+def _team_message(scenario: Scenario, failed: Mapping[tuple[int, Part], Fault]) -> str:
+    """Describe the starts and goals of teams that found no place: where, and the cure."""
     lines = []
     for (i, part), fault in sorted(failed.items()):
         team = scenario.teams[i]
@@ -75,8 +75,8 @@ def _said_of_teams(scenario: Scenario, failed: Mapping[tuple[int, Part], Fault])
         text = f"\n{scenario.where(('teams', i, part))} of {team.name!r}"
         if fault == "unreachable":
             lines.append(
-                f"{text} is walled off from the start: no way between them is {2 * radius:g} m"
-                " wide, as the agents are. Move it, or open the walls."
+                f"{text} is walled off from the start: no path between them is {2 * radius:g} m"
+                " wide, which the agents need. Move it, or open the walls."
             )
         elif fault == "blocked":
             lines.append(
@@ -93,19 +93,19 @@ def _said_of_teams(scenario: Scenario, failed: Mapping[tuple[int, Part], Fault])
 
 
 def _room(scenario: Scenario, start: RegionStart, radius: float) -> str:
-    """How many agents fit at the most."""
+    """Describe how many agents fit at most."""
     margin = radius if scenario.walled else 0.0
     gap = start.separation
     room = most_that_fit(start.region, scenario.bounds, 2.0 * radius + gap, margin)
     return (
         f"holds at most {counted(room, 'agent')} of radius {radius:g} m that are {gap:g} m apart,"
-        " packed closely and with nothing else there; drawn at random, about half as many find"
-        " a place."
+        " densely packed and without other objects; at random places, about half as many"
+        " fit."
     )
 
 
 class _Draw:
-    """One attempt. Every part draws from a stream of its own, undisturbed by the others."""
+    """One attempt. Every part draws from its own random stream, independent of the others."""
 
     def __init__(self, prepared: Prepared, split: int, seed: int, attempt: int) -> None:
         self.prepared, self.scenario = prepared, prepared.scenario
@@ -149,7 +149,7 @@ class _Draw:
         )
 
     def given_bodies(self) -> list[list[Body]]:
-        """Of every group whose places the scenario fixes; empty for the others."""
+        """Return the bodies of each group with fixed places; empty for the other groups."""
         return [
             fixed_bodies(group, self.scenario.folder, self.stream(_DYNAMIC, i))
             if is_fixed(group)
@@ -159,7 +159,7 @@ class _Draw:
 
     def pieces(self, structure: Structure, given: list[list[Body]]) -> list[Piece]:
         groups = self.scenario.static
-        keep_free = self.prepared.kept_free([body for bodies in given for body in bodies])
+        keep_free = self.prepared.fixed_barrier([body for bodies in given for body in bodies])
         return draw_pieces(
             groups, self.scenario.bounds, structure.wall, keep_free,
             self.streams(_STATIC, len(groups)), self.streams(_ELSEWHERE, len(groups)),
@@ -201,7 +201,7 @@ class _Draw:
             except NoPlaceError as reason:
                 reason.team = i
                 raise
-        return _assembled(scenario, crowd, columns)
+        return _assemble(scenario, crowd, columns)
 
 
 def _with(wall: Barrier, solids: Sequence[object]) -> Barrier:
@@ -209,7 +209,7 @@ def _with(wall: Barrier, solids: Sequence[object]) -> Barrier:
 
 
 def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, FloatArray]:
-    """The numbers of a team's agents, each (count,)."""
+    """Draw the numbers of a team's agents, each (count,)."""
     top = draw_numbers(team.max_speed, count, rng)
     preferred = team.preferred_speed
     heading = 0.0 if team.heading == "goal" else team.heading
@@ -224,7 +224,7 @@ def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, Floa
     }
 
 
-def _assembled(scenario: Scenario, crowd: Crowd, columns: list[dict[str, FloatArray]]) -> Agents:
+def _assemble(scenario: Scenario, crowd: Crowd, columns: list[dict[str, FloatArray]]) -> Agents:
     sizes = [len(column["radius"]) for column in columns]
     entry = np.repeat(np.arange(len(sizes)), sizes)
     names = _names(scenario.teams)
@@ -252,7 +252,7 @@ def _assembled(scenario: Scenario, crowd: Crowd, columns: list[dict[str, FloatAr
 
 
 def _names(teams: Sequence[Team]) -> tuple[str, ...]:
-    """Of teams, each once: leaders and followers of one name are one team."""
+    """Return the team names without duplicates: leaders and followers of one name are one team."""
     return tuple(dict.fromkeys(team.name for team in teams))
 
 
@@ -263,13 +263,13 @@ def _sees(teams: Sequence[Team]) -> BoolArray:
 
 
 def clock_of(scenario: Scenario) -> Clock:
-    """The clock of every world of ``scenario``."""
+    """Return the clock of every world of ``scenario``."""
     clock = scenario.clock
     return Clock(clock.dt, clock.substeps, clock.steps, clock.decision_budget)
 
 
 def rules_of(scenario: Scenario) -> Rules:
-    """The rules of every world of ``scenario``."""
+    """Return the rules of every world of ``scenario``."""
     rules = scenario.rules
     return Rules(
         rules.goal_tolerance,
@@ -281,7 +281,7 @@ def rules_of(scenario: Scenario) -> Rules:
 
 
 def sensing_of(scenario: Scenario) -> Sensing:
-    """The sensors in every world of ``scenario``."""
+    """Return the sensors in every world of ``scenario``."""
     s = scenario.sensing
     return Sensing(
         None if s.rays is None else RaySensor(**s.rays.model_dump()),

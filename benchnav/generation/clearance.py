@@ -1,4 +1,4 @@
-"""How far shapes are from solids: the one test that all placement uses."""
+"""Distances from shapes to solids: the one test for all placement."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -12,15 +12,15 @@ from benchnav.kernels import kernel
 
 
 class Barrier(NamedTuple):
-    """Solids as kernels read them."""
+    """Solids as arrays for kernels."""
 
     capsules: FloatArray  # (P, 5) x0, y0, x1, y1, radius
     first: IntArray  # (S+1,) capsules of solid s are first[s]:first[s+1]
-    hollow: BoolArray  # (S,) True where the solid is what lies outside its loops
+    hollow: BoolArray  # (S,) True if the solid is the outside of its loops
 
 
 def barrier(solids: Sequence[Solid]) -> Barrier:
-    """The solids as one barrier."""
+    """Return the solids as one barrier."""
     parts = [solid.capsules for solid in solids]
     first = np.zeros(len(parts) + 1, np.int64)
     np.cumsum([len(p) for p in parts], out=first[1:])
@@ -30,13 +30,13 @@ def barrier(solids: Sequence[Solid]) -> Barrier:
 
 def _hollow(solid: Solid) -> bool:
     if solid.kind != Kind.WALL or solid.is_disc:
-        return False  # obstacles are never what lies outside their loops
+        return False  # an obstacle is never the outside of its loops
     c = solid.capsules
     return float(np.dot(c[:, 0], c[:, 3]) - np.dot(c[:, 2], c[:, 1])) < 0.0
 
 
 def joined(one: Barrier, other: Barrier) -> Barrier:
-    """Both barriers as one."""
+    """Return both barriers as one."""
     if not len(one.hollow) or not len(other.hollow):
         return one if len(one.hollow) else other
     return Barrier(
@@ -47,7 +47,7 @@ def joined(one: Barrier, other: Barrier) -> Barrier:
 
 
 def added(one: Barrier, capsules: FloatArray) -> Barrier:
-    """The barrier and one obstacle (P, 5) more."""
+    """Return the barrier with one more obstacle (P, 5)."""
     last = one.first[-1] + len(capsules)
     return Barrier(
         np.concatenate([one.capsules, capsules]),
@@ -57,7 +57,7 @@ def added(one: Barrier, capsules: FloatArray) -> Barrier:
 
 
 def point_shapes(points: FloatArray) -> FloatArray:
-    """Points (N, 2) as shapes (N, 1, 5) for `clear`."""
+    """Return points (N, 2) as shapes (N, 1, 5) for `clear`."""
     shapes = np.zeros((len(points), 1, 5))
     shapes[:, 0, 0:2] = points
     shapes[:, 0, 2:4] = points
@@ -65,7 +65,7 @@ def point_shapes(points: FloatArray) -> FloatArray:
 
 
 def shifted(shape: FloatArray, points: FloatArray) -> FloatArray:
-    """One shape (Q, 5) about the origin, standing at each of points (N, 2): (N, Q, 5)."""
+    """Return one shape (Q, 5) about the origin, moved to each of points (N, 2): (N, Q, 5)."""
     shapes = np.repeat(shape[None], len(points), axis=0)
     shapes[:, :, 0:2] += points[:, None]
     shapes[:, :, 2:4] += points[:, None]
@@ -73,7 +73,7 @@ def shifted(shape: FloatArray, points: FloatArray) -> FloatArray:
 
 
 def clear(shapes: FloatArray, wall: Barrier, gap: float) -> BoolArray:
-    """(N,) True where a shape (N, Q, 5) is farther than ``gap`` [m] ≥ 0 from every solid.
+    """Whether each shape (N, Q, 5) is farther than ``gap`` [m] ≥ 0 from every solid, (N,).
 
     A shape is one capsule (Q = 1) or the edges of loops (Q > 2), counter-clockwise around it.
     """
@@ -97,7 +97,7 @@ def _clear(
 
 @kernel
 def _apart(shape: FloatArray, capsules: FloatArray, gap: float) -> bool:
-    """No capsule of the shape (Q, 5) is within ``gap`` of any other."""
+    """Whether no capsule of the shape (Q, 5) is within ``gap`` of any other."""
     for p in range(len(capsules)):
         for q in range(len(shape)):
             if _near(shape[q], capsules[p], gap):
@@ -107,7 +107,7 @@ def _apart(shape: FloatArray, capsules: FloatArray, gap: float) -> bool:
 
 @kernel
 def _nested(shape: FloatArray, capsules: FloatArray, first: IntArray, hollow: BoolArray) -> bool:
-    """One holds part of the other; where edges are apart, one point of each loop decides that."""
+    """Whether one contains part of the other; for separate edges, one point per loop decides."""
     for s in range(len(hollow)):
         edges = capsules[first[s] : first[s + 1]]
         if _holds(edges, shape, 1 if hollow[s] else 0):
@@ -119,7 +119,7 @@ def _nested(shape: FloatArray, capsules: FloatArray, first: IntArray, hollow: Bo
 
 @kernel
 def _holds(loops: FloatArray, other: FloatArray, around: int) -> bool:
-    """A loop of ``other`` (Q, 5) begins inside ``loops`` (P, 5), outside which it is ``around``."""
+    """Whether a loop of ``other`` begins inside ``loops`` (P, 5); ``around``: winding outside."""
     for q in range(len(other)):
         x, y = other[q, 0], other[q, 1]
         goes_on = q > 0 and x == other[q - 1, 2] and y == other[q - 1, 3]
@@ -130,7 +130,7 @@ def _holds(loops: FloatArray, other: FloatArray, around: int) -> bool:
 
 @kernel
 def _near(a: FloatArray, b: FloatArray, gap: float) -> bool:
-    """Two capsules (5,) are within ``gap`` of each other."""
+    """Whether two capsules (5,) are within ``gap`` of each other."""
     reach = a[4] + b[4] + gap
     if (
         max(a[0], a[2]) + reach < min(b[0], b[2])
@@ -158,7 +158,7 @@ def _distance2(x: float, y: float, c: FloatArray) -> float:
 
 @kernel
 def _winding(x: float, y: float, edges: FloatArray) -> int:
-    """How often the loops (P, 5) go round (x, y), counter-clockwise positive."""
+    """Return the winding number of the loops (P, 5) about (x, y), counter-clockwise positive."""
     turns = 0
     for p in range(len(edges)):
         x0, y0, x1, y1 = edges[p, 0], edges[p, 1], edges[p, 2], edges[p, 3]

@@ -1,4 +1,4 @@
-"""Dynamic obstacles, clear of static solids all along their paths."""
+"""Draw dynamic obstacles whose whole paths are clear of static solids."""
 
 from pathlib import Path
 
@@ -17,16 +17,16 @@ from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import sample
 
 Bounds = tuple[float, float, float, float]
-_LAWS = 16  # laws that are tried for one obstacle
+_LAWS = 16  # laws tried for one obstacle
 
 
 def is_fixed(group: DynamicGroup) -> bool:
-    """True where the scenario says where the obstacles go, so that static ones keep clear."""
+    """Whether the scenario fixes the obstacles' places, so that static obstacles avoid them."""
     return group.at is not None or isinstance(group.law, RecordedTrack)
 
 
 def fixed_bodies(group: DynamicGroup, folder: Path, rng: np.random.Generator) -> list[Body]:
-    """The obstacles of a group that is not placed by chance."""
+    """Return the obstacles of a group with fixed places."""
     if isinstance(group.law, RecordedTrack):
         laws = recorded_laws(group.law, folder)
     else:
@@ -35,7 +35,7 @@ def fixed_bodies(group: DynamicGroup, folder: Path, rng: np.random.Generator) ->
 
 
 def check_clear(bodies: list[Body], group: DynamicGroup, name: str, standing: Barrier) -> None:
-    """Raises NoPlaceError unless the paths of all bodies keep the group's gap."""
+    """Raise NoPlaceError unless the paths of all bodies keep the group's gap."""
     for k, body in enumerate(bodies):
         path = swept(body.law, body.solid.bounding_radius)
         if not clear(path[:, None], standing, group.gap).all():
@@ -47,17 +47,17 @@ def check_clear(bodies: list[Body], group: DynamicGroup, name: str, standing: Ba
 def placed_bodies(
     group: DynamicGroup, name: str, bounds: Bounds, standing: Barrier, rng: np.random.Generator
 ) -> list[Body]:
-    """The obstacles of a group that is placed by chance.
+    """Draw the obstacles of a group with random places.
 
     Raises:
-        NoPlaceError: an obstacle's path is nowhere clear of the static solids.
+        NoPlaceError: an obstacle's path has no place clear of the static solids.
     """
     count = 1 if group.count is None else int(sample(group.count, rng))
     bodies = []
     for k in range(count):
         solid = _shape(group, rng)
-        what = f"the path of {name} ({group.shape.type} {k + 1} of {count})"
-        bodies.append(Body(solid, _place(group, solid, bounds, standing, what, rng)))
+        subject = f"the path of {name} ({group.shape.type} {k + 1} of {count})"
+        bodies.append(Body(solid, _place(group, solid, bounds, standing, subject, rng)))
     return bodies
 
 
@@ -66,24 +66,24 @@ def _place(
     solid: Solid,
     bounds: Bounds,
     standing: Barrier,
-    what: str,
+    subject: str,
     rng: np.random.Generator,
 ) -> Law:
-    """A law that keeps clear; one that finds no place is drawn again."""
+    """Draw a law and a place that keep clear; a law without a place is drawn again."""
     region: Region = group.region  # type: ignore[assignment] # groups without it are fixed
-    failure = NoPlaceError(what)
+    failure = NoPlaceError(subject)
     for _ in range(_LAWS):
         law = draw_law(group.law, rng)  # type: ignore[arg-type] # recorded tracks are fixed
         path = swept(law, solid.bounding_radius)
 
         def accept(points: FloatArray, path: FloatArray = path) -> BoolArray:
             good = np.ones(len(points), np.bool_)
-            for capsule in path:  # apart: a path is no loop that could hold a solid inside
+            for capsule in path:  # one by one: a path is not a loop that could enclose a solid
                 good &= clear(shifted(capsule[None], points), standing, group.gap)
             return good
 
         try:
-            place = find_place(lambda n: draw_points(region, bounds, n, rng), accept, what, FEW)
+            place = find_place(lambda n: draw_points(region, bounds, n, rng), accept, subject, FEW)
         except NoPlaceError as error:
             failure = error
             continue

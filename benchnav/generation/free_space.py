@@ -1,7 +1,8 @@
-"""Free space: where the centre of a disc may be, and which places are joined.
+"""Free space: possible positions of a disc's centre, and their connected parts.
 
 The space is conservative: discs are grown by polygons that contain the true
-outline, so what counts as joined is joined. It errs by at most 0.5 % of the radius.
+outline, so positions that it reports as connected are connected. The error is at most 0.5 % of
+the radius.
 """
 
 import math
@@ -15,19 +16,19 @@ from benchnav.generation.clearance import Barrier, clear, point_shapes
 Bounds = tuple[float, float, float, float]
 _QUADRANT = 8  # segments in a quarter of a grown outline
 _GROWTH = 1.0 / math.cos(math.pi / (4 * _QUADRANT))  # the polygon then contains the circle
-_TOUCH = 1e-6  # [m] that every place keeps beyond the radius
+_TOUCH = 1e-6  # [m] extra distance that every place keeps
 
 
 class Space:
     """Free space of one arrangement of solids for one radius."""
 
     def labels(self, points: FloatArray) -> IntArray:
-        """(N,) number of the connected part that each point (N, 2) lies in; -1: not free."""
+        """Return the connected part (N,) that contains each point (N, 2); -1: not free."""
         raise NotImplementedError
 
 
 class JoinedSpace(Space):
-    """Among convex solids that are farther apart than the disc is wide, where all is joined."""
+    """Free space among convex solids with gaps wider than the disc: all of it is connected."""
 
     def __init__(self, wall: Barrier, radius: float) -> None:
         self._wall, self._least = wall, radius + _TOUCH
@@ -37,10 +38,10 @@ class JoinedSpace(Space):
 
 
 class PartedSpace(Space):
-    """Free space as polygons: the bounds less everything within the radius of any edge.
+    """Free space as polygons: the bounds minus everything within the radius of any edge.
 
-    What remains lies wholly in a solid or wholly outside all of them; one point of
-    each polygon decides which.
+    Each polygon lies completely in a solid or completely outside all of them; one point of
+    it decides which.
     """
 
     def __init__(self, wall: Barrier, bounds: Bounds, walled: bool, radius: float) -> None:
@@ -48,7 +49,7 @@ class PartedSpace(Space):
 
         reach = radius + _TOUCH
         x0, y0, x1, y1 = bounds
-        margin = reach if walled else -4.0 * reach  # outside, agents may pass round everything
+        margin = reach if walled else -4.0 * reach  # without a wall, agents may pass outside
         arena = shapely.box(x0 + margin, y0 + margin, x1 - margin, y1 - margin)
         rest = arena.difference(_grown(wall, reach))
         parts = [p for p in shapely.get_parts(rest) if p.area > 0.0]
@@ -77,7 +78,7 @@ class PartedSpace(Space):
 
 
 def _grown(wall: Barrier, reach: float) -> Any:
-    """Everything within ``reach`` of an edge or disc of the solids, and a little more."""
+    """Return everything within ``reach`` of an edge or disc of the solids, slightly enlarged."""
     import shapely
 
     edges = wall.capsules

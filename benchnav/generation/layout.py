@@ -1,4 +1,4 @@
-"""Layouts: mazes and rooms, as walls with thickness."""
+"""Draw layouts: mazes and rooms, as walls with thickness."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ Span = tuple[float, float]
 
 
 def draw_layout(layout: Layout, bounds: Bounds, rng: np.random.Generator) -> list[Solid]:
-    """Walls, joined where they meet, so that no edge lies inside another wall."""
+    """Return the walls, merged where they meet, so that no edge lies inside another wall."""
     import shapely
 
     columns, rows = layout.columns, layout.rows
@@ -38,7 +38,7 @@ def draw_layout(layout: Layout, bounds: Bounds, rng: np.random.Generator) -> lis
 
 
 def _pieces(layout: Layout, span: Span, passage: bool, rng: np.random.Generator) -> list[Span]:
-    """What stands of the wall along ``span``: all, nothing (maze) or the parts beside a door."""
+    """Return the pieces of the wall along ``span``: all, none (maze) or the parts beside a door."""
     half = 0.5 * layout.thickness
     low, high = float(span[0]) - half, float(span[1]) + half
     if not passage:
@@ -53,10 +53,10 @@ def _pieces(layout: Layout, span: Span, passage: bool, rng: np.random.Generator)
 def _passages(
     columns: int, rows: int, share: float, rng: np.random.Generator
 ) -> tuple[BoolArray, BoolArray]:
-    """Random spanning tree of the cells (Kruskal 1956, shuffled edges), and more of the rest.
+    """Draw a spanning tree of the cells (Kruskal 1956, shuffled edges), and extra passages.
 
     Returns:
-        (columns, rows) whether a cell is joined to its right, and to its upper neighbour.
+        (columns, rows) whether a cell is connected to its right, and to its upper neighbour.
     """
     cell = np.arange(columns * rows).reshape(columns, rows)
     pairs = np.vstack(

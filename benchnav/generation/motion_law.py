@@ -1,4 +1,4 @@
-"""Motion laws with their numbers drawn, and the paths that they sweep."""
+"""Motion laws with drawn numbers, and the paths that they sweep."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ _CHORDS = 32  # straight pieces that cover a circle
 
 
 def draw_law(law: BackAndForth | WaypointLoop | CircleLaw, rng: np.random.Generator) -> Law:
-    """The law about the origin."""
+    """Return a drawn law about the origin."""
     if isinstance(law, CircleLaw):
         radius = sample(law.radius, rng)
         rate = sample(law.speed, rng) / radius
@@ -37,20 +37,20 @@ def draw_law(law: BackAndForth | WaypointLoop | CircleLaw, rng: np.random.Genera
 
 
 def recorded_laws(law: RecordedTrack, folder: Path) -> list[Law]:
-    """One law for each recorded track, in the arena's frame."""
+    """Return one law per recorded track, in the arena's frame."""
     tracks = [np.array(law.points)] if law.points is not None else read_tracks(law, folder)
     laws = []
     for track in tracks:
         points = track[:, 1:] * law.scale + np.array(law.offset)
         times = track[:, 0]
-        if times[0] > 0.0:  # stands at its first point until its first time
+        if times[0] > 0.0:  # rests at its first point until its first time
             times, points = np.concatenate([[0.0], times]), np.vstack([points[:1], points])
         laws.append(Law(LawKind.TRACK, times, points, law.repeat))
     return laws
 
 
 def moved_law(law: Law, place: FloatArray) -> Law:
-    """The law about ``place`` (2,) [m]."""
+    """Return the law about ``place`` (2,) [m]."""
     if law.kind == LawKind.CIRCLE:
         points = law.points + np.vstack([place, np.zeros(2)])
     else:
@@ -59,7 +59,7 @@ def moved_law(law: Law, place: FloatArray) -> Law:
 
 
 def swept(law: Law, radius: float) -> FloatArray:
-    """(Q, 5) capsules that cover where a disc of ``radius`` [m] is taken."""
+    """Return capsules (Q, 5) that cover the path of a disc of ``radius`` [m]."""
     if law.kind == LawKind.CIRCLE:
         center, (reach, _) = law.points
         step = TWO_PI / _CHORDS
@@ -75,7 +75,7 @@ def swept(law: Law, radius: float) -> FloatArray:
 
 
 def place_at_start(law: Law) -> FloatArray:
-    """(2,) position [m] at t = 0."""
+    """Return the position (2,) [m] at t = 0."""
     if law.kind == LawKind.CIRCLE:
         center, (reach, angle) = law.points
         start: FloatArray = center + reach * np.array(cos_sin(float(angle)))

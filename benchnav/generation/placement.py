@@ -1,4 +1,4 @@
-"""Points from regions, and the search for a place by rejection."""
+"""Random points of regions, and the search for a place by rejection."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -10,7 +10,7 @@ from benchnav.arrays import BoolArray, FloatArray
 from benchnav.scenario.sampling.region import Anywhere, Points, Rectangle, Region, Ring
 
 Bounds = tuple[float, float, float, float]
-MANY = (8, 24, 96, 384)  # candidates that are tested together, until one will do
+MANY = (8, 24, 96, 384)  # candidates tested together, until one is accepted
 FEW = (8, 24)
 
 
@@ -19,15 +19,15 @@ Fault = Literal["no place", "blocked", "unreachable"]
 
 
 class NoPlaceError(Exception):
-    """A draw has no place for something; says what. Never leaves `build`."""
+    """A draw has no place for an object; the message names it. Never leaves `build`."""
 
     part: Part = "start"  # of a team
     fault: Fault = "no place"
-    team: int | None = None  # whose part had none
+    team: int | None = None  # index of the team whose part had no place
 
 
 def draw_points(region: Region, bounds: Bounds, count: int, rng: np.random.Generator) -> FloatArray:
-    """(count, 2) points of ``region`` [m], uniform by area."""
+    """Return points (count, 2) of ``region`` [m], uniform by area."""
     if isinstance(region, Points):
         return np.array(region.points)[rng.integers(len(region.points), size=count)]
     if isinstance(region, Rectangle | Anywhere):
@@ -38,14 +38,14 @@ def draw_points(region: Region, bounds: Bounds, count: int, rng: np.random.Gener
 
 
 def within(bounds: Bounds, points: FloatArray) -> BoolArray:
-    """(N,) which of the points (N, 2) lie within ``bounds``, edges included."""
+    """Whether each of the points (N, 2) lies within ``bounds``, edges included, (N,)."""
     x0, y0, x1, y1 = bounds
     found: BoolArray = np.all((points >= (x0, y0)) & (points <= (x1, y1)), axis=1)
     return found
 
 
 def directions(count: int, rng: np.random.Generator) -> FloatArray:
-    """(count, 2) unit vectors, by rejection from a square.
+    """Return unit vectors (count, 2), by rejection from a square.
 
     Without sine and cosine they have the same bits everywhere.
     """
@@ -68,19 +68,19 @@ def _in_ring(inner: float, outer: float, count: int, rng: np.random.Generator) -
 def find_place(
     propose: Callable[[int], FloatArray],
     accept: Callable[[FloatArray], BoolArray],
-    what: str,
+    subject: str,
     batches: Sequence[int] = MANY,
 ) -> FloatArray:
-    """The first proposed point (2,) [m] that is accepted.
+    """Return the first proposed point (2,) [m] that is accepted.
 
     Args:
         propose: count → (count, 2) candidates.
-        accept: (N, 2) candidates → (N,) which of them will do.
-        what: is placed, for the complaint.
-        batches: numbers of candidates that are tested together, until one will do.
+        accept: (N, 2) candidates → (N,) whether each is acceptable.
+        subject: the object to place, for the error message.
+        batches: numbers of candidates tested together, until one is accepted.
 
     Raises:
-        NoPlaceError: no candidate will do.
+        NoPlaceError: no candidate is acceptable.
     """
     for size in batches:
         candidates = propose(size)
@@ -89,16 +89,16 @@ def find_place(
         if good[k]:
             place: FloatArray = candidates[k]
             return place
-    raise NoPlaceError(f"no free place for {what} in {sum(batches)} tries")
+    raise NoPlaceError(f"no free place for {subject} in {sum(batches)} tries")
 
 
 def distances(points: FloatArray, others: FloatArray) -> FloatArray:
-    """(N, M) distances [m] between points (N, 2) and others (M, 2)."""
+    """Return distances (N, M) [m] between points (N, 2) and others (M, 2)."""
     dx = points[:, None, 0] - others[None, :, 0]
     dy = points[:, None, 1] - others[None, :, 1]
     return np.sqrt(dx * dx + dy * dy)
 
 
 def length(vector: FloatArray) -> float:
-    """Length of a vector (2,)."""
+    """Return the length of a vector (2,)."""
     return math.sqrt(float(vector[0] * vector[0] + vector[1] * vector[1]))

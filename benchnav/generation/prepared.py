@@ -1,4 +1,4 @@
-"""What every draw of a scenario shares, made once."""
+"""The parts that all draws of a scenario share, computed once."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -33,18 +33,18 @@ class Structure:
 
 @dataclass
 class Prepared:
-    """A scenario and what its draws share."""
+    """A scenario and the parts that its draws share."""
 
     scenario: Scenario
-    fixed_walls: bool  # every draw has the same
-    fixed_statics: bool  # and the same static obstacles
-    clearance: float  # [m] convex solids are all farther apart than this; 0: nothing is known
+    fixed_walls: bool  # equal in every draw
+    fixed_statics: bool  # static obstacles, too, are equal in every draw
+    clearance: float  # [m] all convex solids are farther apart than this; 0: unknown
     discs: FloatArray  # (N, 5) of fixed starts and goals
     _structure: Structure | None = None
     _spaces: dict[float, Space] = field(default_factory=dict)
 
     def structure(self, rng: np.random.Generator) -> Structure:
-        """The walls of a draw."""
+        """Return the walls of a draw."""
         if self._structure is not None:
             return self._structure
         structure = _draw_structure(self.scenario, rng)
@@ -53,7 +53,7 @@ class Prepared:
         return structure
 
     def space(self, structure: Structure, solids: Barrier, radius: float) -> Space:
-        """Free space among ``solids`` for a disc of ``radius`` [m]."""
+        """Return the free space among ``solids`` for a disc of ``radius`` [m]."""
         if 2.0 * radius < self.clearance:
             return JoinedSpace(solids, radius)
         known = self._spaces.get(radius)
@@ -64,16 +64,16 @@ class Prepared:
                 self._spaces[radius] = known
         return known
 
-    def kept_free(self, bodies: Sequence[Body]) -> Barrier:
-        """Fixed starts, goals and tracks."""
+    def fixed_barrier(self, bodies: Sequence[Body]) -> Barrier:
+        """Return fixed starts, goals and tracks as a barrier."""
         paths = [swept(body.law, body.solid.bounding_radius) for body in bodies]
         discs = np.vstack([self.discs, *paths])
         return Barrier(discs, np.arange(len(discs) + 1), np.zeros(len(discs), np.bool_))
 
 
 @dataclass(frozen=True, eq=False)
-class _Asked:
-    """A scenario, the same as another where both draw the same."""
+class _ScenarioKey:
+    """A scenario as a cache key: equal to another if both draw the same worlds."""
 
     scenario: Scenario
 
@@ -82,20 +82,20 @@ class _Asked:
         return self.scenario.hash, self.scenario.folder
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Asked) and self.key == other.key
+        return isinstance(other, _ScenarioKey) and self.key == other.key
 
     def __hash__(self) -> int:
         return hash(self.key)
 
 
 def prepare(scenario: Scenario) -> Prepared:
-    """What the draws of ``scenario`` share; kept for the scenarios used last."""
-    return _prepared(_Asked(scenario))
+    """Return the shared parts of ``scenario``; cached for the most recent scenarios."""
+    return _prepared(_ScenarioKey(scenario))
 
 
-@lru_cache(maxsize=_KEPT)  # not a table of this module, which a navigator could look into
-def _prepared(asked: _Asked) -> Prepared:
-    scenario = asked.scenario
+@lru_cache(maxsize=_KEPT)  # not a module table, which a navigator could read
+def _prepared(key: _ScenarioKey) -> Prepared:
+    scenario = key.scenario
     return Prepared(
         scenario,
         scenario.layout is None and all(wall.fixed for wall in scenario.walls),
@@ -106,7 +106,7 @@ def _prepared(asked: _Asked) -> Prepared:
 
 
 def _clearance(scenario: Scenario) -> float:
-    """The least gap between any two solids, where they are convex and placed by chance."""
+    """Return the smallest gap between any two solids, if they are convex and randomly placed."""
     if scenario.layout is not None or scenario.walls or not scenario.walled:
         return 0.0
     least = float("inf")

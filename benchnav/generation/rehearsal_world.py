@@ -1,4 +1,4 @@
-"""The world of a rehearsal: the scored one with its leaders alone, and other phases of movers."""
+"""The world of a rehearsal: the scored world with its leaders only, and other phases of movers."""
 
 from dataclasses import fields, replace
 
@@ -13,12 +13,12 @@ from benchnav.geometry.rotation import TWO_PI
 
 
 def rehearsal_world(world: World, rng: np.random.Generator) -> tuple[World, IntArray]:
-    """(the world, (L',) indices that its agents have in ``world``).
+    """Return (world, (L',) indices of its agents in the scored ``world``).
 
-    Walls and static obstacles are those of ``world``; what is re-placed within the
-    episode stands where it begins, for a rehearsal comes before it. Movers keep their
-    ways and speeds, each with a phase of its own from ``rng``; a recorded track keeps its
-    time. Of the evaluated agents there are `leaders_of`, of the others all.
+    Walls and static obstacles are those of ``world``; an obstacle that is relocated within the
+    episode keeps its first place, as a rehearsal comes before the episode. Movers keep their
+    paths and speeds, each with a new phase from ``rng``; a recorded track keeps its
+    time. Of the evaluated agents, only `leaders_of` take part; of the others, all.
     """
     leading = leaders_of(world.agents)
     present = ~world.agents.evaluated
@@ -41,10 +41,10 @@ def rehearsal_world(world: World, rng: np.random.Generator) -> tuple[World, IntA
 
 
 def leaders_of(agents: Agents) -> IntArray:
-    """Indices of the evaluated agents that rehearse, rising.
+    """Return the indices of the evaluated agents that rehearse, ascending.
 
-    The leaders; for a team that has none, the member whose start and goal are nearest to
-    the means of its members' starts and goals.
+    These are the leaders; for a team without leaders, the member whose start and goal are nearest
+    to the means of its members' starts and goals.
     """
     led: list[int] = []
     for team in np.unique(agents.team[agents.evaluated]):
@@ -61,7 +61,7 @@ def _middle(agents: Agents, members: IntArray) -> int:
         away += np.sqrt(np.sum(offset * offset, axis=1))
     ties = members[away == away.min()]
     keys = (*agents.goal[ties].T[::-1], *agents.start[ties].T[::-1])
-    return int(ties[np.lexsort(keys)[0]])  # whatever the order of the agents
+    return int(ties[np.lexsort(keys)[0]])  # independent of the order of the agents
 
 
 def _rephased(law: Law, rng: np.random.Generator) -> Law:

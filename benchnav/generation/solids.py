@@ -1,4 +1,4 @@
-"""Solids from shapes: numbers drawn, corners turned, solid to the left of every edge."""
+"""Solids from shapes: draw numbers, rotate corners, order edges with the solid on the left."""
 
 from functools import lru_cache
 from pathlib import Path
@@ -18,7 +18,7 @@ Bounds = tuple[float, float, float, float]
 
 
 def bounds_wall(bounds: Bounds) -> Solid:
-    """The wall along the bounds: one clockwise loop, solid outside."""
+    """Return the wall along the bounds: one clockwise loop, solid outside."""
     x0, y0, x1, y1 = bounds
     return Solid(Kind.WALL, (np.array([[x0, y0], [x0, y1], [x1, y1], [x1, y0]], float),))
 
@@ -26,11 +26,11 @@ def bounds_wall(bounds: Bounds) -> Solid:
 def draw_solid(
     shape: Shape, heading: Scalar, kind: Kind, rng: np.random.Generator, folder: Path = Path()
 ) -> Solid:
-    """A solid about the origin; all parts of a mesh or a map are one.
+    """Return a solid about the origin; all parts of a mesh or a map form one solid.
 
-    ``folder`` is what the names of files are relative to.
+    File names are relative to ``folder``.
 
-    Raises MapError or MeshError where such a file is wrong.
+    Raises MapError or MeshError if such a file is wrong.
     """
     if isinstance(shape, Disc):
         return Solid(kind, (), (0.0, 0.0), sample(shape.radius, rng))
@@ -52,7 +52,7 @@ def draw_solid(
 def draw_wall(
     wall: Wall, place: Place, folder: Path, rng: np.random.Generator
 ) -> tuple[list[Solid], Any]:
-    """The solids of a wall at one of its places, and its mesh (None without one)."""
+    """Return the solids of a wall at one of its places, and its mesh (or None)."""
     shape = wall.shape
     if isinstance(shape, Occupancy):
         at = (float(place[0]), float(place[1]))  # type: ignore[arg-type] # plain numbers here
@@ -71,7 +71,7 @@ def draw_wall(
 
 
 def _loops(shape: Mesh | Occupancy, folder: Path) -> tuple[FloatArray, ...]:
-    """About the origin of the file's own frame."""
+    """Return loops about the origin of the file's own frame."""
     path = folder / shape.file
     if isinstance(shape, Occupancy):
         return _occupancy_loops(path, shape.format, shape.cell, shape.unknown_is_free)
@@ -102,14 +102,14 @@ def _mesh(path: Path, *arguments: Any) -> tuple[tuple[Solid, ...], ArenaMesh]:
 
 
 def counter_clockwise(loop: FloatArray) -> FloatArray:
-    """The loop (V, 2) in counter-clockwise order."""
+    """Return the loop (V, 2) in counter-clockwise order."""
     x, y = loop[:, 0], loop[:, 1]
     area = float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
     return loop if area > 0.0 else np.ascontiguousarray(loop[::-1])
 
 
 def is_convex(solid: Solid) -> bool:
-    """True for discs and for single convex loops."""
+    """Whether a solid is a disc or a single convex loop."""
     if solid.is_disc:
         return True
     if len(solid.loops) > 1:
@@ -132,7 +132,7 @@ def _line_loop(shape: Polyline) -> FloatArray:
 
 
 def polygon_solids(blocked: Any, kind: Kind) -> list[Solid]:
-    """Solids of a shapely polygon or multipolygon."""
+    """Return the solids of a shapely polygon or multipolygon."""
     import shapely
 
     solids = []

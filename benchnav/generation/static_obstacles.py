@@ -1,4 +1,4 @@
-"""Static obstacles: drawn one after another, each clear of what stands already."""
+"""Draw static obstacles one after another, each clear of the solids already placed."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,39 +17,39 @@ from benchnav.scenario.obstacle import StaticGroup
 from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import sample
 
-ARRANGEMENTS = 50  # of old places that are tried before the world is drawn again
+ARRANGEMENTS = 50  # arrangements of old places tried before the world is drawn again
 Bounds = tuple[float, float, float, float]
 Streams = Sequence[np.random.Generator]
 
 
 @dataclass(frozen=True)
 class Piece:
-    """One static obstacle: its shape, where it stands, and where else it stood or will stand."""
+    """One static obstacle: its shape, its place, and its earlier or later place."""
 
     shape: Solid  # about the origin
     place: FloatArray  # (2,) [m] at the start of the episode
-    before: FloatArray | None = None  # (2,) [m] where it stood before the episode
-    after: FloatArray | None = None  # (2,) [m] where it will stand within the episode
-    when: float = 0.0  # [s] from when on, once that place is free
+    before: FloatArray | None = None  # (2,) [m] place before the episode
+    after: FloatArray | None = None  # (2,) [m] place at the end of the episode
+    when: float = 0.0  # [s] time of the relocation, once the new place is free
 
     @cached_property
     def solid(self) -> Solid:
-        """Where it stands at the start."""
+        """Return the obstacle at its place at the start."""
         return self.shape.moved(self.place)
 
     @cached_property
     def before_solid(self) -> Solid:
-        """Where it stood before the episode."""
+        """Return the obstacle at its place before the episode."""
         return self.solid if self.before is None else self.shape.moved(self.before)
 
     @cached_property
     def after_solid(self) -> Solid:
-        """Where it stands at the end."""
+        """Return the obstacle at its place at the end."""
         return self.solid if self.after is None else self.shape.moved(self.after)
 
     @property
     def body(self) -> Body:
-        """As something that is re-placed within the episode."""
+        """Return the obstacle as a body that is relocated within the episode."""
         points = np.vstack([self.place, self.place if self.after is None else self.after])
         return Body(self.shape, Law(LawKind.RELOCATE, np.array([0.0, self.when]), points))
 
@@ -63,20 +63,20 @@ def draw_pieces(
     others: Streams,
     folder: Path = Path(),
 ) -> list[Piece]:
-    """All static obstacles of one draw, in the order of their groups.
+    """Return all static obstacles of one draw, in the order of their groups.
 
     Args:
         groups: as the scenario lists them.
         bounds: of the arena [m].
-        walls: what stands before anything is drawn.
-        keep_free: fixed starts, goals and tracks, which sampled obstacles keep clear of.
+        walls: solids placed before anything is drawn.
+        keep_free: fixed starts, goals and tracks, which sampled obstacles avoid.
         streams: a generator per group, for shapes and for places at the start.
         others: a generator per group, for places before the start and after it.
-        folder: what the names of meshes and maps are relative to.
+        folder: base of the relative names of meshes and maps.
 
     Raises:
         NoPlaceError: an obstacle finds no place.
-        InputError: a mesh or a map is not one.
+        InputError: a mesh or map file is wrong.
     """
     search = _Search(bounds, keep_free, folder)
     pieces: list[list[Piece]] = []
@@ -98,9 +98,9 @@ def draw_pieces(
 
 @dataclass(frozen=True)
 class _Search:
-    """Finds places that keep a group's gap to what stands and to what is kept free.
+    """Finds places that keep a group's gap to placed solids and to places kept free.
 
-    Each method returns the pieces, and what stands with them.
+    Each method returns the pieces, and the barrier that includes them.
     """
 
     bounds: Bounds
@@ -110,7 +110,7 @@ class _Search:
     def now(
         self, group: StaticGroup, name: str, standing: Barrier, rng: np.random.Generator
     ) -> tuple[list[Piece], Barrier]:
-        """Shapes, and places at the start."""
+        """Draw shapes and places at the start."""
         pieces: list[Piece] = []
         count = 1 if group.count is None else int(sample(group.count, rng))
         for k in range(count if group.at is None else len(group.points)):
@@ -118,8 +118,8 @@ class _Search:
             if group.at is not None:
                 place = np.array(group.points[k])
             else:
-                what = f"{name} ({group.shape.type} {k + 1} of {count})"
-                place = self._place(shape, group, standing, what, rng)
+                subject = f"{name} ({group.shape.type} {k + 1} of {count})"
+                place = self._place(shape, group, standing, subject, rng)
             pieces.append(Piece(shape, place))
             standing = added(standing, pieces[k].solid.capsules)
         return pieces, standing
@@ -132,11 +132,11 @@ class _Search:
         standing: Barrier,
         rng: np.random.Generator,
     ) -> tuple[list[Piece], Barrier]:
-        """With places for later, clear of everything that stands now or will."""
+        """Add later places, clear of everything that is placed now or later."""
         result = []
         for k, piece in enumerate(pieces):
-            what = f"the new place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
-            after = self._place(piece.shape, group, standing, what, rng)
+            subject = f"the new place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
+            after = self._place(piece.shape, group, standing, subject, rng)
             when = 0.0 if group.relocate_at is None else sample(group.relocate_at, rng)
             result.append(replace(piece, after=after, when=when))
             standing = added(standing, result[k].after_solid.capsules)
@@ -150,9 +150,9 @@ class _Search:
         past: Barrier,
         rng: np.random.Generator,
     ) -> tuple[list[Piece], Barrier]:
-        """With places where they stood before, clear of all else that stood then.
+        """Add earlier places, clear of all other obstacles' earlier places.
 
-        Cubes moved by a distance each have few places, and one may take another's: then
+        Obstacles moved by a fixed distance each have few places, and one may take another's: then
         all are drawn again, so that the world of a seed seldom depends on the distance.
         """
         for _ in range(0 if isinstance(group.moved, bool) else ARRANGEMENTS - 1):
@@ -172,8 +172,8 @@ class _Search:
     ) -> tuple[list[Piece], Barrier]:
         result = []
         for k, piece in enumerate(pieces):
-            what = f"the old place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
-            before = self._place(piece.shape, group, past, what, rng, away=piece.place)
+            subject = f"the old place of {name} ({group.shape.type} {k + 1} of {len(pieces)})"
+            before = self._place(piece.shape, group, past, subject, rng, away=piece.place)
             result.append(replace(piece, before=before))
             past = added(past, result[k].before_solid.capsules)
         return result, past
@@ -183,11 +183,11 @@ class _Search:
         shape: Solid,
         group: StaticGroup,
         standing: Barrier,
-        what: str,
+        subject: str,
         rng: np.random.Generator,
         away: FloatArray | None = None,
     ) -> FloatArray:
-        """In the group's region; or as far from ``away`` (2,) as the group was moved."""
+        """Find a place in the group's region, or the group's move distance from ``away`` (2,)."""
         region: Region = group.region  # type: ignore[assignment] # groups without it have `at`
         around = joined(standing, self.keep_free)
 
@@ -200,4 +200,4 @@ class _Search:
             free = clear(shifted(shape.capsules, points), around, group.gap)
             return free if away is None else free & within(self.bounds, points)
 
-        return find_place(propose, accept, what)
+        return find_place(propose, accept, subject)

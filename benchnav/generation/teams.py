@@ -1,4 +1,4 @@
-"""Starts and goals: free, apart, and joined by free space."""
+"""Draw starts and goals: free, separate, and connected by free space."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -25,7 +25,7 @@ from benchnav.scenario.team import (
 )
 
 Bounds = tuple[float, float, float, float]
-_STARTS = 8  # starts that are tried before an agent without a goal is given up
+_STARTS = 8  # starts tried before an agent without a goal is given up
 
 
 @dataclass
@@ -37,14 +37,14 @@ class Crowd:
     radius: FloatArray = field(default_factory=lambda: np.zeros(0))
 
     def add(self, start: FloatArray, goal: FloatArray, radius: float) -> None:
-        """One more agent."""
+        """Add one agent."""
         self.start = np.vstack([self.start, start])
         self.goal = np.vstack([self.goal, goal])
         self.radius = np.append(self.radius, radius)
 
 
 def draw_numbers(scalar: Scalar, count: int, rng: np.random.Generator) -> FloatArray:
-    """(count,) draws."""
+    """Return (count,) draws."""
     if fixed(scalar):
         return np.full(count, sample(scalar, rng))
     return np.array([sample(scalar, rng) for _ in range(count)])
@@ -59,54 +59,54 @@ def place_team(
     bodies: Barrier,
     rng: np.random.Generator,
 ) -> None:
-    """Adds the agents of a team to the crowd.
+    """Add the agents of a team to the crowd.
 
     Args:
-        team: as the scenario says.
+        team: as in the scenario.
         radii: (N,) of its agents [m].
-        crowd: those placed before.
+        crowd: the agents placed before.
         bounds: of the arena [m].
         spaces: free space of this team, one for each arrangement of the static obstacles.
-        bodies: dynamic obstacles where they are at t = 0.
-        rng: the team's own.
+        bodies: dynamic obstacles at t = 0.
+        rng: the team's own generator.
 
     Raises:
-        NoPlaceError: an agent finds no start, or no goal that it could reach from there.
+        NoPlaceError: an agent finds no start, or no goal reachable from it.
     """
     stands = lattice_of(team, bounds, len(radii))
     for k, radius in enumerate(radii):
-        what = f"of teams[{team.name}] agent {k + 1} of {len(radii)}"
+        subject = f"of teams[{team.name}] agent {k + 1} of {len(radii)}"
         place = _Placing(
             team, k, len(radii), float(radius), crowd, bounds, spaces, bodies, rng, stands
         )
-        crowd.add(*place.find(what), float(radius))
+        crowd.add(*place.find(subject), float(radius))
 
 
 @dataclass
 class GoalsTried:
-    """What became of the goals that were tried: why none of them would do."""
+    """Counts of rejected and reached goals, for the error message."""
 
     blocked: int = 0  # in a solid, or too close to one
     unreachable: int = 0  # free, but not joined to the start
     reached: int = 0
 
     def count(self, starts: IntArray, goals: IntArray) -> None:
-        """Add goals, given the part of each free space (spaces, N) that they and starts are in."""
+        """Count goals, given the part of each free space (spaces, N) of them and of the starts."""
         free = np.all(goals >= 0, axis=0)
         reached = np.all(goals == starts, axis=0)
         self.blocked += int((~free).sum())
         self.unreachable += int((free & ~reached).sum())
         self.reached += int(reached.sum())
 
-    def explained(self, error: NoPlaceError, what: str) -> NoPlaceError:
-        """The same error; if no goal was ever reached, one that says so."""
+    def explained(self, error: NoPlaceError, subject: str) -> NoPlaceError:
+        """Return the error; if no goal was ever reached, one that reports this."""
         if self.reached or not self.blocked + self.unreachable:
             return error
         if self.unreachable:
-            found = NoPlaceError(f"the goal {what} is unreachable from its start")
+            found = NoPlaceError(f"the goal {subject} is unreachable from its start")
             found.fault = "unreachable"
         else:
-            found = NoPlaceError(f"the goal {what} lies in or too close to a wall or obstacle")
+            found = NoPlaceError(f"the goal {subject} lies in or too close to a wall or obstacle")
             found.fault = "blocked"
         found.part = "goal"
         return found
@@ -114,7 +114,7 @@ class GoalsTried:
 
 @dataclass
 class _Placing:
-    """One agent's search for a start and a goal."""
+    """The search for one agent's start and goal."""
 
     team: Team
     number: int
@@ -128,25 +128,25 @@ class _Placing:
     stands: FloatArray  # (N, 2) of a packed start; (0, 2) of any other
     ends: GoalsTried = field(default_factory=GoalsTried)
 
-    def find(self, what: str) -> tuple[FloatArray, FloatArray]:
-        """A start and a goal; a start without a goal is drawn again."""
-        failure = NoPlaceError(what)
+    def find(self, subject: str) -> tuple[FloatArray, FloatArray]:
+        """Return a start and a goal; a start without a goal is drawn again."""
+        failure = NoPlaceError(subject)
         for _ in range(_STARTS if len(self.batches) > 1 else 1):
             self.ends = GoalsTried()
             try:
-                start = find_place(self.starts, self.start_ok, f"the start {what}", self.batches)
+                start = find_place(self.starts, self.start_ok, f"the start {subject}", self.batches)
             except NoPlaceError as error:
-                raise self.ends.explained(error, what) from None
+                raise self.ends.explained(error, subject) from None
             try:
-                return start, self.goal(start, f"the goal {what}")
+                return start, self.goal(start, f"the goal {subject}")
             except NoPlaceError as error:
                 error.part = "goal"
-                failure = self.ends.explained(error, what)
+                failure = self.ends.explained(error, subject)
         raise failure
 
     @property
     def batches(self) -> tuple[int, ...]:
-        """Of candidates; one where all would be the same."""
+        """Return batch sizes; a single candidate if all candidates would be equal."""
         return (1,) if is_fixed(self.team) else MANY
 
     def starts(self, n: int) -> FloatArray:
@@ -185,7 +185,7 @@ class _Placing:
         good[good] = joined
         return good
 
-    def goal(self, start: FloatArray, what: str) -> FloatArray:
+    def goal(self, start: FloatArray, subject: str) -> FloatArray:
         goal, crowd = self.team.goal, self.crowd
         if isinstance(goal, AntipodalGoal | ShiftedGoal):
             return _bound_goals(goal, start)
@@ -199,7 +199,7 @@ class _Placing:
 
         if isinstance(goal, PointsGoal):
             point = np.array([goal.points[self.number]])
-            return find_place(lambda n: point, joined, what, (1,))
+            return find_place(lambda n: point, joined, subject, (1,))
 
         def accept(points: FloatArray) -> BoolArray:
             good = distances(points, start[None])[:, 0] >= goal.min_distance
@@ -208,15 +208,15 @@ class _Placing:
             return good
 
         region = goal.region
-        return find_place(lambda n: draw_points(region, self.bounds, n, self.rng), accept, what)
+        return find_place(lambda n: draw_points(region, self.bounds, n, self.rng), accept, subject)
 
     def _labels(self, points: FloatArray) -> IntArray:
-        """(spaces, N)"""
+        """Return the connected parts (spaces, N) of the points."""
         return np.array([space.labels(points) for space in self.spaces])
 
 
 def _bound_goals(goal: AntipodalGoal | ShiftedGoal, starts: FloatArray) -> FloatArray:
-    """Goals that follow from starts (…, 2)."""
+    """Return the goals that follow from starts (…, 2)."""
     if isinstance(goal, AntipodalGoal):
         mirrored: FloatArray = 2.0 * np.array(goal.center) - starts
         return mirrored
@@ -225,7 +225,7 @@ def _bound_goals(goal: AntipodalGoal | ShiftedGoal, starts: FloatArray) -> Float
 
 
 def is_fixed(team: Team) -> bool:
-    """True where the scenario says where each agent starts."""
+    """Whether the scenario fixes the start of each agent."""
     start = team.start
     if isinstance(start, CircleStart):
         return start.angles == "even" and start.jitter == 0.0
@@ -235,7 +235,7 @@ def is_fixed(team: Team) -> bool:
 
 
 def lattice_of(team: Team, bounds: Bounds, count: int) -> FloatArray:
-    """(N, 2) places of a packed start before they are shaken; (0, 2) of any other."""
+    """Return the places (N, 2) of a packed start before jitter; (0, 2) for any other start."""
     start = team.start
     if not isinstance(start, PackedStart):
         return np.zeros((0, 2))
@@ -243,20 +243,22 @@ def lattice_of(team: Team, bounds: Bounds, count: int) -> FloatArray:
 
 
 def fixed_places(team: Team, bounds: Bounds) -> FloatArray:
-    """(N, 5) discs that starts and goals fill whatever is drawn, as capsules.
+    """Return the discs (N, 5) that starts and goals fill in every draw, as capsules.
 
-    Of a packed start these are as much larger as its agents are shaken.
+    For a packed start they are enlarged by the jitter of its agents.
     """
     most = int(support(team.count)[1])
     places, shaken = lattice_of(team, bounds, most), 0.0
     if isinstance(team.start, PackedStart):
         shaken = 0.5 * np.sqrt(2.0) * team.start.jitter
     elif is_fixed(team) and (fixed(team.count) or not isinstance(team.start, CircleStart)):
-        nobody = Crowd()
-        one = np.random.default_rng(0)  # draws nothing: every place is fixed
+        empty_crowd = Crowd()
+        unused = np.random.default_rng(0)  # nothing is drawn: every place is fixed
         empty = Barrier(np.zeros((0, 5)), np.zeros(1, np.int64), np.zeros(0, np.bool_))
         for k in range(most):
-            search = _Placing(team, k, most, 0.0, nobody, bounds, (), empty, one, places[:0])
+            search = _Placing(
+                team, k, most, 0.0, empty_crowd, bounds, (), empty, unused, places[:0]
+            )
             places = np.vstack([places, search.starts(1)])
     if isinstance(team.goal, AntipodalGoal | ShiftedGoal):
         places = np.vstack([places, _bound_goals(team.goal, places)])
@@ -274,6 +276,6 @@ def _jittered(points: FloatArray, jitter: float, rng: np.random.Generator) -> Fl
 
 
 def _apart(points: FloatArray, others: FloatArray, least: FloatArray) -> BoolArray:
-    """(N,) True where a point is farther than ``least`` (M,) from each of others (M, 2)."""
+    """Whether each point is farther than ``least`` (M,) from each of others (M, 2), (N,)."""
     far: BoolArray = np.all(distances(points, others) > least, axis=1)
     return far

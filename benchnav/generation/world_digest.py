@@ -1,4 +1,4 @@
-"""Do worlds coincide? Compared by a digest of everything in them but the count of redraws."""
+"""Digests of worlds, to find equal ones; the count of redraws is left out."""
 
 import hashlib
 from collections.abc import Iterator, Sequence
@@ -15,7 +15,7 @@ Place = tuple[str, int]  # split, seed
 
 
 def world_digest(world: World) -> str:
-    """16 hex digits; equal exactly where all numbers of two worlds are equal."""
+    """Return 16 hex digits, equal for two worlds exactly if all their numbers are equal."""
     digest = hashlib.sha256()
     for chunk in _chunks(world):
         digest.update(chunk)
@@ -40,13 +40,13 @@ def _chunks(part: Any) -> Iterator[bytes]:
 
 
 def is_random(scenario: Scenario) -> bool:
-    """False where every seed of every split gives the same world."""
+    """Whether the world depends on seed or split."""
     digests = {world_digest(build(scenario, split, seed)) for split in SPLITS for seed in (0, 1)}
     return len(digests) > 1
 
 
 def coincidences(scenario: Scenario, seeds: Sequence[int]) -> list[tuple[Place, ...]]:
-    """Which worlds are the same: groups of two or more (split, seed), over all three splits."""
+    """Return groups of two or more equal worlds, as (split, seed), over all three splits."""
     found: dict[str, list[Place]] = {}
     for split in SPLITS:
         for seed in seeds:

@@ -1,11 +1,11 @@
-"""Corners of a polyline around an arc, as many as what stands beside it demands."""
+"""A polyline around an arc, refined where obstacles are near."""
 
 import math
 
 import numpy as np
 
 from benchnav.arrays import FloatArray
-from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid, is_clear, longer
+from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid, doubled, is_clear
 from benchnav.kernels import kernel
 
 
@@ -13,19 +13,19 @@ from benchnav.kernels import kernel
 def around_arc(
     grid: CapsuleGrid, x: float, y: float, radius: float, begin: float, end: float, bend: float
 ) -> FloatArray:
-    """(N, 2) [m] corners of a polyline from angle ``begin`` to ``end`` [rad] of a free arc.
+    """Return corners (N, 2) [m] of a polyline from angle ``begin`` to ``end`` [rad] of a free arc.
 
-    Every side touches the arc, so no corner is cut. A corner turns by ``bend`` [rad] at
-    most, and by half of it, a quarter, … where the polyline would otherwise touch
-    something beside the arc; the polyline is then as clear as the arc is.
+    Every side touches the arc, so no corner is cut. A corner turns by at most ``bend`` [rad], and
+    by half of it, a quarter, … where the polyline would otherwise touch an obstacle beside
+    the arc; the polyline is then as clear as the arc is.
     """
     count = max(1, math.ceil(abs(end - begin) / bend))
-    corners, made = np.empty((max(count, 16), 2)), 0
+    corners, size = np.empty((max(count, 16), 2)), 0
     for part in range(count):
         low, k, parts = begin + (end - begin) * part / count, 0, 1
         wide = (end - begin) / count
-        # piece k of ``parts``; a piece that touches is split, one that is done gives way to the
-        # next, joined to a wider one again where it can be
+        # piece k of ``parts``: a piece that touches an obstacle is split; after a finished
+        # piece comes the next one, merged into a wider piece again if possible
         while k < parts:
             step = wide / parts
             at, to = low + k * step, low + (k + 1) * step
@@ -37,11 +37,11 @@ def around_arc(
             if not clear and reach - radius > SLACK:
                 k, parts = 2 * k, 2 * parts
                 continue
-            if made == len(corners):
-                corners = longer(corners)
-            corners[made, 0], corners[made, 1] = cx, cy
-            made += 1
+            if size == len(corners):
+                corners = doubled(corners)
+            corners[size, 0], corners[size, 1] = cx, cy
+            size += 1
             k += 1
             while parts > 1 and k % 2 == 0:
                 k, parts = k // 2, parts // 2
-    return corners[:made]
+    return corners[:size]

@@ -1,21 +1,21 @@
-"""A capsule is a segment with a radius; everything solid is made of capsules.
+"""Distances and collision times of capsules: segments with a radius, the parts of all solids.
 
-Kernels take a capsule as seven numbers x0, y0, x1, y1, r and a point or disc
-beside it. All are closed-form and use correctly rounded operations only.
+Kernels take a capsule as x0, y0, x1, y1, r, together with a point or disc. All formulas are
+closed-form and use correctly rounded operations only.
 """
 
 import math
 
 from benchnav.kernels import kernel
 
-APPROACH = 1e-9  # [m/s] a closing speed below this is none: rounding must not touch again
+APPROACH = 1e-9  # [m/s] lower closing speeds count as zero, so that rounding causes no contact
 
 
 @kernel
 def nearest_on_segment(
     px: float, py: float, x0: float, y0: float, x1: float, y1: float
 ) -> tuple[float, float]:
-    """The point of the segment that is nearest to p."""
+    """Return the point of the segment that is nearest to p."""
     dx, dy = x1 - x0, y1 - y0
     along = dx * (px - x0) + dy * (py - y0)
     if along <= 0.0:
@@ -29,9 +29,9 @@ def nearest_on_segment(
 
 @kernel
 def disc_time(fx: float, fy: float, wx: float, wy: float, reach: float) -> float:
-    """First t ≥ 0 at which f + w t is within ``reach`` of the origin, approaching; inf if never.
+    """Return the first t ≥ 0 with f + w t within ``reach`` of the origin, approaching, else inf.
 
-    f starts outside; inside, the answer is 0 while approaching.
+    f starts outside; if it starts inside and approaches, the result is 0.
     """
     b = fx * wx + fy * wy
     if b >= -APPROACH * reach:
@@ -51,11 +51,11 @@ def capsule_time(
     px: float, py: float, wx: float, wy: float, reach: float, way: float,
     x0: float, y0: float, x1: float, y1: float,
 ) -> float:  # fmt: skip
-    """First t ≥ 0 at which p + w t comes within ``reach`` of the segment; inf if never.
+    """Return the first t ≥ 0 with p + w t within ``reach`` of the segment; inf if never.
 
-    ``reach`` is the sum of the two radii; what is farther off than ``way`` is left out.
-    A point that is within reach already and approaches has 0; one that separates has
-    inf, because the distance to a convex set along a line is convex.
+    ``reach`` is the sum of the two radii; a segment farther away than ``way`` is ignored.
+    The result is 0 for a point within reach that approaches, and inf for one that separates,
+    because the distance to a convex set along a line is convex.
     """
     qx, qy = nearest_on_segment(px, py, x0, y0, x1, y1)
     fx, fy = px - qx, py - qy
@@ -73,7 +73,7 @@ def capsule_time(
         gap = abs(across) - reach
         here = dx * (px - x0) + dy * (py - y0)
         if gap <= 0.0 and 0.0 <= here <= length2:
-            return 0.0  # touching, though the squares above were rounded apart
+            return 0.0  # touching, although rounding separated the squares above
         if gap > 0.0:
             closing = -speed if across > 0.0 else speed
             if closing <= 0.0:
@@ -91,7 +91,7 @@ def capsule_time(
 def segments_cross(
     ax: float, ay: float, bx: float, by: float, x0: float, y0: float, x1: float, y1: float
 ) -> bool:
-    """True where the open segment ab properly crosses the segment."""
+    """Whether the open segment ab properly crosses the segment."""
     dx, dy = x1 - x0, y1 - y0
     side_a = dx * (ay - y0) - dy * (ax - x0)
     side_b = dx * (by - y0) - dy * (bx - x0)

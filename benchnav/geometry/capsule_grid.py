@@ -1,4 +1,4 @@
-"""Capsules sorted into the cells of a uniform grid: is a motion of a disc clear of all?"""
+"""Capsules sorted into cells of a uniform grid, to test whether a motion of a disc is free."""
 
 import math
 from typing import NamedTuple
@@ -10,12 +10,12 @@ from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.sweep import segment_distance2
 from benchnav.kernels import kernel
 
-SLACK = 1e-8  # [m] of overlap that counts as touching: rounding must not close a passage
+SLACK = 1e-8  # [m] overlap that counts as touching, so that rounding closes no passage
 _MAX_SIDE = 512  # cells along an axis
 
 
 class CapsuleGrid(NamedTuple):
-    """Capsules grown by a disc's radius; what does not reach into a cell is not listed there."""
+    """Capsules grown by a disc's radius; each cell lists the capsules that reach into it."""
 
     capsules: FloatArray  # (P, 5)
     reach: FloatArray  # (P,) [m] radius of the capsule + radius of the disc
@@ -29,7 +29,7 @@ class CapsuleGrid(NamedTuple):
 
 
 def capsule_grid(capsules: FloatArray, radius: float) -> CapsuleGrid:
-    """The grid of capsules (P, 5) for a disc of ``radius`` [m]."""
+    """Return the grid of capsules (P, 5) for a disc of ``radius`` [m]."""
     capsules = np.ascontiguousarray(capsules, np.float64).reshape(-1, 5)
     reach = capsules[:, 4] + radius
     if len(capsules) == 0:
@@ -50,7 +50,7 @@ def capsule_grid(capsules: FloatArray, radius: float) -> CapsuleGrid:
 def _sorted(
     capsules: FloatArray, reach: FloatArray, x: float, y: float, side: float, nx: int, ny: int
 ) -> tuple[IntArray, IntArray]:
-    """Counting sort of capsules into every cell that they reach, rising within a cell."""
+    """Sort capsules by counting into every cell that they reach, ascending within a cell."""
     start = np.zeros(nx * ny + 1, np.int64)
     item = np.zeros(0, np.int64)
     for fill in range(2):
@@ -84,7 +84,7 @@ def _sorted(
 
 @kernel
 def is_clear(grid: CapsuleGrid, ax: float, ay: float, bx: float, by: float) -> bool:
-    """True where the disc may go straight from a to b, touching allowed."""
+    """Whether the disc can move straight from a to b; touching is allowed."""
     if ax > bx:
         ax, ay, bx, by = bx, by, ax, ay
     side, wide = grid.side, bx - ax
@@ -112,7 +112,7 @@ def is_clear(grid: CapsuleGrid, ax: float, ay: float, bx: float, by: float) -> b
 
 @kernel
 def nearby(grid: CapsuleGrid, x: float, y: float, radius: float) -> IntArray:
-    """Capsules that may reach within ``radius`` of a point: all that do, and more, some twice."""
+    """Return all capsules within ``radius`` of a point, perhaps with others and duplicates."""
     side = grid.side
     i0 = max(0, math.floor((x - radius - grid.x) / side))
     i1 = min(grid.nx - 1, math.floor((x + radius - grid.x) / side))
@@ -134,8 +134,8 @@ def nearby(grid: CapsuleGrid, x: float, y: float, radius: float) -> IntArray:
 
 
 @kernel
-def longer(rows: FloatArray) -> FloatArray:
-    """The same rows with room for twice as many."""
+def doubled(rows: FloatArray) -> FloatArray:
+    """Return the same rows with space for twice as many."""
     more = np.empty((2 * rows.shape[0], rows.shape[1]))
     for i in range(rows.shape[0]):
         for j in range(rows.shape[1]):

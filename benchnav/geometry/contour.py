@@ -1,8 +1,8 @@
 """Outlines of the blocked cells of a grid, as rectilinear loops.
 
-Blocked cells that touch at a corner belong together: nothing passes between
-them. Every loop has the blocked cells on its left, and no vertex that lies on a
-straight line.
+Blocked cells that touch at a corner are connected: no path passes between
+them. Every loop has the blocked cells on its left, and no vertex on a straight
+line.
 """
 
 from dataclasses import dataclass
@@ -32,11 +32,11 @@ class _Runs(NamedTuple):
 
 
 def outlines(blocked: BoolArray) -> tuple[Outline, ...]:
-    """One outline for each 8-connected set of blocked cells of a (H, W) grid, row 0 at the bottom.
+    """Return an outline per 8-connected set of blocked cells of a (H, W) grid, row 0 at the bottom.
 
-    The outside of the grid counts as blocked and comes first; of its outline only
-    the inner side exists, so that its loops run clockwise around what is free. It
-    is left out where no cell is free.
+    The outside of the grid counts as blocked and comes first. Its outline consists of
+    the inner boundary only, so its loops run clockwise around the free cells. It
+    is omitted if no cell is free.
     """
     from scipy import ndimage
 
@@ -53,22 +53,22 @@ def outlines(blocked: BoolArray) -> tuple[Outline, ...]:
 
 
 def _runs(label: AnyArray) -> _Runs:
-    """Along lattice lines between rows (horizontal runs), then between columns (vertical)."""
+    """Return runs along lattice lines: between rows (horizontal), then columns (vertical)."""
     east = _line_runs(label)
     north = _line_runs(label.T)
-    line, start, end, above, which = (np.concatenate([east[k], north[k]]) for k in range(5))
+    line, start, end, above, component = (np.concatenate([east[k], north[k]]) for k in range(5))
     vertical = np.arange(len(line)) >= len(east[0])
-    # blocked above a horizontal run: it heads east; right of a vertical one: south
+    # blocked cells above a horizontal run: it heads east; right of a vertical run: south
     forward = above ^ vertical
     begin, finish = np.where(forward, start, end), np.where(forward, end, start)
     tail = np.where(vertical[:, None], np.stack([line, begin], 1), np.stack([begin, line], 1))
     head = np.where(vertical[:, None], np.stack([line, finish], 1), np.stack([finish, line], 1))
     heading = np.where(forward, 0, 2) + vertical
-    return _Runs(tail, head, which, heading)
+    return _Runs(tail, head, component, heading)
 
 
 def _line_runs(label: AnyArray) -> tuple[IntArray, IntArray, IntArray, BoolArray, IntArray]:
-    """(line, first, last, blocked beyond the line, component) of the runs along axis 1."""
+    """Return (line, first, last, blocked beyond the line, component) of the runs along axis 1."""
     blocked = label > 0
     side = blocked[1:].astype(np.int8) - blocked[:-1].astype(np.int8)  # line k is between k, k + 1
     step = np.pad(side, ((0, 0), (1, 1)))
@@ -77,12 +77,12 @@ def _line_runs(label: AnyArray) -> tuple[IntArray, IntArray, IntArray, BoolArray
     line, first = np.nonzero(begins)
     last = np.nonzero(ends)[1]
     above = side[line, first] > 0
-    which = label[line + above, first]
-    return line + 1, first, last, above, which.astype(np.int64)
+    component = label[line + above, first]
+    return line + 1, first, last, above, component.astype(np.int64)
 
 
 def _following(runs: _Runs) -> IntArray:
-    """(N,) the run that goes on where each ends; at a corner of two cells, the one to the right."""
+    """Return the run (N,) that continues each run; at a corner of two cells, the right-hand one."""
     width = int(runs.head.max(initial=0)) + 1
 
     def key(point: IntArray, heading: IntArray) -> IntArray:
@@ -99,7 +99,7 @@ def _following(runs: _Runs) -> IntArray:
 
 
 def _cycles(following: IntArray) -> list[IntArray]:
-    """The cycles of a permutation, each from its least element."""
+    """Return the cycles of a permutation, each from its smallest element."""
     after = following.tolist()
     seen = [False] * len(after)
     cycles = []

@@ -1,7 +1,7 @@
-"""Where a disc may roll around the corners of what is solid.
+"""Free arcs: the parts of circles around corners along which a disc can move.
 
-The disc's centre keeps out of capsules grown by its radius. The boundary of what
-is left is made of straight pieces and of arcs around the capsules' ends; shortest
+The disc's centre stays out of the capsules grown by its radius. The boundary of the remaining
+free space consists of straight pieces and of arcs around the capsules' ends; shortest
 paths bend on these arcs only.
 """
 
@@ -12,16 +12,16 @@ import numpy as np
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
-from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid, longer, nearby
+from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid, doubled, nearby
 from benchnav.kernels import kernel
 
 TWO_PI = 2.0 * math.pi
-_NARROW = 1e-9  # [rad] narrower arcs are none
-_TANGENT = 1e-12  # a cosine this near 1 is 1: two curves that touch
+_NARROW = 1e-9  # [rad] narrower arcs are ignored
+_TANGENT = 1e-12  # tolerance of a cosine of ±1: two curves that touch
 
 
 class Arcs(NamedTuple):
-    """Free arcs, by centre."""
+    """Free arcs of circles."""
 
     center: FloatArray  # (N, 2) [m]
     radius: FloatArray  # (N,) [m]
@@ -32,7 +32,7 @@ class Arcs(NamedTuple):
 
 
 def free_arcs(grid: CapsuleGrid) -> Arcs:
-    """The arcs around the ends of the grid's capsules that no capsule covers."""
+    """Return the arcs around the ends of the grid's capsules that no capsule covers."""
     circles = _circles(grid.capsules, grid.reach)
     rows = _free_parts(grid, circles)
     low, width = rows[:, 3].copy(), rows[:, 4].copy()
@@ -43,10 +43,10 @@ def free_arcs(grid: CapsuleGrid) -> Arcs:
 
 
 def _circles(capsules: FloatArray, reach: FloatArray) -> FloatArray:
-    """(C, 3) x, y, radius around every capsule end, less the corners that bend inwards.
+    """Return circles (C, 3) x, y, radius around every capsule end, without inward corners.
 
-    Edges follow one another along their loop, solid to the left, so a right turn
-    is a corner that no path can touch.
+    Edges are in loop order with the solid on the left, so a path cannot touch a corner
+    that turns right.
     """
     if len(capsules) == 0:
         return np.zeros((0, 3))
@@ -74,19 +74,19 @@ def _circles(capsules: FloatArray, reach: FloatArray) -> FloatArray:
 
 @kernel
 def _free_parts(grid: CapsuleGrid, circles: FloatArray) -> FloatArray:
-    """(N, 5) x, y, radius, low, width of the free parts of circles (C, 3)."""
+    """Return the free parts (N, 5) x, y, radius, low, width of circles (C, 3)."""
     rows = np.empty((16, 5))
     count = 0
     for index in range(len(circles)):
         x, y, radius = circles[index, 0], circles[index, 1], circles[index, 2]
         near = nearby(grid, x, y, radius)
         angles = _crossings(grid, near, x, y, radius)
-        size = len(angles) - 1  # the last angle is the first, one turn later
+        size = len(angles) - 1  # the last angle is the first one plus a full turn
         free = np.empty(size, np.bool_)
         for k in range(size):
             at = 0.5 * (angles[k] + angles[k + 1])
             free[k] = _is_free(grid, near, x + radius * math.cos(at), y + radius * math.sin(at))
-        first = 0  # a piece before which the circle is covered, if there is one
+        first = 0  # a piece after a covered piece, if there is one
         while first < size and free[first - 1]:
             first += 1
         k = 0
@@ -98,7 +98,7 @@ def _free_parts(grid: CapsuleGrid, circles: FloatArray) -> FloatArray:
             k += 1
             if width > 0.0:
                 if count == len(rows):
-                    rows = longer(rows)
+                    rows = doubled(rows)
                 rows[count, 0], rows[count, 1], rows[count, 2] = x, y, radius
                 rows[count, 3], rows[count, 4] = low, (TWO_PI if first == size else width)
                 count += 1
@@ -107,7 +107,7 @@ def _free_parts(grid: CapsuleGrid, circles: FloatArray) -> FloatArray:
 
 @kernel
 def _crossings(grid: CapsuleGrid, near: IntArray, x: float, y: float, radius: float) -> FloatArray:
-    """Angles at which a circle may enter or leave a grown capsule, rising, the first twice.
+    """Return the angles where a circle may enter or leave a grown capsule, ascending.
 
     There is at least one, and no two are closer than ``_NARROW``; the last is the
     first plus a full turn.
@@ -149,7 +149,7 @@ def _crossings(grid: CapsuleGrid, near: IntArray, x: float, y: float, radius: fl
 
 @kernel
 def _add(angles: FloatArray, count: int, facing: float, cosine: float) -> int:
-    """Appends facing ± arccos(cosine), if there is such an angle, turned into [0, 2 pi)."""
+    """Append facing ± arccos(cosine) in [0, 2 pi), if defined; return the new count."""
     if abs(cosine) > 1.0 + _TANGENT:
         return count
     if abs(cosine) > 1.0 - _TANGENT:

@@ -1,13 +1,13 @@
-"""Shortest paths of a disc among capsules, exact to rounding.
+"""Shortest paths of a disc among capsules, exact except for rounding.
 
-A shortest path of a disc's centre is made of straight motions that touch free
+A shortest path of a disc's centre consists of straight motions that touch free
 arcs, and of the arcs between them (the generalised visibility graph, Latombe
-1991, chapter 4): the tangents of two arcs are found once, a query adds those from
-its start and to its goal and searches.
+1991, chapter 4). The tangents of pairs of arcs are computed once; a query adds the tangents
+from its start and to its goal, and searches.
 
-It ends where the centre touches the goal disc, at the nearest point of it that
-can be reached: straight towards the goal's centre, or, where something stands in
-the goal disc, where its rim meets the boundary of free space.
+A path ends where the centre reaches the goal disc, at the nearest reachable point of the
+disc: straight towards the goal's centre, or, if an obstacle overlaps the goal disc, at a point
+where the disc's rim meets the boundary of free space.
 """
 
 import math
@@ -24,11 +24,11 @@ from benchnav.geometry.geodesic_search import Found, Tangents, search, tangents
 from benchnav.geometry.rim import rim_points
 from benchnav.geometry.tangent import bitangents, point_tangents
 
-_BEND = math.radians(10.0)  # a waypoint of a polyline around an arc turns by at most this
+_BEND = math.radians(10.0)  # largest turn at a waypoint of a polyline around an arc
 
 
 class _Route(NamedTuple):
-    length: float  # [m], NaN where there is no path
+    length: float  # [m], NaN if there is no path
     end: FloatArray  # (2,) [m]
     leave: FloatArray | None = None  # (3,) link from the start; None: straight to the end
     arrive: FloatArray | None = None  # (3,) link to the end
@@ -36,12 +36,12 @@ class _Route(NamedTuple):
 
 
 class FreeSpace:
-    """Where the centre of a disc of ``radius`` [m] may be among capsules (P, 5).
+    """The positions that the centre of a disc of ``radius`` [m] can take among capsules (P, 5).
 
-    Loops must have what is solid on their left. Touching is allowed, and so is
-    overlap of up to 1e-8 m. Only edges are looked at: a place deep inside a solid
-    counts as free, though nothing leads out of it. Tangents are found when a query
-    first needs them.
+    Loops must have the solid on their left. Touching is allowed, and so is
+    overlap of up to 1e-8 m. Only edges are tested: a position deep inside a solid
+    counts as free, although no path leads out of it. The graph is computed when a query
+    first needs it.
 
     Raises:
         ValueError: the radius is not above 1e-8.
@@ -62,23 +62,24 @@ class FreeSpace:
         return tangents(self._arcs, bitangents(self._grid, self._arcs))
 
     def is_free(self, place: FloatArray) -> bool:
-        """True where the disc at ``place`` (2,) [m] overlaps nothing."""
+        """Whether the disc at ``place`` (2,) [m] overlaps no capsule."""
         x, y = float(place[0]), float(place[1])
         return bool(is_clear(self._grid, x, y, x, y))
 
     def length(self, start: FloatArray, goal: FloatArray, tolerance: float = 0.0) -> float:
-        """Length [m] of the shortest path from ``start`` (2,) to the disc around ``goal`` (2,).
+        """Return the length [m] of the shortest path from ``start`` (2,) to the goal disc.
 
-        ``tolerance`` [m] is the goal disc's radius. NaN where there is no path.
+        The goal disc has centre ``goal`` (2,) and radius ``tolerance`` [m]. The result is NaN if
+        there is no path.
         """
         return self._route(start, goal, tolerance).length
 
     def path(
         self, start: FloatArray, goal: FloatArray, tolerance: float = 0.0, bend: float = _BEND
     ) -> FloatArray:
-        """The same path as waypoints (W, 2) [m]; (0, 2) where there is none.
+        """Return the same path as waypoints (W, 2) [m]; (0, 2) if there is none.
 
-        Arcs become polylines around them, so that no corner is cut, of sides so short
+        Arcs become polylines around them: no corner is cut, and the sides are so short
         that they are as clear as the arcs. A waypoint on an arc turns by at most ``bend``
         [rad]; the polyline is longer than the arc by a share of bend² / 12 at most (0.3 %).
         """
@@ -96,18 +97,18 @@ class FreeSpace:
 
     def _route(self, start: FloatArray, goal: FloatArray, tolerance: float) -> _Route:
         sx, sy, gx, gy = float(start[0]), float(start[1]), float(goal[0]), float(goal[1])
-        away = math.hypot(gx - sx, gy - sy)
-        nowhere = _Route(math.nan, np.array([gx, gy]))
+        distance = math.hypot(gx - sx, gy - sy)
+        no_route = _Route(math.nan, np.array([gx, gy]))
         if not is_clear(self._grid, sx, sy, sx, sy):
-            return nowhere
-        if away <= tolerance:
+            return no_route
+        if distance <= tolerance:
             return _Route(0.0, np.array([sx, sy]))
-        share = (away - tolerance) / away
+        share = (distance - tolerance) / distance
         ex, ey = sx + share * (gx - sx), sy + share * (gy - sy)
         if is_clear(self._grid, sx, sy, ex, ey):
-            return _Route(away - tolerance, np.array([ex, ey]))
+            return _Route(distance - tolerance, np.array([ex, ey]))
         arrive, ends = self._arrivals(gx, gy, tolerance)
-        best = nowhere
+        best = no_route
         for x, y in ends[len(arrive) :]:
             straight = math.hypot(x - sx, y - sy)
             if not straight >= best.length and is_clear(self._grid, sx, sy, x, y):
@@ -122,7 +123,7 @@ class FreeSpace:
         return _Route(found.length, ends[last], leave[first], arrive[last], found)
 
     def _arrivals(self, x: float, y: float, tolerance: float) -> tuple[FloatArray, FloatArray]:
-        """Links (L, 3) to the goal disc; where each ends (L + E, 2), and the E rim points."""
+        """Return links (L, 3) to the goal disc; their ends and the E rim points (L + E, 2)."""
         links = point_tangents(self._grid, self._arcs, x, y, tolerance)
         touch = self._rim(links)
         share = tolerance / np.maximum(links[:, 2:] + tolerance, 1e-300)
@@ -133,7 +134,7 @@ class FreeSpace:
         return np.vstack([links, *more]), np.vstack([*ends, rim])
 
     def _rim(self, links: FloatArray) -> FloatArray:
-        """(L, 2) points on arcs of links (L, 3), or of anything that begins with arc, angle."""
+        """Return the points (L, 2) on arcs of rows (L, ·) that begin with arc, angle."""
         arc = links[:, 0].astype(np.int64)
         turn = self._arcs.low[arc] + links[:, 1]
         out = np.stack([np.cos(turn), np.sin(turn)], axis=1)
@@ -154,7 +155,7 @@ class FreeSpace:
         return points
 
     def _bent(self, arc: int, begin: float, end: float, bend: float) -> FloatArray:
-        """(N, 2) corners of the polyline around a piece of an arc."""
+        """Return the corners (N, 2) of the polyline around a piece of an arc."""
         (x, y), radius, low = self._arcs.center[arc], self._arcs.radius[arc], self._arcs.low[arc]
         return np.asarray(around_arc(self._grid, x, y, radius, low + begin, low + end, bend))
 
@@ -162,14 +163,14 @@ class FreeSpace:
 def geodesic_lengths(
     capsules: FloatArray, start: FloatArray, goal: FloatArray, radius: FloatArray, tolerance: float
 ) -> FloatArray:
-    """(A,) lengths [m] of the shortest paths of A discs among capsules (P, 5); NaN: no path.
+    """Return the lengths (A,) [m] of the shortest paths of A discs among capsules; NaN: no path.
 
     Args:
-        capsules: what stands, solid to the left of every loop.
+        capsules: (P, 5), the obstacles, solid to the left of every loop.
         start: (A, 2) [m].
         goal: (A, 2) [m].
-        radius: (A,) [m] of the discs; equal ones share their graph.
-        tolerance: [m] a path ends this far from its goal.
+        radius: (A,) [m] of the discs; equal radii share a graph.
+        tolerance: [m] radius of the goal disc, in which a path ends.
 
     Raises:
         ValueError: a radius is not above 1e-8.
@@ -183,5 +184,5 @@ def geodesic_lengths(
 
 @lru_cache(maxsize=16)
 def _space(capsules: bytes, radius: float) -> FreeSpace:
-    """The graph of a map outlives the episode: the next one has the same walls."""
+    """Return the free space from a cache: the next episode often has the same walls."""
     return FreeSpace(np.frombuffer(capsules).reshape(-1, 5), radius)

@@ -1,8 +1,8 @@
-"""A* over tangents and arcs.
+"""A* search over tangents and arcs.
 
-Nodes are points where a tangent touches an arc. Neighbours of a node: the other
-end of its tangent, and the nodes before and after it on its arc. The search ends
-on links (rows of arc, angle, length), straight motions from the start and to the
+Nodes are points where a tangent touches an arc. The neighbours of a node are the other
+end of its tangent, and the nodes before and after it on its arc. The search starts and ends
+with links (rows of arc, angle, length): straight motions from the start or to the
 goal that touch arcs between nodes.
 """
 
@@ -38,7 +38,7 @@ class Found(NamedTuple):
 
 
 def tangents(arcs: Arcs, rows: FloatArray) -> Tangents:
-    """The graph of bitangents (M, 5); a full circle's end is joined to its beginning."""
+    """Return the graph of bitangents (M, 5); a full circle's end is joined to its beginning."""
     full = np.flatnonzero(arcs.width >= TWO_PI).astype(np.float64)
     zero = np.zeros(len(full))
     seams = np.column_stack([full, zero, full, zero + TWO_PI, zero])
@@ -62,7 +62,7 @@ def search(
     arcs: Arcs, graph: Tangents, leave: FloatArray, arrive: FloatArray,
     goal_x: float, goal_y: float, tolerance: float,
 ) -> Found:  # fmt: skip
-    """The shortest path that leaves by one link (·, 3) and arrives by another."""
+    """Return the shortest path that leaves by one link (·, 3) and arrives by another."""
     size = len(graph.arc)
     best, first, last = _on_one_arc(arcs, leave, arrive)
     node = -1
@@ -73,7 +73,7 @@ def search(
     waiting = 0
     for n in range(size):
         if link[n] >= 0:
-            bound = cost[n] + _least(graph, n, goal_x, goal_y, tolerance)
+            bound = cost[n] + _lower_bound(graph, n, goal_x, goal_y, tolerance)
             waiting = push(key, item, waiting, bound, n)
     done = np.zeros(size, np.bool_)
     while waiting > 0 and key[0] < best:
@@ -93,14 +93,14 @@ def search(
             through = cost[n] + (graph.length[n] if way == 0 else arcs.radius[k] * abs(turn))
             if through < cost[m]:
                 cost[m], parent[m] = through, n
-                bound = through + _least(graph, m, goal_x, goal_y, tolerance)
+                bound = through + _lower_bound(graph, m, goal_x, goal_y, tolerance)
                 waiting = push(key, item, waiting, bound, m)
     return _found(parent, best, first, last, node)
 
 
 @kernel
 def _on_one_arc(arcs: Arcs, leave: FloatArray, arrive: FloatArray) -> tuple[float, int, int]:
-    """The shortest path of one arc between two links: (length, first, last); inf: none."""
+    """Return the shortest path over one arc between two links: (length, first, last); inf: none."""
     best, first, last = math.inf, -1, -1
     for a in range(len(leave)):
         for b in range(len(arrive)):
@@ -114,9 +114,9 @@ def _on_one_arc(arcs: Arcs, leave: FloatArray, arrive: FloatArray) -> tuple[floa
 
 @kernel
 def _beside(arcs: Arcs, graph: Tangents, links: FloatArray) -> tuple[FloatArray, IntArray]:
-    """(N,) length from each node through the better link next to it on its arc; (N,) that link.
+    """Return the length (N,) from each node over the better adjacent link, and that link (N,).
 
-    inf and -1 where no link is next to it.
+    inf and -1 if no link is adjacent to the node on its arc.
     """
     length, link = np.full(len(graph.arc), math.inf), np.full(len(graph.arc), -1)
     for a in range(len(links)):
@@ -146,15 +146,15 @@ def _found(parent: IntArray, best: float, first: int, last: int, node: int) -> F
 
 
 @kernel
-def _least(graph: Tangents, n: int, x: float, y: float, tolerance: float) -> float:
-    """A path from node n to the goal is at least this long [m]."""
+def _lower_bound(graph: Tangents, n: int, x: float, y: float, tolerance: float) -> float:
+    """Return a lower bound [m] of a path from node n to the goal."""
     dx, dy = graph.point[n, 0] - x, graph.point[n, 1] - y
     return max(0.0, math.sqrt(dx * dx + dy * dy) - tolerance)
 
 
 @kernel
 def _after(graph: Tangents, arc: int, angle: float) -> int:
-    """The first node of an arc that lies beyond an angle."""
+    """Return the first node of an arc beyond an angle."""
     low, high = graph.first[arc], graph.first[arc + 1]
     while low < high:
         mid = (low + high) // 2

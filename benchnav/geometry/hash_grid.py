@@ -1,8 +1,8 @@
-"""Points in hashed cells: neighbours of a point without a dense grid over the plane.
+"""Points in hashed cells: find the neighbours of a point without a dense grid over the plane.
 
-A table of H = 2^k buckets is filled by counting sort; a cell's bucket may hold other
-cells' points too, so every spot keeps its own cell (ci, cj). Points are records with
-x, y, team, present, ci, cj; spots are copies of what a search needs, in bucket order.
+A table of H = 2^k buckets is filled by counting sort; a bucket may hold points of several
+cells, so every spot stores its own cell (ci, cj). Points are records with x, y, team, present,
+ci, cj; spots are copies of the fields that a search needs, in bucket order.
 """
 
 import math
@@ -14,14 +14,14 @@ from benchnav.kernels import kernel
 
 
 def hash_table(batch: int, points: int) -> IntArray:
-    """(batch, H+1) bucket bounds for grids of up to ``points`` points each."""
+    """Return empty bucket bounds (batch, H+1) for grids of up to ``points`` points each."""
     size = 1 << max(4, math.ceil(math.log2(2 * max(points, 1))))
     return np.zeros((batch, size + 1), np.int64)
 
 
 @kernel
 def bucket(i: int, j: int, size: int) -> int:
-    """Bucket of cell (i, j) in a table of ``size`` (a power of two)."""
+    """Return the bucket of cell (i, j) in a table of ``size`` (a power of two)."""
     return ((i * 73856093) ^ (j * 19349663)) & (size - 1)
 
 
@@ -29,7 +29,7 @@ def bucket(i: int, j: int, size: int) -> int:
 def fill(points: AnyArray, hashed: IntArray, spots: AnyArray, side: float) -> None:
     """Sort the present points (A,) into cells of ``side`` [m].
 
-    Bucket k then holds spots[hashed[k] : hashed[k + 1]], by rising index.
+    Bucket k then holds spots[hashed[k] : hashed[k + 1]], by ascending index.
     """
     size = len(hashed) - 1
     hashed[:] = 0

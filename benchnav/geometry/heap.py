@@ -1,25 +1,25 @@
-"""A binary heap in two arrays: keys, and what they are the keys of."""
+"""A binary heap in two arrays: keys and items."""
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.kernels import kernel
 
 
 @kernel
-def push(key: FloatArray, item: IntArray, count: int, value: float, what: int) -> int:
-    """Adds ``what`` under ``value`` to the ``count`` items; returns how many there are."""
+def push(key: FloatArray, item: IntArray, count: int, value: float, new: int) -> int:
+    """Add ``new`` with key ``value`` to the ``count`` items; return the new count."""
     at = count
     while at > 0 and key[(at - 1) // 2] > value:
         key[at], item[at] = key[(at - 1) // 2], item[(at - 1) // 2]
         at = (at - 1) // 2
-    key[at], item[at] = value, what
+    key[at], item[at] = value, new
     return count + 1
 
 
 @kernel
 def pop(key: FloatArray, item: IntArray, count: int) -> int:
-    """Removes the least key, which is the first; returns how many are left."""
+    """Remove the smallest key, which is the first; return the new count."""
     count -= 1
-    value, what = key[count], item[count]
+    value, new = key[count], item[count]
     at = 0
     while True:
         child = 2 * at + 1
@@ -31,5 +31,5 @@ def pop(key: FloatArray, item: IntArray, count: int) -> int:
             break
         key[at], item[at] = key[child], item[child]
         at = child
-    key[at], item[at] = value, what
+    key[at], item[at] = value, new
     return count

@@ -1,4 +1,4 @@
-"""Where the rim of a goal disc meets the boundary of free space."""
+"""The points where the rim of a goal disc meets the boundary of free space."""
 
 import math
 
@@ -11,7 +11,7 @@ from benchnav.kernels import kernel
 
 @kernel
 def rim_points(grid: CapsuleGrid, x: float, y: float, radius: float) -> FloatArray:
-    """(E, 2) free points [m] at ``radius`` from (x, y) that touch a capsule."""
+    """Return the free points (E, 2) [m] at ``radius`` from (x, y) that touch a capsule."""
     near = nearby(grid, x, y, radius)
     points = np.empty((8 * len(near), 2))
     count = 0
@@ -35,7 +35,7 @@ def _on_circle(
     points: FloatArray, count: int,
     x: float, y: float, radius: float, cx: float, cy: float, reach: float,
 ) -> int:  # fmt: skip
-    """Appends where the rim crosses the circle around c."""
+    """Append the crossings of the rim with the circle around c."""
     dx, dy = cx - x, cy - y
     d = math.sqrt(dx * dx + dy * dy)
     if d == 0.0:
@@ -56,7 +56,7 @@ def _on_edge(
     points: FloatArray, count: int,
     x: float, y: float, radius: float, c: FloatArray, offset: float,
 ) -> int:  # fmt: skip
-    """Appends where the rim crosses the segment of c, moved by ``offset`` to its left."""
+    """Append the crossings of the rim with the segment of c, shifted by ``offset`` to its left."""
     dx, dy = c[2] - c[0], c[3] - c[1]
     d = math.sqrt(dx * dx + dy * dy)
     if d == 0.0:

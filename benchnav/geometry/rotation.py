@@ -1,8 +1,8 @@
 """Angles and rotations from correctly rounded operations only.
 
-libm's sine differs between machines; these use +, -, ×, ÷ and floor in a fixed
-order, so that a simulated state is the same bits everywhere. They stay within 5e-16 (sine,
-cosine) and 1e-15 (arctangent) of libm's values.
+libm's sine differs between machines. These functions use +, -, ×, ÷ and floor in a fixed
+order, so that a simulated state has equal bits everywhere. They differ from libm's values by at
+most 5e-16 (sine, cosine) and 1e-15 (arctangent).
 """
 
 import math
@@ -13,7 +13,7 @@ from benchnav.kernels import kernel
 
 TWO_PI = 2.0 * math.pi
 _HALF_PI = 0.5 * math.pi
-# pi/2 in three parts (Cody & Waite 1980): k times the first is exact for small k
+# pi/2 in three parts (Cody & Waite 1980): k times the first part is exact for small k
 _HALF_PI_A = 1.5707963267341256
 _HALF_PI_B = 6.077100506303966e-11
 _HALF_PI_C = 2.0222662487959506e-21
@@ -22,13 +22,13 @@ _TAN_PI_8 = math.sqrt(2.0) - 1.0
 
 @kernel
 def wrap(angle: float) -> float:
-    """The angle [rad] in [-pi, pi)."""
+    """Return the angle [rad] in [-pi, pi)."""
     return angle - TWO_PI * math.floor((angle + math.pi) / TWO_PI)
 
 
 @kernel
 def cos_sin(angle: float) -> tuple[float, float]:
-    """(cos, sin) of an angle [rad] of moderate size, by Taylor series on [-pi/4, pi/4]."""
+    """Return (cos, sin) of a moderate angle [rad], by Taylor series on [-pi/4, pi/4]."""
     k = math.floor(angle / _HALF_PI + 0.5)
     x = ((angle - k * _HALF_PI_A) - k * _HALF_PI_B) - k * _HALF_PI_C
     z = x * x
@@ -60,7 +60,7 @@ def cos_sin(angle: float) -> tuple[float, float]:
 
 @kernel
 def angle_of(x: float, y: float) -> float:
-    """Direction [rad] of the vector (x, y) in [-pi, pi]; 0 for the zero vector."""
+    """Return the direction [rad] of the vector (x, y) in [-pi, pi]; 0 for the zero vector."""
     ax, ay = abs(x), abs(y)
     if ax == 0.0 and ay == 0.0:
         return 0.0
@@ -80,7 +80,7 @@ def angle_of(x: float, y: float) -> float:
 
 @kernel
 def _arctan_small(t: float) -> float:
-    """Arctangent on |t| ≤ tan(pi/8) by its Taylor series, to a last term below 1e-17."""
+    """Return the arctangent for |t| ≤ tan(pi/8) by Taylor series, to a last term below 1e-17."""
     z = t * t
     s = -1.0 / 43.0
     s = s * z + 1.0 / 41.0
@@ -108,7 +108,7 @@ def _arctan_small(t: float) -> float:
 
 
 def rotated(points: np.ndarray, angle: float) -> np.ndarray:
-    """(…, 2) points turned counter-clockwise by ``angle`` [rad] about the origin."""
+    """Return points (…, 2) rotated counter-clockwise by ``angle`` [rad] about the origin."""
     c, s = cos_sin(angle)
     x, y = points[..., 0], points[..., 1]
     return np.stack([c * x - s * y, s * x + c * y], axis=-1)

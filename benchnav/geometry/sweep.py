@@ -1,10 +1,9 @@
-"""The exact test of a disc that is swept along a segment against capsules.
+"""The exact collision test of a disc that moves along a segment among capsules.
 
-Nothing is sampled: a motion from p to q is free where the distance between the
-segments pq and each capsule's axis is at least the sum of the two radii, and pq
-does not cross the axis. Touching is free: the disc is taken as open. A motion that
-lies wholly inside a solid touches no edge, so the points where motions begin are
-asked `inside_solid` besides.
+The motion is not sampled: it is free from p to q if the distance between the segment pq and
+each capsule's axis is at least the sum of the two radii, and pq does not cross the axis.
+Touching is free: the disc is open. A motion that lies completely inside a solid touches no edge,
+so use `inside_solid` as well for the points where motions begin.
 
 Kernels use correctly rounded operations only. `Capsules` arrays are (P, 5)
 x0, y0, x1, y1, radius [m].
@@ -25,7 +24,7 @@ from benchnav.kernels import kernel
 def point_segment_distance2(
     px: float, py: float, x0: float, y0: float, x1: float, y1: float
 ) -> float:
-    """Squared distance [m²] of a point and a segment."""
+    """Return the squared distance [m²] of a point and a segment."""
     qx, qy = nearest_on_segment(px, py, x0, y0, x1, y1)
     return (px - qx) * (px - qx) + (py - qy) * (py - qy)
 
@@ -34,7 +33,7 @@ def point_segment_distance2(
 def segment_distance2(
     ax: float, ay: float, bx: float, by: float, x0: float, y0: float, x1: float, y1: float
 ) -> float:
-    """Squared distance [m²] of two segments: 0 where they cross, else an end is nearest."""
+    """Return the squared distance [m²] of two segments: 0 if they cross, else of an end point."""
     if segments_cross(ax, ay, bx, by, x0, y0, x1, y1):
         return 0.0
     d = point_segment_distance2(ax, ay, x0, y0, x1, y1)
@@ -48,17 +47,17 @@ def segment_distance2(
 def segment_capsule_distance(
     ax: float, ay: float, bx: float, by: float, capsule: FloatArray
 ) -> float:
-    """Distance [m] of the segment ab and a capsule (5,); negative where they overlap."""
+    """Return the distance [m] of the segment ab and a capsule (5,); negative if they overlap."""
     d2 = segment_distance2(ax, ay, bx, by, capsule[0], capsule[1], capsule[2], capsule[3])
-    apart: float = math.sqrt(d2) - capsule[4]
-    return apart
+    distance: float = math.sqrt(d2) - capsule[4]
+    return distance
 
 
 @kernel
 def is_free_of(
     px: float, py: float, qx: float, qy: float, radius: float, capsule: FloatArray
 ) -> bool:
-    """True where a disc may go from p to q without entering one capsule (5,)."""
+    """Whether a disc can move from p to q without entering one capsule (5,)."""
     x0, y0, x1, y1 = capsule[0], capsule[1], capsule[2], capsule[3]
     reach = radius + capsule[4]
     if max(px, qx) + reach < min(x0, x1) or max(x0, x1) + reach < min(px, qx):
@@ -75,7 +74,7 @@ def is_free_of(
 def motion_is_free(
     px: float, py: float, qx: float, qy: float, radius: float, capsules: FloatArray
 ) -> bool:
-    """True where a disc of ``radius`` [m] may go straight from p to q among capsules (P, 5)."""
+    """Whether a disc of ``radius`` [m] can move straight from p to q among capsules (P, 5)."""
     free = True
     for i in range(capsules.shape[0]):
         free = is_free_of(px, py, qx, qy, radius, capsules[i])
@@ -86,7 +85,7 @@ def motion_is_free(
 
 @kernel
 def clearance(px: float, py: float, capsules: FloatArray) -> float:
-    """Distance [m] of a point to the nearest capsule (P, 5); negative inside one, inf if none."""
+    """Return the distance [m] to the nearest capsule (P, 5); negative inside one, inf if none."""
     least = math.inf
     for i in range(capsules.shape[0]):
         x0, y0, x1, y1, r = capsules[i]
@@ -98,11 +97,11 @@ def clearance(px: float, py: float, capsules: FloatArray) -> float:
 def inside_solid(
     px: float, py: float, capsules: FloatArray, first: IntArray, outside: IntArray
 ) -> bool:
-    """True where a point lies within the loops of any solid.
+    """Whether a point lies within the loops of any solid.
 
     Solid s owns the capsules first[s]:first[s + 1]; ``outside`` (S,) is its winding
-    number far away (`solid_index`). Each solid is asked alone, so that solids may
-    overlap. Discs are left to the distance tests.
+    number far away (`solid_index`). Solids are tested one by one, so that they may
+    overlap. Discs are covered by the distance tests.
     """
     for s in range(first.shape[0] - 1):
         turns = outside[s]
@@ -121,7 +120,7 @@ def inside_solid(
 
 
 class Outlined(Protocol):
-    """A solid, as far as it matters here (`benchnav.arena.solid.Solid`, a layer above)."""
+    """The attributes of a solid that this module needs (`benchnav.arena.solid.Solid`)."""
 
     @property
     def loops(self) -> tuple[FloatArray, ...]: ...
@@ -132,9 +131,9 @@ class Outlined(Protocol):
 
 
 def solid_index(solids: Sequence[Outlined]) -> tuple[IntArray, IntArray]:
-    """(first (S+1,), outside (S,)) for `inside_solid`.
+    """Return (first (S+1,), outside (S,)) for `inside_solid`.
 
-    ``outside`` is 1 where the solid reaches to infinity: the inside of a walled arena
+    ``outside`` is 1 if the solid extends to infinity: the inside of a walled arena
     is a clockwise loop, so the loops of such a solid enclose a negative area.
     """
     first = np.zeros(len(solids) + 1, np.int64)
@@ -146,7 +145,7 @@ def solid_index(solids: Sequence[Outlined]) -> tuple[IntArray, IntArray]:
 
 
 def _reaches_to_infinity(solid: Outlined) -> bool:
-    """True where the loops enclose a negative area by more than rounding makes of thin walls."""
+    """Whether the loops enclose a negative area, beyond the rounding errors of thin walls."""
     loops = [loop for loop in solid.loops if len(loop) > 2]  # two vertices enclose nothing
     if not loops:
         return False
@@ -155,6 +154,6 @@ def _reaches_to_infinity(solid: Outlined) -> bool:
 
 
 def _area(loop: FloatArray) -> float:
-    """Signed area [m²] of a loop (V, 2), taken about its first vertex."""
+    """Return the signed area [m²] of a loop (V, 2), computed about its first vertex."""
     x, y = (loop - loop[0]).T
     return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

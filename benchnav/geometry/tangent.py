@@ -5,11 +5,11 @@ import math
 import numpy as np
 
 from benchnav.arrays import FloatArray
-from benchnav.geometry.capsule_grid import CapsuleGrid, is_clear, longer
+from benchnav.geometry.capsule_grid import CapsuleGrid, doubled, is_clear
 from benchnav.geometry.free_arc import TWO_PI, Arcs
 from benchnav.kernels import kernel
 
-_ON_ARC = 1e-12  # slack of the cosine that tells whether an arc reaches to a point of tangency
+_ON_ARC = 1e-12  # tolerance of the cosine in the test whether a tangent point is on an arc
 
 
 @kernel
@@ -21,7 +21,7 @@ def _on_arc(arcs: Arcs, k: int, ux: float, uy: float) -> bool:
 
 @kernel
 def _angle_on(arcs: Arcs, k: int, ux: float, uy: float) -> float:
-    """[rad] from the beginning of arc k to the direction u, which lies on it."""
+    """Return the angle [rad] from the beginning of arc k to the direction u, side is on the arc."""
     turn: float = (math.atan2(uy, ux) - arcs.low[k]) % TWO_PI
     width: float = arcs.width[k]
     if turn <= width:
@@ -31,7 +31,7 @@ def _angle_on(arcs: Arcs, k: int, ux: float, uy: float) -> float:
 
 @kernel
 def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
-    """(M, 5) arc i, angle on i, arc j, angle on j, length of all free tangents of two arcs."""
+    """Return all free tangents of two arcs (M, 5): arc i, angle on i, arc j, angle on j, length."""
     rows = np.empty((256, 5))
     count = 0
     for i in range(len(arcs.radius)):
@@ -43,12 +43,12 @@ def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
                 continue
             d = math.sqrt(d2)
             ex, ey = dx / d, dy / d
-            for which in range(4):
-                inner = 1.0 if which < 2 else -1.0  # the tangent passes between the two arcs
+            for side in range(4):
+                inner = 1.0 if side < 2 else -1.0  # the tangent passes between the two arcs
                 k = (arcs.radius[i] + inner * arcs.radius[j]) / d
                 if abs(k) > 1.0:
                     continue
-                across = math.sqrt(1.0 - k * k) * (1.0 if which % 2 == 0 else -1.0)
+                across = math.sqrt(1.0 - k * k) * (1.0 if side % 2 == 0 else -1.0)
                 ux, uy = k * ex - across * ey, k * ey + across * ex
                 if not _on_arc(arcs, i, ux, uy):
                     continue
@@ -62,7 +62,7 @@ def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
                 if not is_clear(grid, ax, ay, bx, by):
                     continue
                 if count == len(rows):
-                    rows = longer(rows)
+                    rows = doubled(rows)
                 length = math.sqrt((bx - ax) * (bx - ax) + (by - ay) * (by - ay))
                 rows[count, 0], rows[count, 1] = i, _angle_on(arcs, i, ux, uy)
                 rows[count, 2], rows[count, 3] = j, _angle_on(arcs, j, vx, vy)
@@ -73,10 +73,10 @@ def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
 
 @kernel
 def point_tangents(grid: CapsuleGrid, arcs: Arcs, px: float, py: float, short: float) -> FloatArray:
-    """(L, 3) arc, angle on it, length of the free tangents from a point.
+    """Return the free tangents from a point (L, 3): arc, angle on it, length.
 
-    The motion ends ``short`` [m] before the point and need be free only so far;
-    tangents that are no longer than that are left out.
+    The motion ends ``short`` [m] before the point and must be free up to there;
+    tangents that are no longer than ``short`` are omitted.
     """
     rows = np.empty((2 * len(arcs.radius), 3))
     count = 0

@@ -1,1 +1,1 @@
-"""Navigators in processes of their own: the messages, the fence, and both ends of the pipe."""
+"""Navigators in separate processes: the frame codecs, the sandbox, and both ends of the pipe."""

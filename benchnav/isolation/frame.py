@@ -1,11 +1,11 @@
-"""Frames: what goes through the pipes between a runner and a navigator's process.
+"""Frames: the messages in the pipes between a runner and a navigator's process.
 
-frame := kind[8] fields:u64 bytes:u64 field*      bytes: of all fields together
-field := name[24] type[1] axes:u8 zero[6] shape:u64[4] data, filled up to 8 bytes
+frame := kind[8] fields:u64 bytes:u64 field*      bytes: size of all fields together
+field := name[24] type[1] axes:u8 zero[6] shape:u64[4] data, padded to 8 bytes
 
-Little-endian; names and kinds are ASCII, filled with zeros. Types: d float64, q int64,
-b int8, B uint8, ? bool (a byte, 0 or 1), t text (UTF-8, one axis). Rows come first (C
-order). Every field starts at a multiple of 8. Nothing in a frame is ever executed.
+Little-endian; names and kinds are ASCII, padded with zeros. Types: d float64, q int64,
+b int8, B uint8, ? bool (a byte, 0 or 1), t text (UTF-8, one axis). Arrays are in C order (rows
+first). Every field starts at a multiple of 8. Nothing in a frame is ever executed.
 """
 
 import struct
@@ -16,40 +16,40 @@ import numpy as np
 
 from benchnav.arrays import AnyArray
 
-Field = AnyArray | float | str  # of numbers and bools; what has no axes is read as a number
+Field = AnyArray | float | str  # numbers and bools; a value without axes is read as a number
 Fields = Mapping[str, Field]
 
 HEAD = struct.Struct("<8sQQ")
-MOST = 1 << 30  # bytes of a frame
+MAX_SIZE = 1 << 30  # bytes of a frame
 _FIELD = struct.Struct("<24ssB6x4Q")
 _TYPES = {kind: np.dtype(kind).newbyteorder("<") for kind in ("d", "q", "b", "B", "?")}
 _ITEM = {kind: dtype.itemsize for kind, dtype in _TYPES.items()} | {"t": 1}
 
 
 def encode(kind: str, fields: Fields) -> bytes:
-    """The frame of this kind."""
+    """Return the bytes of a frame of this kind."""
     parts: list[bytes] = []
     for name, value in fields.items():
-        parts += _encoded(name, value)
+        parts += _encode_field(name, value)
     body = b"".join(parts)
     return HEAD.pack(kind.encode("ascii"), len(fields), len(body)) + body
 
 
 def head(data: bytes | bytearray) -> tuple[str, int, int]:
-    """(kind, number of fields, bytes that follow) of the first `HEAD.size` bytes of a frame.
+    """Read the first `HEAD.size` bytes of a frame: (kind, number of fields, bytes that follow).
 
-    Raises ValueError where they are not the head of a frame.
+    Raises ValueError if they are not the head of a frame.
     """
     kind, count, size = HEAD.unpack_from(data)
-    if not kind.rstrip(b"\0").isalpha() or size > MOST or count * _FIELD.size > size:
+    if not kind.rstrip(b"\0").isalpha() or size > MAX_SIZE or count * _FIELD.size > size:
         raise ValueError(f"no frame begins with {bytes(data[: HEAD.size])!r}")
     return kind.rstrip(b"\0").decode("ascii"), count, size
 
 
 def decode(count: int, body: bytearray) -> dict[str, Any]:
-    """The fields of a frame; arrays are views into ``body``.
+    """Return the fields of a frame; arrays are views into ``body``.
 
-    Raises ValueError where they are not what a frame holds.
+    Raises ValueError if ``body`` is not the content of a frame.
     """
     fields: dict[str, Any] = {}
     at = 0
@@ -67,12 +67,12 @@ def decode(count: int, body: bytearray) -> dict[str, Any]:
         size = items * _ITEM[kind]
         if size > len(body) - at:
             raise ValueError(f"the field {name!r} is longer than its frame")
-        fields[name] = _decoded(kind, body, at, items, shape)
+        fields[name] = _decode_field(kind, body, at, items, shape)
         at += size + -size % 8
     return fields
 
 
-def _encoded(name: str, value: Field) -> list[bytes]:
+def _encode_field(name: str, value: Field) -> list[bytes]:
     if isinstance(value, str):
         data, kind, shape = value.encode("utf-8"), "t", [len(value.encode("utf-8"))]
     else:
@@ -86,7 +86,7 @@ def _encoded(name: str, value: Field) -> list[bytes]:
     return [header, data, bytes(-len(data) % 8)]
 
 
-def _decoded(kind: str, body: bytearray, at: int, items: int, shape: list[int]) -> Any:
+def _decode_field(kind: str, body: bytearray, at: int, items: int, shape: list[int]) -> Any:
     if kind == "t":
         return body[at : at + items].decode("utf-8")
     array = np.frombuffer(body, _TYPES[kind], items, at).reshape(shape)

@@ -1,7 +1,7 @@
-"""Hosts a navigator that is written in Python: ``python -m benchnav.isolation.host [NAME]``.
+"""Host a navigator written in Python: ``python -m benchnav.isolation.host [NAME]``.
 
-The runner starts it for ``--isolate``, and tells it whom to host. With a NAME it is the
-program of a ``{type: process}`` navigator, and may live in an environment of its own.
+For ``--isolate``, the runner starts this module and sends the name of the navigator. With a NAME,
+this module is the program of a ``{type: process}`` navigator, and may run in its own environment.
 """
 
 import json
@@ -15,9 +15,9 @@ from pydantic import TypeAdapter
 
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import BenchnavError, MissingExtraError
-from benchnav.isolation.briefing_codec import briefings_of
+from benchnav.isolation.briefing_codec import decode_briefings
 from benchnav.isolation.frame import HEAD, decode, encode, head
-from benchnav.isolation.observation_codec import maps_changed, observation_of
+from benchnav.isolation.observation_codec import decode_changed_maps, decode_observation
 from benchnav.named_module import search_in
 from benchnav.navigation.command_check import CallFailed, checked, remarks_of, said
 from benchnav.navigation.map import Map
@@ -31,14 +31,14 @@ _SENSINGS = TypeAdapter(list[Sensing])
 
 @dataclass
 class Host:
-    """Answers frames for one navigator."""
+    """Answer the frames sent to one navigator."""
 
-    name: str = ""  # whom it hosts, where no message says it
+    name: str = ""  # of the navigator, if the first message has none
     navigator: Navigator | None = None
-    maps: dict[int, Map | None] = field(default_factory=dict)  # by row, as granted now
+    maps: dict[int, Map | None] = field(default_factory=dict)  # by row, as currently granted
 
     def answer(self, kind: str, fields: dict[str, Any]) -> Answer:
-        """The answer to a frame."""
+        """Return the answer to a frame."""
         calls: dict[str, Callable[[dict[str, Any]], Answer]] = {
             "hello": self._hello, "reset": self._reset, "act": self._act, "remarks": self._remarks,
         }  # fmt: skip
@@ -59,43 +59,43 @@ class Host:
             }
 
     def _hello(self, fields: dict[str, Any]) -> Answer:
-        says = json.loads(fields["says"])
-        sys.path += [entry for entry in says.get("path", ()) if entry not in sys.path]
-        search_in(says.get("folder", ""))
-        spec = says.get("navigator") or {"type": self.name, **says["config"]}
-        sensings = _SENSINGS.validate_python(says.get("sensings", []))
+        config = json.loads(fields["says"])
+        sys.path += [entry for entry in config.get("path", ()) if entry not in sys.path]
+        search_in(config.get("folder", ""))
+        spec = config.get("navigator") or {"type": self.name, **config["config"]}
+        sensings = _SENSINGS.validate_python(config.get("sensings", []))
         self.maps = {}
-        self.navigator, introduction = meet(spec, sensings, where=says.get("where", ""))
-        if introduction.lacks and not says.get("sensings"):
+        self.navigator, introduction = meet(spec, sensings, where=config.get("where", ""))
+        if introduction.lacks and not config.get("sensings"):
             return "failed", {"error": MissingExtraError.__name__, "reason": introduction.lacks}
         return "ready", {"says": introduction.model_dump_json(exclude_defaults=True)}
 
     def _reset(self, fields: dict[str, Any]) -> Answer:
-        briefings = briefings_of(fields)
+        briefings = decode_briefings(fields)
         rows = fields["rows"]
         self.maps.update(zip(rows.tolist(), (b.map for b in briefings), strict=True))
         self._hosted.reset(briefings, rows)
         return "done", {}
 
     def _act(self, fields: dict[str, Any]) -> Answer:
-        self.maps.update(maps_changed(fields))
+        self.maps.update(decode_changed_maps(fields))
         active = fields["active"].copy()
-        answer = self._hosted.act(observation_of(fields, self.maps))
+        answer = self._hosted.act(decode_observation(fields, self.maps))
         return "command", {"command": checked(answer, active)}
 
     def _remarks(self, fields: dict[str, Any]) -> Answer:
-        told = remarks_of(self._hosted.remarks(int(fields["row"])))
-        return "remarks", {"says": json.dumps(told)}
+        texts = remarks_of(self._hosted.remarks(int(fields["row"])))
+        return "remarks", {"says": json.dumps(texts)}
 
     @property
     def _hosted(self) -> Navigator:
         if self.navigator is None:
-            raise RuntimeError("nobody said hello")
+            raise RuntimeError("The first frame must be 'hello'.")
         return self.navigator
 
 
 def serve(host: Host, requests: int, answers: int) -> None:
-    """Answer what comes from the file ``requests`` until it ends, into the file ``answers``."""
+    """Answer the frames in the file ``requests`` until it ends; write to the file ``answers``."""
     while (start := _read(requests, HEAD.size)) is not None:
         kind, count, size = head(start)
         body = _read(requests, size)
@@ -107,7 +107,7 @@ def serve(host: Host, requests: int, answers: int) -> None:
 
 
 def _read(file: int, size: int) -> bytearray | None:
-    """``size`` bytes; None where the file ends before."""
+    """Return ``size`` bytes; None if the file ends before."""
     data = bytearray(size)
     rest = memoryview(data)
     while rest:
@@ -119,11 +119,11 @@ def _read(file: int, size: int) -> bytearray | None:
 
 
 def main() -> None:
-    """Serve the pipes that are standard input and output; what is printed goes to stderr."""
+    """Serve frames on standard input and output; printed text goes to stderr."""
     requests, answers = os.dup(0), os.dup(1)
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
-    os.close(nothing)
+    empty = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(empty, 0)
+    os.close(empty)
     os.dup2(2, 1)
     serve(Host("".join(sys.argv[1:2])), requests, answers)
 

@@ -1,4 +1,4 @@
-"""What `--isolate` does: any navigator by its name, hosted in a process of its own."""
+"""The navigator that `--isolate` uses: any navigator by name, hosted in a separate process."""
 
 import json
 import sys
@@ -15,22 +15,22 @@ from benchnav.named_module import current_folder
 from benchnav.navigation.plugin.capabilities import Introduction
 from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.plugins import NAVIGATORS
-from benchnav.source.parts import names_known_here
+from benchnav.source.parts import local_names
 
 HOST = (sys.executable, "-P", "-m", "benchnav.isolation.host")
 
 
 class Isolated(Remote):
-    """The navigator of ``spec``; ``cell`` is where it runs, and keeps its process warm."""
+    """The navigator of ``spec``; ``key`` names the job that runs it and keeps its process alive."""
 
-    def __init__(self, spec: Spec, cell: Hashable) -> None:
+    def __init__(self, spec: Spec, key: Hashable) -> None:
         super().__init__()
         self._spec = spec if isinstance(spec, str) else dict(spec)
-        self._cell = (json.dumps(self._spec, sort_keys=True), cell)
+        self._key = (json.dumps(self._spec, sort_keys=True), key)
 
     def start(self) -> Process:
-        sandbox.require_fence()
-        return process_pool.lend(self._cell, lambda: Process(HOST))
+        sandbox.require_sandbox()
+        return process_pool.acquire(self._key, lambda: Process(HOST))
 
     @property
     def hello(self) -> Mapping[str, Any]:
@@ -38,23 +38,23 @@ class Isolated(Remote):
 
 
 def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "") -> Introduction:
-    """As `benchnav.navigation.plugin.capabilities.introduction`, in a process of its own.
+    """Return the introduction of a navigator, from a separate process.
 
-    Nothing of the navigator is imported in this one. Raises also BrokenPluginError where the
-    process dies, and UsageError where no other process can host it.
+    This process imports nothing of the navigator. Raises also BrokenPluginError if the process
+    dies, and UsageError if no other process can host the navigator.
     """
     name, parameters = split(NAVIGATORS, spec, where=where)
-    for local in names_known_here({"type": name, **parameters}):
+    for local in local_names({"type": name, **parameters}):
         raise UsageError(
             f"{where + ': ' if where else ''}An isolated navigator and its parts must be installed,"
             f" or named as module:Class. Got {local!r} instead, which is registered in this"
             " process alone."
         )
-    sandbox.require_fence()
+    sandbox.require_sandbox()
     process = Process(HOST)
     try:
-        asked = {"where": where, "sensings": [asdict(sensing) for sensing in sensings]}
-        return say_hello(process, {**_hello(spec), **asked})
+        request = {"where": where, "sensings": [asdict(sensing) for sensing in sensings]}
+        return say_hello(process, {**_hello(spec), **request})
     except NavigatorError as error:
         raise BrokenPluginError(f"The navigator {name!r} cannot be used: {error}.") from None
     finally:
@@ -62,5 +62,5 @@ def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "
 
 
 def _hello(spec: Spec) -> dict[str, Any]:
-    told = spec if isinstance(spec, str) else dict(spec)
-    return {"navigator": told, "path": python_path(), "folder": str(current_folder())}
+    navigator = spec if isinstance(spec, str) else dict(spec)
+    return {"navigator": navigator, "path": python_path(), "folder": str(current_folder())}

@@ -1,4 +1,4 @@
-"""Maps ↔ the fields of a frame."""
+"""Maps ↔ fields of a frame."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,20 +7,20 @@ import numpy as np
 
 from benchnav.arena.mesh import Mesh
 from benchnav.arena.solid import Kind, Solid
-from benchnav.isolation.ragged_codec import counts, parts, stacked
+from benchnav.isolation.ragged_codec import counts, slices, stack
 from benchnav.navigation.map import Map
 
-_NOWHERE = (0.0, 0.0, 0.0, 0.0)
+_NO_BOUNDS = (0.0, 0.0, 0.0, 0.0)
 
 
-def charted(maps: Sequence[Map | None]) -> dict[str, Any]:
-    """The fields of ``maps`` (N,), of which None is a world without one."""
-    held = [map for map in maps if map is not None]
-    solids = [solid for map in held for solid in map.solids]
+def encode_maps(maps: Sequence[Map | None]) -> dict[str, Any]:
+    """Return the frame fields of ``maps`` (N,); None stands for a world without a map."""
+    granted = [map for map in maps if map is not None]
+    solids = [solid for map in granted for solid in map.solids]
     loops = [loop for solid in solids for loop in solid.loops]
     fields: dict[str, Any] = {
         "map.granted": np.array([map is not None for map in maps], np.bool_),
-        "map.bounds": np.array([_NOWHERE if map is None else map.bounds for map in maps]),
+        "map.bounds": np.array([_NO_BOUNDS if map is None else map.bounds for map in maps]),
         "map.revision": counts(0 if map is None else map.revision for map in maps),
         "map.solids": counts(0 if map is None else len(map.solids) for map in maps),
         "solid.kind": np.array([int(solid.kind) for solid in solids], np.int8),
@@ -28,17 +28,17 @@ def charted(maps: Sequence[Map | None]) -> dict[str, Any]:
         "solid.radius": np.array([solid.radius for solid in solids], float),
         "solid.loops": counts(len(solid.loops) for solid in solids),
         "loop.vertices": counts(map(len, loops)),
-        "vertex": stacked(loops, 2),
+        "vertex": stack(loops, 2),
     }
-    return fields | _meshed(maps, [mesh for map in held for mesh in map.meshes])
+    return fields | _encode_meshes(maps, [mesh for map in granted for mesh in map.meshes])
 
 
-def maps_of(fields: dict[str, Any]) -> list[Map | None]:
-    """The maps that `charted` made ``fields`` of."""
+def decode_maps(fields: dict[str, Any]) -> list[Map | None]:
+    """Return the maps that `encode_maps` turned into ``fields``."""
     vertex = fields["vertex"]
     vertex.setflags(write=False)
-    loops = [vertex[part] for part in parts(fields["loop.vertices"])]
-    owned = [tuple(loops[part]) for part in parts(fields["solid.loops"])]
+    loops = [vertex[part] for part in slices(fields["loop.vertices"])]
+    owned = [tuple(loops[part]) for part in slices(fields["solid.loops"])]
     kinds, centers = fields["solid.kind"].tolist(), fields["solid.center"].tolist()
     radii = fields["solid.radius"].tolist()
     solids = [
@@ -48,16 +48,16 @@ def maps_of(fields: dict[str, Any]) -> list[Map | None]:
     for solid in solids:
         solid.capsules.setflags(write=False)
     bounds, revisions = fields["map.bounds"].tolist(), fields["map.revision"].tolist()
-    meshes = _meshes_of(fields)
+    meshes = _decode_meshes(fields)
     return [
-        Map(tuple(bounds[n]), tuple(solids[part]), revisions[n], meshes[n]) if granted else None
-        for n, (granted, part) in enumerate(
-            zip(fields["map.granted"], parts(fields["map.solids"]), strict=True)
+        Map(tuple(bounds[n]), tuple(solids[part]), revisions[n], meshes[n]) if is_granted else None
+        for n, (is_granted, part) in enumerate(
+            zip(fields["map.granted"], slices(fields["map.solids"]), strict=True)
         )
     ]
 
 
-def _meshed(maps: Sequence[Map | None], meshes: list[Mesh]) -> dict[str, Any]:
+def _encode_meshes(maps: Sequence[Map | None], meshes: list[Mesh]) -> dict[str, Any]:
     if not meshes:
         return {}
     return {
@@ -65,18 +65,18 @@ def _meshed(maps: Sequence[Map | None], meshes: list[Mesh]) -> dict[str, Any]:
         "mesh.band": np.array([mesh.band for mesh in meshes], float),
         "mesh.vertices": counts(len(mesh.vertices) for mesh in meshes),
         "mesh.faces": counts(len(mesh.faces) for mesh in meshes),
-        "mesh.vertex": stacked([mesh.vertices for mesh in meshes], 3),
-        "mesh.face": stacked([mesh.faces for mesh in meshes], 3, np.int64),
+        "mesh.vertex": stack([mesh.vertices for mesh in meshes], 3),
+        "mesh.face": stack([mesh.faces for mesh in meshes], 3, np.int64),
     }
 
 
-def _meshes_of(fields: dict[str, Any]) -> list[tuple[Mesh, ...]]:
+def _decode_meshes(fields: dict[str, Any]) -> list[tuple[Mesh, ...]]:
     if "map.meshes" not in fields:
         return [()] * len(fields["map.granted"])
     band = fields["mesh.band"].tolist()
-    where = zip(parts(fields["mesh.vertices"]), parts(fields["mesh.faces"]), strict=True)
+    pieces = zip(slices(fields["mesh.vertices"]), slices(fields["mesh.faces"]), strict=True)
     meshes = [
         Mesh(fields["mesh.vertex"][vertices], fields["mesh.face"][faces], tuple(band[k]))
-        for k, (vertices, faces) in enumerate(where)
+        for k, (vertices, faces) in enumerate(pieces)
     ]
-    return [tuple(meshes[part]) for part in parts(fields["map.meshes"])]
+    return [tuple(meshes[part]) for part in slices(fields["map.meshes"])]

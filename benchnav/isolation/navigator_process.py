@@ -1,4 +1,4 @@
-"""A navigator's process: started behind the fence, asked by frames, ended for good."""
+"""A navigator's process: start it in the sandbox, exchange frames with it, and end it."""
 
 import contextlib
 import math
@@ -18,15 +18,15 @@ from benchnav.isolation import sandbox
 from benchnav.isolation.frame import HEAD, Fields, decode, encode, head
 from benchnav.system.temporary_folder import TemporaryFolder
 
-_ROOM = 1 << 20  # bytes of a pipe, where the system grants them
-_TAIL = 2000  # bytes of what it said last that are kept
+_PIPE_SIZE = 1 << 20  # bytes, where the system grants them
+_TAIL = 2000  # bytes of its standard error that are kept
 _F_SETPIPE_SZ = 1031  # Linux
 
 
 class Process:
     """One process that answers frames on its standard input and output, one at a time.
 
-    What it writes to its standard error is talk, and passed on. After a failure it is killed.
+    Its standard error is passed on to this process's. After a failure it is killed.
     """
 
     def __init__(self, command: Sequence[str]) -> None:
@@ -45,23 +45,23 @@ class Process:
         for pipe in (self._in, self._out, self._err):
             os.set_blocking(pipe, False)
             _widen(pipe)
-        self._said = b""
+        self._stderr_tail = b""
         self.stop = finalize(self, _stop, self._popen, folder)
 
     @property
     def alive(self) -> bool:
-        """False once it ended, or was ended."""
+        """Whether the process still runs."""
         return bool(self.stop.alive) and self._popen.poll() is None
 
-    def ask(self, kind: str, fields: Fields, patience: float) -> tuple[str, dict[str, Any]]:
-        """(kind, fields) of its answer.
+    def request(self, kind: str, fields: Fields, patience: float) -> tuple[str, dict[str, Any]]:
+        """Send a frame, and return (kind, fields) of the answer.
 
         Args:
-            kind: of the frame that it is sent.
-            fields: of that frame.
-            patience: [s] that it may take.
+            kind: kind of the frame sent.
+            fields: fields of the frame sent.
+            patience: time limit for the answer [s].
 
-        Raises NavigatorError where it ends, answers no frame, or takes too long.
+        Raises NavigatorError if the process ends, answers no frame, or takes too long.
         """
         if not self.alive:
             raise NavigatorError(self._ended())
@@ -80,15 +80,15 @@ class Process:
                     if key.fd == self._in:
                         unsent = self._send(unsent, pipes)
                     elif key.fd == self._err:
-                        self._listen(pipes)
+                        self._pass_on_stderr(pipes)
                     else:
                         self._receive(received)
                 if size is None and len(received) >= HEAD.size:
                     size = HEAD.size + self._size(received)
-        return self._understood(received)
+        return self._decode(received)
 
     def peak_memory(self) -> int:
-        """[bytes] the most that it ever held in RAM; 0 where the system does not tell."""
+        """Return the largest memory [bytes] it held in RAM; 0 if the system does not tell."""
         most = 0
         with contextlib.suppress(OSError, ValueError, IndexError):
             own = self._popen.pid
@@ -100,7 +100,7 @@ class Process:
         return most
 
     def _send(self, unsent: memoryview, pipes: selectors.BaseSelector) -> memoryview:
-        with contextlib.suppress(BlockingIOError, BrokenPipeError):  # its end shows on its output
+        with contextlib.suppress(BlockingIOError, BrokenPipeError):  # its output shows its end
             unsent = unsent[os.write(self._in, unsent) :]
             if unsent:
                 return unsent
@@ -109,21 +109,21 @@ class Process:
         return unsent
 
     def _receive(self, received: bytearray) -> None:
-        data = os.read(self._out, _ROOM)
+        data = os.read(self._out, _PIPE_SIZE)
         if not data:
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._popen.wait(2.0)
-            self._listen()
+            self._pass_on_stderr()
             cause = self._ended()
             self.stop()
             raise NavigatorError(cause)
         received += data
 
-    def _listen(self, pipes: selectors.BaseSelector | None = None) -> None:
-        """Pass on what it says, and keep the end of it."""
+    def _pass_on_stderr(self, pipes: selectors.BaseSelector | None = None) -> None:
+        """Pass on its standard error, and keep the last bytes."""
         with contextlib.suppress(BlockingIOError):
-            data = os.read(self._err, _ROOM)
-            self._said = (self._said + data)[-_TAIL:]
+            data = os.read(self._err, _PIPE_SIZE)
+            self._stderr_tail = (self._stderr_tail + data)[-_TAIL:]
             if data:
                 sys.stderr.write(data.decode("utf-8", "replace"))
             elif pipes is not None:
@@ -133,20 +133,20 @@ class Process:
         try:
             return head(received)[2]
         except ValueError as error:
-            self._fail(f"answered what is no frame: {error}")
+            self._fail(f"answered something that is not a frame: {error}")
 
-    def _understood(self, received: bytearray) -> tuple[str, dict[str, Any]]:
+    def _decode(self, received: bytearray) -> tuple[str, dict[str, Any]]:
         kind, count, size = head(received)
         if len(received) > HEAD.size + size:
-            self._fail(f"answered more than was asked, after {kind!r}")
+            self._fail(f"sent more bytes than its answer {kind!r} announces")
         try:
             return kind, decode(count, received[HEAD.size :])
-        except ValueError as error:  # also of what is no UTF-8 or ASCII
-            self._fail(f"answered what is no frame: {error}")
+        except ValueError as error:  # also invalid UTF-8 or ASCII
+            self._fail(f"answered something that is not a frame: {error}")
 
-    def _fail(self, what: str) -> NoReturn:
+    def _fail(self, reason: str) -> NoReturn:
         self.stop()
-        raise NavigatorError(f"its process {what}")
+        raise NavigatorError(f"its process {reason}")
 
     def _ended(self) -> str:
         code = self._popen.poll()
@@ -156,7 +156,7 @@ class Process:
             how = f"was killed by {signal.Signals(-code).name}"
         else:
             how = f"ended with exit status {code}"
-        last = self._said.decode("utf-8", "replace").strip().splitlines()[-1:]
+        last = self._stderr_tail.decode("utf-8", "replace").strip().splitlines()[-1:]
         return f"its process {how}" + (f" ({last[0].strip()[:200]})" if last else "")
 
 
@@ -164,13 +164,13 @@ def _widen(pipe: int) -> None:
     try:
         import fcntl
 
-        fcntl.fcntl(pipe, _F_SETPIPE_SZ, _ROOM)
+        fcntl.fcntl(pipe, _F_SETPIPE_SZ, _PIPE_SIZE)
     except (ImportError, OSError):
-        pass  # as wide as it is
+        pass  # keep the default size
 
 
 def _stop(popen: subprocess.Popen[bytes], folder: TemporaryFolder) -> None:
-    """End the process and all that it began, and remove its folder."""
+    """End the process and its descendants, and remove its folder."""
     if popen.poll() is None:
         with contextlib.suppress(ProcessLookupError, PermissionError):
             os.killpg(popen.pid, signal.SIGKILL)

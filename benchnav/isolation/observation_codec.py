@@ -1,4 +1,4 @@
-"""Observations ↔ the fields of a frame."""
+"""Observations ↔ fields of a frame."""
 
 from collections.abc import Sequence
 from dataclasses import fields as fields_of
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.isolation.map_codec import charted, maps_of
+from benchnav.isolation.map_codec import decode_maps, encode_maps
 from benchnav.navigation.map import Map
 from benchnav.navigation.observation import Observation
 from benchnav.sensors.readings import Edges, Neighbours, Rays
@@ -16,8 +16,8 @@ _OWN = ("rows", "time", "active", "position", "heading", "velocity", "goal")
 _CHANGED = "map.rows"
 
 
-def seen(observation: Observation, changed: Sequence[int]) -> dict[str, Any]:
-    """The fields of an observation, and the maps of the places ``changed`` in it alone."""
+def encode_observation(observation: Observation, changed: Sequence[int]) -> dict[str, Any]:
+    """Return the frame fields of an observation, and the maps of batch places ``changed`` only."""
     fields: dict[str, Any] = {name: getattr(observation, name) for name in _OWN}
     for sensor in _SENSORS:
         readings = getattr(observation, sensor)
@@ -26,27 +26,27 @@ def seen(observation: Observation, changed: Sequence[int]) -> dict[str, Any]:
                 fields[f"{sensor}.{f.name}"] = getattr(readings, f.name)
     if changed:
         fields[_CHANGED] = observation.rows[np.array(changed)]
-        fields |= charted([observation.maps[b] for b in changed])
+        fields |= encode_maps([observation.maps[b] for b in changed])
     return fields
 
 
-def maps_changed(fields: dict[str, Any]) -> dict[int, Map | None]:
-    """The new maps, by row."""
+def decode_changed_maps(fields: dict[str, Any]) -> dict[int, Map | None]:
+    """Return the new maps, by row."""
     if _CHANGED not in fields:
         return {}
-    return dict(zip(fields[_CHANGED].tolist(), maps_of(fields), strict=True))
+    return dict(zip(fields[_CHANGED].tolist(), decode_maps(fields), strict=True))
 
 
-def observation_of(fields: dict[str, Any], maps: dict[int, Map | None]) -> Observation:
-    """The observation that `seen` made ``fields`` of, with what ``maps`` holds by row."""
-    sensed = {
+def decode_observation(fields: dict[str, Any], maps: dict[int, Map | None]) -> Observation:
+    """Return the observation that `encode_observation` encoded; ``maps`` holds the maps by row."""
+    readings_by_sensor = {
         sensor: kind(**{f.name: fields[f"{sensor}.{f.name}"] for f in fields_of(kind)})
         for sensor, kind in _SENSORS.items()
         if f"{sensor}.{fields_of(kind)[0].name}" in fields
     }
     own = [fields[name] for name in _OWN]
-    made: Any = Observation
-    observation: Observation = made(
-        *own, tuple(maps[row] for row in fields["rows"].tolist()), **sensed
+    create: Any = Observation
+    observation: Observation = create(
+        *own, tuple(maps[row] for row in fields["rows"].tolist()), **readings_by_sensor
     )
     return observation

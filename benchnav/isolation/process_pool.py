@@ -1,7 +1,7 @@
-"""The processes that this process keeps for isolated navigators, so that they stay warm.
+"""The processes of isolated navigators that this process keeps alive between batches.
 
-One serves all batches of one cell, and no other: what it was told in one track, or in
-another scenario, never reaches another entry or track.
+A process serves the batches of one job only: what it received in one track or scenario never
+reaches another entry or track.
 """
 
 from collections import OrderedDict
@@ -9,26 +9,26 @@ from collections.abc import Callable, Hashable
 
 from benchnav.isolation.navigator_process import Process
 
-MOST = 2  # kept: of a navigator, and of who leads in its rehearsals
+MAX_KEPT = 2  # a navigator, and the leader of its rehearsals
 _KEPT: OrderedDict[Hashable, Process] = OrderedDict()
 
 
-def lend(cell: Hashable, start: Callable[[], Process]) -> Process:
-    """The process of ``cell``; a new one where there is none, or where it died."""
-    kept = _KEPT.pop(cell, None)
+def acquire(key: Hashable, start: Callable[[], Process]) -> Process:
+    """Return the process of job ``key``; start a new one if there is none or it died."""
+    kept = _KEPT.pop(key, None)
     process = kept if kept is not None and kept.alive else start()
-    _KEPT[cell] = process
-    while len(_KEPT) > MOST:
+    _KEPT[key] = process
+    while len(_KEPT) > MAX_KEPT:
         _KEPT.popitem(last=False)[1].stop()
     return process
 
 
-def dismiss() -> None:
-    """End them all."""
+def stop_all() -> None:
+    """Stop all processes."""
     while _KEPT:
         _KEPT.popitem()[1].stop()
 
 
 def peak_memory() -> int:
-    """[bytes] the most that one of them held in RAM."""
+    """Return the largest memory [bytes] that one of the processes held in RAM."""
     return max((process.peak_memory() for process in _KEPT.values()), default=0)

@@ -1,4 +1,4 @@
-"""What differs in length, put one after another with a field that counts."""
+"""Arrays of different lengths, concatenated, with a field that holds their lengths."""
 
 from collections.abc import Iterable, Iterator
 from itertools import accumulate, pairwise
@@ -9,16 +9,16 @@ from benchnav.arrays import AnyArray, IntArray
 
 
 def counts(lengths: Iterable[int]) -> IntArray:
-    """(N,) how much belongs to each."""
+    """Return the lengths as an array (N,)."""
     return np.array(list(lengths), np.int64)
 
 
-def parts(lengths: IntArray) -> Iterator[slice]:
-    """Where each stands among all."""
+def slices(lengths: IntArray) -> Iterator[slice]:
+    """Yield the slice of each part in the concatenated array."""
     ends = accumulate((int(length) for length in lengths), initial=0)
     return (slice(first, stop) for first, stop in pairwise(ends))
 
 
-def stacked(arrays: Iterable[AnyArray], width: int, kind: type = float) -> AnyArray:
-    """(sum of N, width) of arrays (N, width), also of none."""
+def stack(arrays: Iterable[AnyArray], width: int, kind: type = float) -> AnyArray:
+    """Return the arrays (N, width), possibly none, stack to (sum of N, width)."""
     return np.vstack([np.zeros((0, width), kind), *arrays])

@@ -1,4 +1,4 @@
-"""A navigator that lives in a process of its own: the runner's end of the pipe."""
+"""A navigator in a separate process: the runner's end of the pipe."""
 
 import json
 import math
@@ -13,9 +13,9 @@ from pydantic import ValidationError
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.errors import BenchnavError, MissingExtraError, NavigatorError, named
-from benchnav.isolation.briefing_codec import told
+from benchnav.isolation.briefing_codec import encode_briefings
 from benchnav.isolation.navigator_process import Process
-from benchnav.isolation.observation_codec import seen
+from benchnav.isolation.observation_codec import encode_observation
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.command_check import CallFailed
 from benchnav.navigation.map import Map
@@ -26,73 +26,73 @@ from benchnav.navigation.plugin.configure import Spec
 from benchnav.navigation.plugin.trace import bounded, plain
 
 PROTOCOL = 1  # version of the messages
-STARTING = 120.0  # [s] that a process may take to say who it is
+STARTING = 120.0  # [s] until a process must have answered `hello`
 _ANSWERS = {"hello": "ready", "reset": "done", "act": "command", "remarks": "remarks"}
 _NO_MAP_YET: Any = object()
 
 
 class Remote(Navigator):
-    """Sends what a navigator is told and sees, and hands on what it answers.
+    """Sends briefings and observations to a process, and returns its answers.
 
-    Its process is started when something of it must be known, and ends with it.
+    The process starts when one of its properties is first needed, and ends with this object.
     """
 
     def __init__(self, config: Any = None) -> None:
         super().__init__(config)
-        self._maps: dict[int, Map | None] = {}  # by row, as its process knows it
+        self._maps: dict[int, Map | None] = {}  # by row, as the process knows them
 
     @abstractmethod
     def start(self) -> Process:
-        """Its process."""
+        """Start and return the process."""
 
     @property
     @abstractmethod
     def hello(self) -> Mapping[str, Any]:
-        """What its process is told first."""
+        """Return the content of the first message to the process."""
 
     @property
     def patience(self) -> float:
-        """[s] that a call may take; whoever runs it may stop it before."""
+        """The time limit of a call [s]; the runner may stop it earlier."""
         return math.inf
 
     @cached_property
     def process(self) -> Process:
-        """What answers."""
+        """The process."""
         return self.start()
 
     @cached_property
-    def said(self) -> Introduction:
-        """What it says of itself. Raises NavigatorError where it cannot be started."""
-        said = say_hello(self.process, self.hello)
-        vars(self)["command"] = said.command  # declared for the class, known here
-        return said
+    def introduction(self) -> Introduction:
+        """The properties that the process reports. Raises NavigatorError if it cannot start."""
+        introduction = say_hello(self.process, self.hello)
+        vars(self)["command"] = introduction.command  # declared on the class, known only now
+        return introduction
 
     @property
     def required(self) -> frozenset[Need]:
-        return self.said.needs
+        return self.introduction.needs
 
     @property
     def uses_map(self) -> bool:
-        return self.said.uses_map
+        return self.introduction.uses_map
 
     @property
     def reproducible(self) -> bool:
-        return self.said.reproducible
+        return self.introduction.reproducible
 
     @property
     def training(self) -> Training | None:
-        return self.said.training
+        return self.introduction.training
 
     @property
     def rehearsal(self) -> int:
-        return self.said.rehearsal
+        return self.introduction.rehearsal
 
     @property
     def leader(self) -> Spec | None:
-        return self.said.leader
+        return self.introduction.leader
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
-        self._ask("reset", told(briefings, rows))
+        self._request("reset", encode_briefings(briefings, rows))
         for row, briefing in zip(rows.tolist(), briefings, strict=True):
             self._maps[row] = briefing.map
 
@@ -102,78 +102,80 @@ class Remote(Navigator):
             b for b, map in enumerate(observation.maps)
             if self._maps.get(rows[b], _NO_MAP_YET) is not map
         ]  # fmt: skip
-        fields = self._ask("act", seen(observation, changed))
+        fields = self._request("act", encode_observation(observation, changed))
         self._maps.update((rows[b], observation.maps[b]) for b in changed)
         command: FloatArray = fields["command"]
         return command
 
     def remarks(self, row: int) -> Sequence[str]:
-        if not self.process.alive or not self.said.remarks:
+        if not self.process.alive or not self.introduction.remarks:
             return ()
-        return [str(text) for text in json.loads(self._ask("remarks", {"row": row})["says"])]
+        return [str(text) for text in json.loads(self._request("remarks", {"row": row})["says"])]
 
-    def _ask(self, kind: str, fields: Mapping[str, Any]) -> dict[str, Any]:
+    def _request(self, kind: str, fields: Mapping[str, Any]) -> dict[str, Any]:
         try:
-            _ = self.said
-            return ask(self.process, kind, fields, self.patience)
+            _ = self.introduction
+            return request(self.process, kind, fields, self.patience)
         except NavigatorError as error:
             raise CallFailed(f"{kind}: {error}") from None
 
 
 def say_hello(process: Process, hello: Mapping[str, Any]) -> Introduction:
-    """What the navigator in ``process`` says of itself.
+    """Return the properties that the navigator in ``process`` reports.
 
-    Raises NavigatorError where it dies or answers anything else, and what it refuses to be
-    made for.
+    Raises NavigatorError if it dies or answers anything else, and the error by which it refuses
+    to be created.
     """
-    says = json.dumps({"protocol": PROTOCOL, **hello})
-    answer = ask(process, "hello", {"says": says}, STARTING)["says"]
+    message = json.dumps({"protocol": PROTOCOL, **hello})
+    answer = request(process, "hello", {"says": message}, STARTING)["says"]
     try:
         return Introduction.model_validate_json(answer)
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(map(str, first["loc"])) or "its answer"
         raise NavigatorError(
-            f"its process must introduce itself by what docs/isolation.md lists: {key}:"
+            f"its process must answer 'hello' with the fields in docs/isolation.md: {key}:"
             f" {first['msg']}. Got {str(answer)[:200]!r} instead"
         ) from None
 
 
-def ask(process: Process, kind: str, fields: Mapping[str, Any], patience: float) -> dict[str, Any]:
-    """The fields of the answer to a message.
+def request(
+    process: Process, kind: str, fields: Mapping[str, Any], patience: float
+) -> dict[str, Any]:
+    """Send a message, and return the fields of the answer.
 
     Raises:
-        NavigatorError: it dies, takes longer than ``patience`` [s], or answers garbage.
-        CallFailed: it says that it failed.
-        BenchnavError: it refuses to be made, or what it needs is not installed.
+        NavigatorError: the process dies, takes longer than ``patience`` [s], or answers garbage.
+        CallFailed: the process reports a failure.
+        BenchnavError: the navigator refuses to be created, or a dependency is not installed.
     """
-    got, answer = process.ask(kind, fields, patience)
+    got, answer = process.request(kind, fields, patience)
     if got == "failed" and isinstance(answer.get("reason"), str):
         reason, traceback = plain(answer["reason"]), bounded(answer.get("traceback", ""))
-        if answer.get("error") and (kind == "hello" or answer["error"] == _LACKING):
-            raise _noted(named(answer["error"], reason), traceback)
+        if answer.get("error") and (kind == "hello" or answer["error"] == _MISSING_EXTRA):
+            raise _with_note(named(answer["error"], reason), traceback)
         if kind == "hello":
-            raise _noted(NavigatorError(reason), traceback)
+            raise _with_note(NavigatorError(reason), traceback)
         raise CallFailed(reason, answer.get("suspects"), traceback)
     wanted = _ANSWERS[kind]
     field = {"ready": "says", "command": "command", "remarks": "says"}.get(wanted)
     if got != wanted or (field is not None and field not in answer):
         process.stop()
-        told = f" without {field!r}" if got == wanted else ""
-        raise NavigatorError(f"its process must answer {wanted!r}. Got {got!r}{told} instead")
+        detail = f" without {field!r}" if got == wanted else ""
+        raise NavigatorError(f"its process must answer {wanted!r}. Got {got!r}{detail} instead")
     return answer
 
 
-_LACKING = MissingExtraError.__name__
+_MISSING_EXTRA = MissingExtraError.__name__
 
 
-def _noted(error: BenchnavError, traceback: str) -> BenchnavError:
-    """The error, with the traceback of the process that it comes from beneath its own."""
+def _with_note(error: BenchnavError, traceback: str) -> BenchnavError:
+    """Return the error, with the traceback of the process as a note."""
     if traceback:
         error.add_note(traceback)
     return error
 
 
 def python_path() -> list[str]:
-    """Where this process imports from, by paths that hold in any folder."""
+    """Return the import path of this process, as absolute folders."""
     return [str(Path(entry).resolve()) for entry in sys.path]

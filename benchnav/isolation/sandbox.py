@@ -1,11 +1,11 @@
-"""The fence about a navigator's process: what it inherits, and what it can reach of this one.
+"""The sandbox of a navigator's process: its environment, and what it can reach.
 
-Where Linux allows it (namespaces of an ordinary user, util-linux), the process stands in
-namespaces of its own (users, processes, network, IPC, host name, mounts): it sees no other
-process, has no capability, cannot write the kernel's own files, which root's number alone would
-allow, and finds harmless devices only (`benchnav.isolation.sandbox_entry`). Everywhere on Linux
-this process is made unreadable to others of its user (`PR_SET_DUMPABLE`). `require_fence` tries
-whether that holds.
+Where Linux allows it (user namespaces of an ordinary user, util-linux), the process runs in its
+own namespaces (users, processes, network, IPC, host name, mounts). It sees no other process, has
+no capability, cannot write the kernel's own files (the user number of root alone would allow
+that), and finds only harmless devices (`benchnav.isolation.sandbox_entry`). On any Linux, the
+runner's memory is made unreadable to other processes of its user (`PR_SET_DUMPABLE`).
+`require_sandbox` tests both.
 """
 
 import ctypes
@@ -33,11 +33,11 @@ _ENCLOSED = (
     *_NAMESPACES, "--uts", "--cgroup", "--keep-caps",
     sys.executable, "-I", "-S", str(Path(__file__).with_name("sandbox_entry.py")),
 )  # fmt: skip
-_FENCES = (
+_SANDBOXES = (
     (*_DIE_WITH_RUNNER, *_ENCLOSED), _ENCLOSED, (*_DIE_WITH_RUNNER, *_NAMESPACES), _NAMESPACES,
     _DIE_WITH_RUNNER,
 )  # fmt: skip
-_LOOK = """
+_PROBE = """
 import os, sys
 try:
     with open(f"/proc/{sys.argv[1]}/mem", "rb") as memory:
@@ -57,60 +57,60 @@ _PR_SET_DUMPABLE = 4
 
 
 def environment(folder: Path) -> Mapping[str, str]:
-    """The variables that a navigator's process is given; ``folder`` is its own."""
+    """Return the environment variables of a navigator's process; ``folder`` is its own folder."""
     kept = {name: os.environ[name] for name in INHERITED if name in os.environ}
     cache = user_cache()
-    if cache.reason and cache.path is not None:  # among temporary files, whose folder is another
+    if cache.reason and cache.path is not None:  # TMPDIR changes its default
         kept["XDG_CACHE_HOME"] = str(cache.path.parent)
     return {**kept, "TMPDIR": str(folder), "PYTHONSAFEPATH": "1"}
 
 
 @cache
 def prefix() -> tuple[str, ...]:
-    """What a command is started by, so that it stands behind the fence that there is here."""
-    for fence in _FENCES:
-        if _works(fence):
-            return fence
+    """Return the command prefix that starts a program in the strongest sandbox available here."""
+    for sandbox in _SANDBOXES:
+        if _works(sandbox):
+            return sandbox
     return ()
 
 
 @cache
-def require_fence() -> None:
-    """Make this process unreadable, and try it from behind the fence.
+def require_sandbox() -> None:
+    """Make this process's memory unreadable, and test that from inside the sandbox.
 
-    Raises UsageError where what stands behind the fence could read this process's memory, or
-    change settings of the machine.
+    Raises UsageError if a sandboxed process could read this process's memory or change
+    settings of the machine.
     """
-    hide()
+    hide_memory()
     if not sys.platform.startswith("linux"):
-        return  # there is no file to read it from, and other ways need the system's permission
+        return  # other systems have no memory file, and their other ways need a permission
     secret = ctypes.create_string_buffer(b"\x5a")
-    where = (str(os.getpid()), str(ctypes.addressof(secret)))
-    look = [*prefix(), sys.executable, "-I", "-S", "-c", _LOOK, *where]
-    found = subprocess.run(look, capture_output=True, text=True, check=False)  # noqa: S603
+    location = (str(os.getpid()), str(ctypes.addressof(secret)))
+    probe = [*prefix(), sys.executable, "-I", "-S", "-c", _PROBE, *location]
+    found = subprocess.run(probe, capture_output=True, text=True, check=False)  # noqa: S603
     reached = found.stdout.split("\n")
     if reached[:1] != ["closed"]:
         raise UsageError(
             "Isolated navigators must not be able to read the memory of the runner, or to change"
             f" the machine. Here they could {reached[0].strip() or 'not be started'}: namespaces"
-            " cannot be made (unshare --user --mount), and this user may do everything."
-            f" Run as an ordinary user, or allow user namespaces.{_said(found.stderr)}"
+            " cannot be created (unshare --user --mount), and this user has all privileges."
+            f" Run as an ordinary user, or allow user namespaces.{_last_line(found.stderr)}"
         )
 
 
-def hide() -> None:
-    """Let no other process of this user read this one's memory (Linux)."""
+def hide_memory() -> None:
+    """Make this process's memory unreadable to other processes of this user (Linux)."""
     if sys.platform.startswith("linux"):
         ctypes.CDLL(None).prctl(_PR_SET_DUMPABLE, 0, 0, 0, 0)
 
 
-def _works(fence: tuple[str, ...]) -> bool:
+def _works(sandbox: tuple[str, ...]) -> bool:
     try:
-        tried = subprocess.run([*fence, "true"], capture_output=True, timeout=10, check=False)  # noqa: S603
+        result = subprocess.run([*sandbox, "true"], capture_output=True, timeout=10, check=False)  # noqa: S603
     except (OSError, subprocess.TimeoutExpired):
         return False
-    return tried.returncode == 0
+    return result.returncode == 0
 
 
-def _said(stderr: str) -> str:
-    return f" It said: {stderr.strip().splitlines()[-1]}" if stderr.strip() else ""
+def _last_line(stderr: str) -> str:
+    return f" Its last output: {stderr.strip().splitlines()[-1]}" if stderr.strip() else ""

@@ -1,1 +1,1 @@
-"""Processes in which code of strangers runs: how they start, what they say, and their end."""
+"""Processes that run untrusted code: how they start, communicate and end."""

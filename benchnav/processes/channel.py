@@ -1,4 +1,4 @@
-"""Messages between two processes, of which the reader believes nothing: bounded JSON frames."""
+"""Messages between two processes as bounded JSON frames; the reader trusts none of them."""
 
 import json
 import select
@@ -6,19 +6,19 @@ import socket
 import struct
 from typing import Any
 
-MOST = 16 << 20  # bytes of a message
-PATIENCE = 10.0  # [s] for the other side to make room for what it is sent
+MAX_SIZE = 16 << 20  # bytes of a message
+PATIENCE = 10.0  # [s] for the other side to accept a message
 _HEAD = struct.Struct(">I")
 
 
 class ChannelError(Exception):
-    """The other side sent what is no message, or takes none."""
+    """The other side sent something that is not a message, or accepts none."""
 
 
 class Channel:
-    """One end of a pair of sockets.
+    """One end of a socket pair.
 
-    Who must not wait for the other side calls `arrived`; who may calls `receive`.
+    Use `arrived` where the caller must not wait for the other side, else `receive`.
     """
 
     def __init__(self, end: socket.socket) -> None:
@@ -26,31 +26,31 @@ class Channel:
         self._received = bytearray()
 
     def fileno(self) -> int:
-        """For `select`."""
+        """Return the descriptor for `select`."""
         return self._end.fileno()
 
     def close(self) -> None:
-        """Close this end; the other one sees it."""
+        """Close this end; the other end notices it."""
         self._end.close()
 
     def send(self, message: Any) -> None:
-        """Send what JSON can say. Raises ChannelError, also where the other side is gone."""
+        """Send a JSON value. Raises ChannelError, also if the other side is gone."""
         self.send_bytes(json.dumps(message).encode())
 
     def send_bytes(self, data: bytes) -> None:
-        """Send bytes as they are. Raises ChannelError."""
-        if len(data) > MOST:
-            raise ChannelError(f"a message must have at most {MOST} bytes; got {len(data)}")
+        """Send raw bytes. Raises ChannelError."""
+        if len(data) > MAX_SIZE:
+            raise ChannelError(f"a message must have at most {MAX_SIZE} bytes; got {len(data)}")
         try:
             self._end.settimeout(PATIENCE)
             self._end.sendall(_HEAD.pack(len(data)) + data)
         except OSError as error:
-            raise ChannelError(f"nobody takes what is sent ({error})") from None
+            raise ChannelError(f"the other side accepts no message ({error})") from None
 
     def arrived(self) -> list[Any]:
-        """Return the whole messages that are here, without waiting.
+        """Return the complete messages received so far, without waiting.
 
-        Raises EOFError where the other side has closed, ChannelError for what is no message.
+        Raises EOFError if the other side has closed, ChannelError if it sent no message.
         """
         try:
             self._end.settimeout(0.0)
@@ -64,18 +64,18 @@ class Channel:
         self._received += data
         messages = []
         while (frame := self._frame()) is not None:
-            messages.append(_decoded(frame))
+            messages.append(_decode(frame))
         return messages
 
     def receive(self, patience: float | None = None) -> Any:
-        """Return the next message; None for ``patience`` [s] waits for ever.
+        """Return the next message; a ``patience`` [s] of None waits for ever.
 
-        Raises EOFError, ChannelError, and TimeoutError where none comes.
+        Raises EOFError, ChannelError, and TimeoutError if no message comes.
         """
-        return _decoded(self.receive_bytes(patience))
+        return _decode(self.receive_bytes(patience))
 
     def receive_bytes(self, patience: float | None = None) -> bytes:
-        """The same of bytes as they are."""
+        """Return the next message as raw bytes; see `receive`."""
         while (frame := self._frame()) is None:
             if not select.select([self._end], [], [], patience)[0]:
                 raise TimeoutError
@@ -90,12 +90,12 @@ class Channel:
         return frame
 
     def _frame(self) -> bytes | None:
-        """Take the first whole message out of what was received."""
+        """Take the first complete message out of the received bytes."""
         if len(self._received) < _HEAD.size:
             return None
         (size,) = _HEAD.unpack_from(self._received)
-        if size > MOST:
-            raise ChannelError("sent what is no message")
+        if size > MAX_SIZE:
+            raise ChannelError("sent something that is not a message")
         if len(self._received) < _HEAD.size + size:
             return None
         frame = bytes(self._received[_HEAD.size : _HEAD.size + size])
@@ -103,8 +103,8 @@ class Channel:
         return frame
 
 
-def _decoded(frame: bytes) -> Any:
+def _decode(frame: bytes) -> Any:
     try:
         return json.loads(frame)
     except (ValueError, RecursionError):
-        raise ChannelError("sent what is no message") from None
+        raise ChannelError("sent something that is not a message") from None

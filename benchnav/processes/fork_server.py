@@ -1,8 +1,8 @@
-"""Starts processes from one in which no code of a plugin ever runs.
+"""Start processes from a server in which no plugin code ever runs.
 
-The server imports benchnav and its kernels once; each process that it forks begins in that
-state within milliseconds, whatever others did to theirs. What a process started ends with it,
-and all end with the process that asked for them.
+The server imports benchnav and its kernels once. Each process that it forks begins in that state
+within milliseconds, whatever other processes did to theirs. A process's descendants end with it,
+and all end with the process that requested them.
 """
 
 import atexit
@@ -24,15 +24,15 @@ from benchnav.processes.main_module import main_module, require_main_guard
 from benchnav.processes.process_tree import kill
 from benchnav.processes.server import PREPARE, START
 
-ONE_THREAD = {  # a process is one core: more threads would only fight those of others
+ONE_THREAD = {  # a process uses one core: more threads would compete with other processes
     "BENCHNAV_THREADS": "1",
     "NUMBA_NUM_THREADS": "1",
     "OMP_NUM_THREADS": "1",
     "OPENBLAS_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
 }
-_NO_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}  # what forks has one alone
-NOTES = 4096  # bytes that a process and who started it share
+_NO_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}  # fork copies one thread only
+NOTES = 4096  # bytes of memory shared between a process and its parent
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[2]);"
     " from benchnav.processes.server import main; main(int(sys.argv[1]))"
@@ -40,33 +40,33 @@ _START = (
 
 
 class Child:
-    """A process that the server forked: its messages, its notes, and how it ended."""
+    """A process that the server forked: its channel, its shared notes, and its exit status."""
 
     def __init__(self, server: "ForkServer", channel: Channel, notes: mmap) -> None:
         self._server = server
         self.channel = channel
-        self.notes: Any = memoryview(notes).cast("d")  # written by the process at any time
+        self.notes: Any = memoryview(notes).cast("d")  # the process may write it at any time
         self.pid = 0
-        self.exitcode: int | None = None  # negative: the signal that killed it; None: it lives
+        self.exitcode: int | None = None  # negative: the signal that killed it; None: it runs
 
     def kill(self) -> None:
-        """End it, and all that it started."""
+        """Kill the process and its descendants."""
         if self.exitcode is None and self.pid:
             kill(self.pid)
 
     def join(self, patience: float) -> bool:
-        """Wait until it has ended; False where it lives on after ``patience`` [s]."""
+        """Wait up to ``patience`` [s] for its end; return whether it ended."""
         return self._server.wait(self, patience)
 
     def close(self) -> None:
-        """Kill it, and forget it."""
+        """Kill the process, and remove it from the server's records."""
         self.kill()
         self.channel.close()
         self._server.forget(self)
 
 
 class ForkServer:
-    """The side that asks. Raises BenchnavError where the server cannot be reached."""
+    """The client side of the server. Raises BenchnavError if the server cannot be reached."""
 
     def __init__(self) -> None:
         if not hasattr(os, "fork"):
@@ -87,25 +87,25 @@ class ForkServer:
         self.owner = os.getpid()
 
     def fileno(self) -> int:
-        """For `select`: readable where `look` has something to see."""
+        """Return the descriptor for `select`: readable when `look` has news."""
         return self._channel.fileno()
 
     @property
     def alive(self) -> bool:
-        """False once it ended."""
+        """Whether the server still runs."""
         return self._process.poll() is None
 
     def prepare(self) -> None:
-        """Load what a run needs, while this process does other things."""
-        with suppress(OSError):  # `start` says why
+        """Load what a run needs in the background."""
+        with suppress(OSError):  # `start` reports the cause
             self._socket.sendall(PREPARE)
 
     def start(self, target: str, main: bool = True, warm: bool = True) -> Child:
         """Start ``target``, "module:function", with (channel, notes) in a new process.
 
-        It has the environment, the folder and the module path of this process as they are
-        now, and with ``main`` also its ``__main__``. With ``warm`` it begins with the modules
-        and kernels of a run, and else with those alone that plugins are made of.
+        The process gets the current environment, folder and module path of this process, and with
+        ``main`` also its ``__main__``. With ``warm`` it begins with the modules and kernels of a
+        run, otherwise only with the modules that plugins build on.
         """
         if main:
             require_main_guard()
@@ -113,7 +113,7 @@ class ForkServer:
         with TemporaryFile() as file:
             file.truncate(NOTES)
             child = Child(self, Channel(ours), mmap(file.fileno(), NOTES))
-            asked = {
+            request = {
                 "target": target,
                 "environment": {**os.environ, **ONE_THREAD},
                 "path": sys.path,
@@ -123,10 +123,10 @@ class ForkServer:
             }
             try:
                 socket.send_fds(self._socket, [START], [theirs.fileno(), file.fileno()])
-                self._channel.send(asked)
+                self._channel.send(request)
                 self._starting.append(child)
                 while not child.pid:
-                    self._hear(None)
+                    self._read_message(None)
             except (OSError, ChannelError, BenchnavError) as error:
                 child.channel.close()
                 raise self._lost() from error
@@ -135,10 +135,10 @@ class ForkServer:
         return child
 
     def look(self) -> None:
-        """Take note of the processes that ended, without waiting."""
+        """Record the processes that ended, without waiting."""
         with suppress(TimeoutError, BenchnavError):
             while True:
-                self._hear(0.0)
+                self._read_message(0.0)
 
     def wait(self, child: Child, patience: float) -> bool:
         """Whether ``child`` ends within ``patience`` [s]."""
@@ -146,25 +146,25 @@ class ForkServer:
             self._lost()
         with suppress(TimeoutError, BenchnavError):
             while child.exitcode is None:
-                self._hear(patience)
+                self._read_message(patience)
         return child.exitcode is not None
 
     def forget(self, child: Child) -> None:
-        """Its end is of no interest any more."""
+        """Drop the records of a child that ended."""
         if child.exitcode is not None:
             self._children.pop(child.pid, None)
 
     def close(self) -> None:
-        """End it, and everything that it started."""
+        """End the server and all its processes."""
         self._channel.close()
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(5.0)
         self._lost()
 
-    def _hear(self, patience: float | None) -> None:
+    def _read_message(self, patience: float | None) -> None:
         try:
             message = self._channel.receive(patience)
-        except TimeoutError:  # an OSError, which nobody lost
+        except TimeoutError:  # a subclass of OSError; the server is not lost
             raise
         except (EOFError, OSError, ChannelError) as error:
             raise self._lost() from error
@@ -183,7 +183,7 @@ class ForkServer:
         self._children.clear()
         return BenchnavError(
             "The process that starts workers must live as long as the run. It ended"
-            f" (exit status {self._process.poll()}; stderr says why)."
+            f" (exit status {self._process.poll()}; see stderr for the cause)."
         )
 
 
@@ -191,9 +191,9 @@ _servers: list[ForkServer] = []
 
 
 def fork_server() -> ForkServer:
-    """The server of this process, which lives as long as it; a new one where there is none."""
+    """Return the server of this process, which lives as long as it; start one if needed."""
     if _servers and _servers[0].owner != os.getpid():
-        _servers.clear()  # of the process that this one was forked from
+        _servers.clear()  # they belong to the process that this one was forked from
     if _servers and not _servers[0].alive:
         _servers.pop().close()
     if not _servers:
@@ -203,15 +203,15 @@ def fork_server() -> ForkServer:
 
 
 def start_process(target: str, *, main: bool = True) -> Child:
-    """Start ``target`` as `ForkServer.start`, also where a plugin has just killed the server."""
+    """Start ``target`` like `ForkServer.start`; retry once if a plugin killed the server."""
     try:
         return fork_server().start(target, main)
     except BenchnavError:
         return fork_server().start(target, main)
 
 
-def words(exitcode: int | None) -> str:
-    """How a process ended, in words."""
+def exit_text(exitcode: int | None) -> str:
+    """Return how a process ended, as text."""
     if exitcode is not None and exitcode < 0:
         known = {int(s): s.name for s in signal.Signals}
         return f"was killed by {known.get(-exitcode, f'signal {-exitcode}')}"

@@ -1,7 +1,7 @@
-"""Questions to processes of their own, which may hang, die or answer nonsense.
+"""Questions to separate processes, which may hang, die or answer nonsense.
 
-One process answers a list of questions in order. Where it fails, the question that it was at is
-charged, and a new process goes on with the next one. Several lists are answered at once.
+One process answers a list of questions in order. If it fails, its current question gets a
+`Fault`, and a new process continues with the next one. Several lists are answered in parallel.
 """
 
 from collections import deque
@@ -14,65 +14,70 @@ from typing import Any
 
 from benchnav.errors import BenchnavError
 from benchnav.processes.channel import ChannelError
-from benchnav.processes.fork_server import Child, ForkServer, fork_server, words
+from benchnav.processes.fork_server import Child, ForkServer, exit_text, fork_server
 from benchnav.processes.process_tree import resident
 from benchnav.threads import core_count
 
-_POLL = 0.1  # [s] between looks at what a process does and holds
-_END = 5.0  # [s] for a process that closed its channel to end
+_POLL = 0.1  # [s] between checks of a process's progress and memory
+_END = 5.0  # [s] until a process that closed its channel must have ended
 
 
 @dataclass(frozen=True)
 class Inquiry:
-    """Questions for one process; ``target`` is as in `ForkServer.start`."""
+    """Questions for one process; for ``target`` see `ForkServer.start`."""
 
     target: str
-    questions: Sequence[Any]  # what JSON can say
+    questions: Sequence[Any]  # JSON values
 
 
 @dataclass(frozen=True)
 class Step:
-    """A part of an answer; the process notes the number of the one that it begins."""
+    """A part of an answer; the process notes the number of the step that it begins."""
 
     name: str
-    patience: float  # [s] that it may last
+    patience: float  # [s] time limit of the step
 
 
 @dataclass(frozen=True)
 class Fault:
-    """Why there is no answer: "it did not return from __init__ within 2 s"."""
+    """The reason why there is no answer: "it did not return from __init__ within 2 s"."""
 
     text: str
 
 
 @dataclass(frozen=True)
 class Limits:
-    """Of an answer."""
+    """The limits of an answer."""
 
     steps: Sequence[Step]
     memory: float  # [bytes] that the process may hold in RAM
 
 
 def inquire(inquiries: Sequence[Inquiry], limits: Limits) -> list[list[Any | Fault]]:
-    """The answers to each inquiry's questions, in order; a `Fault` where there is none.
+    """Return the answers to the questions of each inquiry, in order; a `Fault` for no answer.
 
-    Raises BenchnavError where no process can be started.
+    Raises BenchnavError if no process can be started.
     """
     answers: list[list[Any | Fault]] = [[] for _ in inquiries]
     waiting = deque(k for k, inquiry in enumerate(inquiries) if inquiry.questions)
-    running: dict[int, _Asked] = {}
+    running: dict[int, _RunningInquiry] = {}
     most = core_count()
     try:
         while waiting or running:
             try:
                 while waiting and len(running) < most:
-                    running[waiting[0]] = _Asked.begin(
+                    running[waiting[0]] = _RunningInquiry.begin(
                         inquiries[waiting[0]], len(answers[waiting[0]])
                     )
                     waiting.popleft()
-                select([asked.child.channel for asked in running.values()], [], [], _POLL)
+                select(
+                    [active.child.channel for active in running.values()],
+                    [],
+                    [],
+                    _POLL,
+                )
                 _collect(answers, waiting, running, limits, alone=most == 1)
-            except _ServerLost as lost:  # by one of those that ran: each is asked again, alone
+            except _ServerLost as lost:  # one of the processes ended it: ask each again, alone
                 if most == 1 and not running and lost.__cause__ is not None:
                     raise lost.__cause__ from None
                 waiting.extendleft(reversed(running))
@@ -84,56 +89,57 @@ def inquire(inquiries: Sequence[Inquiry], limits: Limits) -> list[list[Any | Fau
 
 
 class _ServerLost(Exception):
-    """The process that starts processes ended, and with it all of them."""
+    """The process that starts processes ended, and all others with it."""
 
 
 def _collect(
-    answers: list[list[Any | Fault]], waiting: deque[int], running: "dict[int, _Asked]",
+    answers: list[list[Any | Fault]], waiting: deque[int], running: "dict[int, _RunningInquiry]",
     limits: Limits, alone: bool,
 ) -> None:  # fmt: skip
-    """Take what came."""
-    for k, asked in list(running.items()):
-        found = asked.look(limits, alone)
+    """Collect the answers that arrived."""
+    for k, active in list(running.items()):
+        found = active.look(limits, alone)
         answers[k] += found
         failed = any(isinstance(answer, Fault) for answer in found)
-        if failed or not asked.left:
+        if failed or not active.left:
             running.pop(k).child.close()
-            if asked.left:
+            if active.left:
                 waiting.append(k)
 
 
-def _close(running: "dict[int, _Asked]") -> None:
+def _close(running: "dict[int, _RunningInquiry]") -> None:
     while running:
         running.popitem()[1].child.close()
 
 
 @dataclass
-class _Asked:
-    """A process, and the question that it is at."""
+class _RunningInquiry:
+    """A process, and its current question."""
 
-    server: ForkServer  # that began it
+    server: ForkServer  # that started the process
     child: Child
     left: int  # questions without an answer
-    since: float = field(default_factory=monotonic)  # when this question began
-    begun: float = 0.0  # when this step did
+    since: float = field(default_factory=monotonic)  # when the current question began
+    begun: float = 0.0  # when the current step began
     step: int = 0
 
     @classmethod
-    def begin(cls, inquiry: Inquiry, answered: int) -> "_Asked":
+    def begin(cls, inquiry: Inquiry, answered: int) -> "_RunningInquiry":
         questions = list(inquiry.questions)[answered:]
         server = fork_server()
         try:
             child = server.start(inquiry.target, main=False, warm=False)
         except BenchnavError as error:
             raise _ServerLost from error
-        with suppress(ChannelError):  # its end shows
+        with suppress(ChannelError):  # `look` notices the end of the process
             child.channel.send(questions)
         return cls(server, child, len(questions), begun=monotonic())
 
     def look(self, limits: Limits, alone: bool) -> list[Any | Fault]:
-        """What came, and a `Fault` last where the process failed.
+        """Return the answers that arrived, with a `Fault` last if the process failed.
 
-        Raises _ServerLost where not it ``alone`` may be what ended the server.
+        Raises _ServerLost if a process other than this one may have ended the server; with
+        ``alone`` there is no other.
         """
         found: list[Any | Fault] = []
         try:
@@ -160,11 +166,13 @@ class _Asked:
                 return "it ended the process that had started it"
             raise _ServerLost
         code = self.child.exitcode
-        return "its process closed its channel" if code is None else f"its process {words(code)}"
+        return (
+            "its process closed its channel" if code is None else f"its process {exit_text(code)}"
+        )
 
     def _overdue(self, limits: Limits) -> str:
-        """How the process exceeds a limit; "" where it does not."""
-        now, step = monotonic(), self._noted(limits)
+        """Return how the process exceeds a limit; "" if it does not."""
+        now, step = monotonic(), self._noted_step(limits)
         if step > self.step:
             self.step, self.begun = step, now
         name, patience = limits.steps[self.step].name, limits.steps[self.step].patience
@@ -174,10 +182,10 @@ class _Asked:
             return f"it held more than {limits.memory / 1e9:g} GB of memory{self._during(limits)}"
         return ""
 
-    def _noted(self, limits: Limits) -> int:
-        """The step that the process is at; what it noted may be anything."""
+    def _noted_step(self, limits: Limits) -> int:
+        """Return the process's current step; its notes may hold any number."""
         noted = self.child.notes[0]
         return int(noted) if 0 <= noted < len(limits.steps) else 0
 
     def _during(self, limits: Limits) -> str:
-        return f" in {limits.steps[max(self.step, self._noted(limits))].name}"
+        return f" in {limits.steps[max(self.step, self._noted_step(limits))].name}"

@@ -1,4 +1,4 @@
-"""The script that started Python, for processes that must know what it defines."""
+"""The main script of this Python, for processes that need its definitions."""
 
 import sys
 from multiprocessing import spawn
@@ -11,7 +11,7 @@ _importing: list[bool] = []
 
 
 def main_module() -> dict[str, str]:
-    """Where ``__main__`` comes from; empty where it is no file, as in a notebook."""
+    """Return where ``__main__`` comes from; empty if it is not a file, as in a notebook."""
     main = sys.modules["__main__"]
     spec, file = getattr(main, "__spec__", None), getattr(main, "__file__", None)
     if spec is not None:
@@ -21,15 +21,15 @@ def main_module() -> dict[str, str]:
     return {"init_main_from_path": str(Path(file).absolute())}
 
 
-def import_main(said: dict[str, Any]) -> None:
-    """Import it as ``__mp_main__``, and make it ``__main__``, as multiprocessing does."""
+def import_main(origin: dict[str, Any]) -> None:
+    """Import the script as ``__mp_main__`` and ``__main__``, as multiprocessing does."""
     _importing.append(True)
-    spawn.prepare(said)
+    spawn.prepare(origin)
     _importing.clear()
 
 
 def require_main_guard() -> None:
-    """Raise BenchnavError where this process imports the script that would start it again."""
+    """Raise BenchnavError if this process is importing the script that would start it again."""
     if _importing:
         raise BenchnavError(
             "Worker processes must be able to import the script that starts them. A script must"

@@ -1,7 +1,6 @@
-"""A process and what it started: the memory that they hold, and their end.
+"""A process and its descendants: their memory use, and how to end them.
 
-Where the system shows no /proc (macOS, Windows) a process seems to be alone and memory
-is not known.
+Without /proc (macOS, Windows) a process seems to have no descendants, and memory is unknown.
 """
 
 import multiprocessing
@@ -18,9 +17,9 @@ PROC = Path("/proc")
 
 
 def tree(pid: int) -> list[int]:
-    """The process and all its descendants, itself first."""
+    """Return the process and all its descendants, itself first."""
     found = [pid]
-    for parent in found:  # grows while it is read
+    for parent in found:  # the loop extends the list
         with suppress(OSError):
             for thread in (PROC / f"{parent}/task").iterdir():
                 found += map(int, (thread / "children").read_text().split())
@@ -28,7 +27,7 @@ def tree(pid: int) -> list[int]:
 
 
 def resident(pid: int) -> int:
-    """[bytes] that the processes of its tree hold in RAM, shared pages once in each; 0: unknown."""
+    """Return the RAM [bytes] of the process tree, shared pages counted in each; 0 if unknown."""
     pages = 0
     for each in tree(pid):
         with suppress(OSError, IndexError):
@@ -36,13 +35,13 @@ def resident(pid: int) -> int:
     return pages * os.sysconf("SC_PAGE_SIZE") if pages else 0
 
 
-def tells_memory() -> bool:
-    """Whether this system tells how much memory a process holds."""
+def memory_is_known() -> bool:
+    """Whether this system reports how much memory a process holds."""
     return resident(os.getpid()) > 0
 
 
 def end_with_parent() -> None:
-    """End this process, which multiprocessing began, as soon as the one that began it is gone."""
+    """Exit this multiprocessing child as soon as its parent process ends."""
     parent = multiprocessing.parent_process()
     if parent is None:
         return
@@ -55,14 +54,14 @@ def end_with_parent() -> None:
 
 
 def kill(pid: int) -> None:
-    """End the whole tree at once, with no chance to object."""
+    """Kill the whole process tree at once."""
     for each in tree(pid):
         with suppress(OSError):
             os.kill(each, getattr(signal, "SIGKILL", signal.SIGTERM))
 
 
 def wait_for_end(pids: Sequence[int], patience: float) -> None:
-    """Wait until none of the processes is left, and at most ``patience`` [s]."""
+    """Wait until all processes have ended, at most ``patience`` [s]."""
     deadline = monotonic() + patience
     while any((PROC / f"{pid}").exists() for pid in pids) and monotonic() < deadline:
         sleep(0.005)

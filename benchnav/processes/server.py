@@ -1,4 +1,4 @@
-"""The fork server itself. No code of a plugin runs in it, and it has one thread."""
+"""The fork server itself. It runs no plugin code, and has one thread."""
 
 import ctypes
 import importlib
@@ -20,30 +20,32 @@ from benchnav.errors import BenchnavError
 from benchnav.processes.channel import Channel, ChannelError
 from benchnav.processes.process_tree import kill
 
-LIGHT = "benchnav.navigation.plugin.capabilities"  # what plugins are made of; imported at once
-WARM = "benchnav.runner.execute.preload:warm"  # what runs them: imports, and compiles where it must
-PREPARE, START = b"\1", b"\0"  # what a message on the socket asks for
+LIGHT = (
+    "benchnav.navigation.plugin.capabilities"  # the modules that plugins build on; imported at once
+)
+WARM = "benchnav.runner.execute.preload:warm"  # the modules and kernels of a run
+PREPARE, START = b"\1", b"\0"  # the kinds of requests on the socket
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 
 
 def main(file: int) -> None:
     """Serve the socket ``file`` until the other side closes it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who asked for the processes
-    _prctl(_PR_SET_CHILD_SUBREAPER, 1)  # who loses its parent becomes a child of this process
-    woken, wakes = os.pipe()
-    for end in (woken, wakes):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the requesting process handles Ctrl-C
+    _prctl(_PR_SET_CHILD_SUBREAPER, 1)  # orphans become children of this process
+    wake_reader, wake_writer = os.pipe()
+    for end in (wake_reader, wake_writer):
         os.set_blocking(end, False)
     signal.signal(signal.SIGCHLD, lambda *_: None)
-    signal.set_wakeup_fd(wakes, warn_on_full_buffer=False)
+    signal.set_wakeup_fd(wake_writer, warn_on_full_buffer=False)
     importlib.import_module(LIGHT)
-    server = _Server(socket.socket(fileno=file), woken, wakes)
+    server = _Server(socket.socket(fileno=file), wake_reader, wake_writer)
     with suppress(EOFError, ChannelError, ConnectionError):
         server.serve()
     server.end()
 
 
 def load(target: str) -> Callable[..., Any]:
-    """The function that "module:function" names."""
+    """Return the function that "module:function" names."""
     module, _, name = target.partition(":")
     function: Callable[..., Any] = getattr(importlib.import_module(module), name)
     return function
@@ -51,27 +53,27 @@ def load(target: str) -> Callable[..., Any]:
 
 @dataclass
 class _Server:
-    asked: socket.socket
-    woken: int
-    wakes: int
+    requests: socket.socket
+    wake_reader: int
+    wake_writer: int
     children: set[int] = field(default_factory=set)
     is_warm: bool = False
 
     def __post_init__(self) -> None:
-        self.channel = Channel(self.asked)
+        self.channel = Channel(self.requests)
 
     def serve(self) -> None:
         while True:
-            ready, _, _ = select([self.asked.fileno(), self.woken], [], [])
-            if self.woken in ready:
+            ready, _, _ = select([self.requests.fileno(), self.wake_reader], [], [])
+            if self.wake_reader in ready:
                 with suppress(BlockingIOError):
-                    os.read(self.woken, 1 << 12)
+                    os.read(self.wake_reader, 1 << 12)
                 self._reap()
-            if self.asked.fileno() in ready:
+            if self.requests.fileno() in ready:
                 self._start()
 
     def end(self) -> None:
-        """Kill all that there is."""
+        """Kill all processes that the server started."""
         signal.set_wakeup_fd(-1)
         while found := _children():
             for pid in {*found, *self.children}:
@@ -80,18 +82,18 @@ class _Server:
                 os.waitpid(-1, 0)
 
     def _start(self) -> None:
-        mark, files, _, _ = socket.recv_fds(self.asked, 1, 2)
+        mark, files, _, _ = socket.recv_fds(self.requests, 1, 2)
         if not mark:
             raise EOFError
         if mark == PREPARE:
             self._warm()
             return
-        said = json.loads(self.channel.receive_bytes())
-        if said["warm"]:
+        request = json.loads(self.channel.receive_bytes())
+        if request["warm"]:
             self._warm()
         pid = os.fork()
         if not pid:
-            self._become(said, *files)
+            self._become(request, *files)
         for file in files:
             os.close(file)
         self.children.add(pid)
@@ -100,7 +102,7 @@ class _Server:
     def _warm(self) -> None:
         """Load what a run needs, once."""
         if not self.is_warm:
-            with suppress(BenchnavError):  # what cannot be used, a worker names
+            with suppress(BenchnavError):  # a worker reports what cannot be used
                 load(WARM)()
             self.is_warm = True
 
@@ -114,25 +116,25 @@ class _Server:
                     self.channel.send({"ended": pid, "status": code})
         for pid in _children():
             if pid not in self.children and _session(pid) not in self.children:
-                kill(pid)  # of a process that ended, or that left it on purpose
+                kill(pid)  # an orphan: its process ended, or it left the session on purpose
 
-    def _become(self, said: dict[str, Any], end: int, notes: int) -> NoReturn:
-        """Be the process that was asked for."""
+    def _become(self, request: dict[str, Any], end: int, notes: int) -> NoReturn:
+        """Become the requested process."""
         code = 1
         try:
             parent = os.getppid()
             signal.set_wakeup_fd(-1)
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-            for file in (self.woken, self.wakes):
+            for file in (self.wake_reader, self.wake_writer):
                 os.close(file)
-            self.asked.close()
+            self.requests.close()
             os.setsid()
             _prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
             if os.getppid() != parent:
                 raise SystemExit(1)
             with mmap(notes, 0) as shared:
                 os.close(notes)
-                _run(said, Channel(socket.socket(fileno=end)), shared)
+                _run(request, Channel(socket.socket(fileno=end)), shared)
             code = 0
         except SystemExit as error:
             code = error.code if isinstance(error.code, int) else 1
@@ -145,25 +147,25 @@ class _Server:
             os._exit(code)
 
 
-def _run(said: dict[str, Any], channel: Channel, shared: mmap) -> None:
+def _run(request: dict[str, Any], channel: Channel, shared: mmap) -> None:
     os.environ.clear()
-    os.environ.update(said["environment"])
-    sys.path[:] = said["path"]
+    os.environ.update(request["environment"])
+    sys.path[:] = request["path"]
     with suppress(OSError):
-        os.chdir(said["folder"])
+        os.chdir(request["folder"])
     from numpy import random
 
     from benchnav.processes.main_module import import_main
 
-    random.seed()  # noqa: NPY002 - who forgets to seed draws other numbers in each process
-    if said["main"]:
-        import_main(said["main"])
+    random.seed()  # noqa: NPY002 - unseeded draws must differ between processes
+    if request["main"]:
+        import_main(request["main"])
     with memoryview(shared).cast("d") as notes:
-        load(said["target"])(channel, notes)
+        load(request["target"])(channel, notes)
 
 
 def _children() -> list[int]:
-    """The direct children of this process."""
+    """Return the direct children of this process."""
     found: list[int] = []
     with suppress(OSError):
         for thread in Path("/proc/self/task").iterdir():

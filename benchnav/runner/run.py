@@ -149,7 +149,7 @@ def run_suite(
                     summary.count(task, outcome)
         finally:
             told.end()
-            process_pool.dismiss()
+            process_pool.stop_all()
             with suppress(OSError):
                 drop_abandoned()  # of workers that were killed
             not_run = {cell.key: why for cell, why in summary.not_applicable}

@@ -1,1 +1,1 @@
-"""What agents may perceive."""
+"""The sensors of agents."""

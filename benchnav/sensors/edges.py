@@ -1,6 +1,6 @@
 """The nearest edges of walls and static obstacles that face the agent and are in sight.
 
-An edge of which anything is in sight is told whole, as far as the sensor reaches.
+If any tested point of an edge is in sight, the whole edge within the sensor's range is reported.
 """
 
 import math
@@ -15,12 +15,12 @@ from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel
 from benchnav.sensors.sight import FEW, in_sight
 
-CANDIDATES = 64  # nearest facing edges of which the visible ones are kept
+CANDIDATES = 64  # nearest facing edges that are tested for visibility
 _STATIC = int(Kind.STATIC)
 _EIGHTH = math.pi / 4.0
 _OCTAGON = 1.0 / math.cos(math.pi / 8.0)  # circumradius of the octagon about a unit disc
-END = 0.001  # where an end of an edge is looked at, as a share of its length
-BEFORE = 1.0 - 1e-6  # of the way to a point that is looked at
+END = 0.001  # distance of the tested end points from the ends, as a share of the edge's length
+BEFORE = 1.0 - 1e-6  # share of the way to a tested point
 
 
 @kernel
@@ -31,9 +31,9 @@ def find_edges(
     item: IntArray, first: FloatArray, second: FloatArray, before: FloatArray, after: FloatArray,
     first_convex: BoolArray, second_convex: BoolArray, count: IntArray,
 ) -> None:  # fmt: skip
-    """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, E, …).
+    """Find edges for rows low:high of the flattened (B, chosen agents).
 
-    ``bulge`` [m] is the radius of the largest fixed disc.
+    Outputs are (B, An, E, …). ``bulge`` [m] is the radius of the largest fixed disc.
     """
     width, most = first.shape[1], first.shape[2]
     best = np.empty(CANDIDATES)  # squared distances, rising
@@ -70,14 +70,14 @@ def _visible(
     a: Any, edge: FloatArray, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
     bodies: AnyArray, shapes: AnyArray,
 ) -> bool:  # fmt: skip
-    """Is the nearest point of the edge, its middle, or one of its ends in sight?
+    """Whether the nearest point of the edge, its middle, or one of its ends is in sight.
 
-    A point is looked at from just before it, so that the edge does not hide itself.
+    The line of sight ends just before the point, so that the edge does not hide itself.
     """
-    for look in range(4):
+    for point in range(4):
         x, y = nearest_on_segment(a.x, a.y, edge[0], edge[1], edge[2], edge[3])
-        if look > 0:
-            u = 0.5 if look == 1 else (END if look == 2 else 1.0 - END)
+        if point > 0:
+            u = 0.5 if point == 1 else (END if point == 2 else 1.0 - END)
             x, y = edge[0] + u * (edge[2] - edge[0]), edge[1] + u * (edge[3] - edge[1])
         x, y = a.x + (x - a.x) * BEFORE, a.y + (y - a.y) * BEFORE
         if in_sight(a.x, a.y, x, y, -1, world, capsules, start, item, bodies, shapes):
@@ -90,7 +90,7 @@ def _gather(
     a: Any, limit: float, bulge: float, world: Any, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
-    """The nearest facing edges within ``limit``, sorted; returns how many."""
+    """Gather the nearest facing edges within ``limit``, sorted; return their number."""
     n = 0
     if world.last - world.first <= FEW:
         for p in range(world.first, world.last):
@@ -113,7 +113,7 @@ def _gather_cells(
     a: Any, limit: float, far: float, world: Any, capsules: AnyArray, start: IntArray,
     item: IntArray, best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
-    """Over the cells within ``far``; a capsule counts in the cell of its point nearest to a."""
+    """Gather from cells within ``far``; a capsule counts in the cell of its point nearest to a."""
     n, side = 0, world.side
     i0 = max(0, math.floor((a.x - far - world.origin_x) / side))
     j0 = max(0, math.floor((a.y - far - world.origin_y) / side))
@@ -137,7 +137,7 @@ def _consider(
     a: Any, ox: float, oy: float, c: Any, at: int, limit: float, n: int, best: FloatArray,
     code: IntArray,
 ) -> int:  # fmt: skip
-    """Offer capsule c, shifted by (ox, oy): an edge, or the sides of the octagon about a disc."""
+    """Offer capsule c, shifted by (ox, oy): an edge, or the sides of the octagon around a disc."""
     if c.before >= 0:
         x0, y0, x1, y1 = ox + c.x0, oy + c.y0, ox + c.x1, oy + c.y1
         return _offer(a, x0, y0, x1, y1, 8 * at, limit, n, best, code)
@@ -149,7 +149,7 @@ def _consider(
 
 @kernel
 def _octagon_side(c: Any, side: int) -> tuple[float, float, float, float]:
-    """A side of the octagon about a disc, by 45° steps; side 0 faces +x."""
+    """Return a side of the octagon around a disc, by 45° steps; side 0 faces +x."""
     c0, s0 = cos_sin((side - 0.5) * _EIGHTH)
     c1, s1 = cos_sin((side + 0.5) * _EIGHTH)
     radius = c.r * _OCTAGON
@@ -158,10 +158,10 @@ def _octagon_side(c: Any, side: int) -> tuple[float, float, float, float]:
 
 @kernel
 def _offer(
-    a: Any, x0: float, y0: float, x1: float, y1: float, what: int, limit: float, n: int,
+    a: Any, x0: float, y0: float, x1: float, y1: float, edge_code: int, limit: float, n: int,
     best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
-    """Insert an edge if agent a is on its free (right-hand) side and near enough."""
+    """Insert an edge if agent a is on its free (right-hand) side and within ``limit``."""
     if (x1 - x0) * (a.y - y0) - (y1 - y0) * (a.x - x0) >= 0.0:
         return n
     qx, qy = nearest_on_segment(a.x, a.y, x0, y0, x1, y1)
@@ -170,10 +170,10 @@ def _offer(
         return n
     n = min(n + 1, len(best))
     at = n - 1
-    while at > 0 and (best[at - 1] > d2 or (best[at - 1] == d2 and code[at - 1] > what)):
+    while at > 0 and (best[at - 1] > d2 or (best[at - 1] == d2 and code[at - 1] > edge_code)):
         best[at], code[at] = best[at - 1], code[at - 1]
         at -= 1
-    best[at], code[at] = d2, what
+    best[at], code[at] = d2, edge_code
     return n
 
 
@@ -208,12 +208,12 @@ def _edge(
 
 @kernel
 def _clip(a: Any, limit: float, edge: FloatArray) -> None:
-    """Cut an edge at the sensor's range; a cut end looks like a straight wall that goes on."""
+    """Cut an edge at the sensor's range; a cut end looks like a straight wall that continues."""
     dx, dy = edge[2] - edge[0], edge[3] - edge[1]
     length = math.sqrt(dx * dx + dy * dy)
     ux, uy = dx / length, dy / length
     fx, fy = edge[0] - a.x, edge[1] - a.y
-    middle = -(fx * ux + fy * uy)  # along the edge, where it comes nearest to a
+    middle = -(fx * ux + fy * uy)  # position along the edge of the point nearest to a
     half = math.sqrt(max(limit * limit - (fx * fx + fy * fy) + middle * middle, 0.0))
     x0, y0 = edge[0], edge[1]
     if middle - half > 0.0:

@@ -12,7 +12,7 @@ from benchnav.kernels import inlined, kernel
 from benchnav.sensors.sight import in_sight
 from benchnav.world.touch import BRUTE_FORCE
 
-CANDIDATES = 32  # nearest in range that are looked at first
+CANDIDATES = 32  # nearest ones in range that are tested for visibility first
 _AGENT, _DYNAMIC = int(Kind.AGENT), int(Kind.DYNAMIC)
 
 
@@ -24,10 +24,10 @@ def find_neighbours(
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
     count: IntArray,
 ) -> None:  # fmt: skip
-    """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, K, …).
+    """Find neighbours for rows low:high of the flattened (B, chosen agents).
 
-    Where something could hide somebody, more candidates than K are gathered, and more
-    again, until K of them are in sight or nobody is left in range.
+    Outputs are (B, An, K, …). If obstacles can hide neighbours, more than K candidates are
+    gathered, and the number doubles until K are in sight or no candidate is left in range.
     """
     width, most, total = position.shape[1], position.shape[2], agents.shape[1]
     best = np.empty(total + bodies.shape[1] + 1)  # squared distances
@@ -72,7 +72,7 @@ def _keep_visible(
     a: Any, n: int, most: int, agents: AnyArray, world: Any, capsules: AnyArray, start: IntArray,
     item: IntArray, bodies: AnyArray, shapes: AnyArray, code: IntArray,
 ) -> int:  # fmt: skip
-    """Moves those in sight to the front of ``code``, up to ``most``; returns how many."""
+    """Move the visible candidates to the front of ``code``, up to ``most``; return their number."""
     kept = 0
     for s in range(n):
         m = code[s] - len(agents)
@@ -94,7 +94,7 @@ def _gather_bodies(
     a: Any, limit: float, total: int, count: int, bodies: AnyArray, best: FloatArray,
     code: IntArray,
 ) -> int:  # fmt: skip
-    """Lists the dynamic obstacles within ``limit``, as many as there is room for."""
+    """List the dynamic obstacles within ``limit``, as space allows; return their number."""
     n = 0
     for m in range(count):
         body = bodies[m]
@@ -110,7 +110,7 @@ def _gather_agents(
     i: int, limit: float, room: int, side: float, sees: BoolArray, agents: AnyArray,
     hashed: IntArray, spots: AnyArray, n: int, best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
-    """Adds the other agents that are not ignored; returns how many of the nearest are listed."""
+    """Add the other agents that are not ignored; return the number of nearest ones in the list."""
     a = agents[i]
     x, y, team, far = a.x, a.y, a.team, limit * limit
     n = _nearest(0, n, room, best, code)
@@ -153,9 +153,9 @@ def _nearest(done: int, n: int, room: int, best: FloatArray, code: IntArray) -> 
     The order is total, so that the order of discovery does not matter.
     """
     for k in range(done, n):
-        d2, what, at = best[k], code[k], k
-        while at > 0 and (best[at - 1] > d2 or (best[at - 1] == d2 and code[at - 1] > what)):
+        d2, candidate, at = best[k], code[k], k
+        while at > 0 and (best[at - 1] > d2 or (best[at - 1] == d2 and code[at - 1] > candidate)):
             best[at], code[at] = best[at - 1], code[at - 1]
             at -= 1
-        best[at], code[at] = d2, what
+        best[at], code[at] = d2, candidate
     return min(n, room)

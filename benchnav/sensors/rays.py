@@ -1,8 +1,8 @@
-"""Rays: what each meets first, and the goal on a layer of its own.
+"""Rays: the first object that each ray hits, and the goal on a separate layer.
 
-A thick ray is a cast of the agent's own disc: it stops where the body would. What
-could be met is listed once per agent, in its own frame, and then every ray is
-tested against the list; the capsules of a large map are met by walking its grid.
+A thick ray is a cast of the agent's own disc: it stops where the body would stop. All
+objects in reach are listed once per agent, in the agent's frame; then every ray is
+tested against the list. Capsules of a large map are found by walking its grid.
 """
 
 import math
@@ -22,7 +22,7 @@ from benchnav.world.touch import BRUTE_FORCE
 
 _AGENT, _NOTHING, _DYNAMIC = int(Kind.AGENT), int(Kind.NOTHING), int(Kind.DYNAMIC)
 
-# columns of the list: ends, unit normal and distance of the line (edges), radius sum, kind,
+# columns of the list: ends; unit normal and distance of the line (edges); sum of radii; kind;
 # velocity. Frame: the agent at the origin, looking along +x.
 X0, Y0, X1, Y1, NX, NY, OFF, REACH, KIND, VX, VY = range(11)
 
@@ -36,17 +36,17 @@ def cast_rays(
     spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
     goal: FloatArray,
 ) -> None:  # fmt: skip
-    """Rows low:high of the flattened (B, chosen agents); outputs are (B, An, R).
+    """Cast rays for rows low:high of the flattened (B, chosen agents); outputs are (B, An, R).
 
     ``fan_x``, ``fan_y``: unit vectors in the agent's frame, padded by repetition to a
-    multiple of 8; ``side`` [m] of the hashed cells, ``widest`` radius of an agent and
-    ``most_shapes``, capsules of the bodies of one world; ``sees`` (B, teams, teams).
+    multiple of 8; ``side`` [m] of the hashed cells; ``widest`` radius of an agent;
+    ``most_shapes``: capsules of the bodies of one world; ``sees`` (B, teams, teams).
     """
     width = chosen.shape[1]
     rays = distance.shape[2]
     things = np.empty((FEW + agents.shape[1] + most_shapes, 11))  # room for everything
     best = np.empty(len(fan_x))
-    who = np.empty(len(fan_x), np.int64)
+    hit = np.empty(len(fan_x), np.int64)
     for b in range(low // width, (high + width - 1) // width):
         world, here, others = worlds[b], agents[b], bodies[b]
         seen, table, crowd = sees[b], hashed[b], spots[b]
@@ -67,20 +67,20 @@ def cast_rays(
             gx, gy = a.x - a.goal_x, a.y - a.goal_y
             gx, gy = ca * gx + sa * gy, ca * gy - sa * gx
             best[:] = limit
-            who[:] = -1
-            _cast(n, things, fan_x, fan_y, best, who)
+            hit[:] = -1
+            _cast(n, things, fan_x, fan_y, best, hit)
             for r in range(rays):
                 dx, dy, reach = fan_x[r], fan_y[r], best[r]
-                met = _NOTHING if who[r] < 0 else int(things[who[r], KIND])
+                hit_kind = _NOTHING if hit[r] < 0 else int(things[hit[r], KIND])
                 if not few:
                     wx, wy = ca * dx - sa * dy, sa * dx + ca * dy
                     reach, on_map = _first_on_map(
                         a.x, a.y, wx, wy, own, reach, world, capsules, start, item
                     )
-                    met = met if on_map == _NOTHING else on_map
-                distance[b, k, r], kind[b, k, r], approach[b, k, r] = reach, met, 0.0
-                if met == _DYNAMIC:
-                    approach[b, k, r] = -(things[who[r], VX] * dx + things[who[r], VY] * dy)
+                    hit_kind = hit_kind if on_map == _NOTHING else on_map
+                distance[b, k, r], kind[b, k, r], approach[b, k, r] = reach, hit_kind, 0.0
+                if hit_kind == _DYNAMIC:
+                    approach[b, k, r] = -(things[hit[r], VX] * dx + things[hit[r], VY] * dy)
                 goal[b, k, r] = _goal_distance(gx, gy, dx, dy, world.tolerance + own, reach)
 
 
@@ -95,7 +95,7 @@ def _list(
     a: Any, ca: float, sa: float, own: float, c: Any, x0: float, y0: float, vx: float, vy: float,
     things: FloatArray, n: int,
 ) -> int:  # fmt: skip
-    """Append capsule c, which begins at (x0, y0) from the agent."""
+    """Append capsule c, which begins at (x0, y0) relative to the agent."""
     x1, y1 = x0 + (c.x1 - c.x0), y0 + (c.y1 - c.y0)
     row = things[n]
     row[X0], row[Y0] = ca * x0 + sa * y0, ca * y0 - sa * x0
@@ -108,11 +108,11 @@ def _list(
 
 
 @kernel
-def _matters(c: Any, x0: float, y0: float, far: float) -> bool:
-    """Could a ray of length ``far`` [m] meet capsule c, which begins at (x0, y0), first?
+def _is_reachable(c: Any, x0: float, y0: float, far: float) -> bool:
+    """Whether a ray of length ``far`` [m] can hit capsule c, which begins at (x0, y0), first.
 
-    An edge whose solid is on the agent's side cannot be met before another edge of
-    that solid: its loop is closed and the agent outside.
+    An edge with its solid on the agent's side cannot be hit before another edge of
+    that solid: its loop is closed and the agent is outside.
     """
     if c.nx * x0 + c.ny * y0 > 0.0:
         return False
@@ -129,7 +129,7 @@ def _list_fixed(
 ) -> int:  # fmt: skip
     for p in range(world.first, world.last):
         c = capsules[p]
-        if _matters(c, c.x0 - a.x, c.y0 - a.y, limit + own):
+        if _is_reachable(c, c.x0 - a.x, c.y0 - a.y, limit + own):
             n = _list(a, ca, sa, own, c, c.x0 - a.x, c.y0 - a.y, 0.0, 0.0, things, n)
     return n
 
@@ -146,7 +146,7 @@ def _list_bodies(
             for q in range(body.first, body.last):
                 c = shapes[q]
                 x0, y0 = c.x0 + dx, c.y0 + dy
-                if _matters(c, x0, y0, limit + own):
+                if _is_reachable(c, x0, y0, limit + own):
                     n = _list(a, ca, sa, own, c, x0, y0, body.vx, body.vy, things, n)
     return n
 
@@ -197,12 +197,12 @@ def _list_agent(
 @inlined
 def _cast(
     n: int, things: FloatArray, fan_x: FloatArray, fan_y: FloatArray, best: FloatArray,
-    who: IntArray,
+    hit: IntArray,
 ) -> None:  # fmt: skip
-    """Lowers ``best`` (R,) to the distance of the first of n things, and notes ``who`` it is.
+    """Lower ``best`` (R,) to the distance of the nearest of n objects; store its index in ``hit``.
 
-    An edge is met on its line, or else at the end that its line is passed at. Without
-    branches, all rays at once: the compiler turns the inner loop into vector operations.
+    A ray hits an edge on its line, or else at the end where it passes the line. The code has
+    no branches and runs over all rays: the compiler turns the inner loop into vector operations.
     """
     for k in range(n):
         x0, y0, x1, y1 = things[k, X0], things[k, Y0], things[k, X1], things[k, Y1]
@@ -226,7 +226,7 @@ def _cast(
             t = math.inf if gap > 0.0 and slope >= 0.0 else t
             nearer = t < best[r]
             best[r] = t if nearer else best[r]
-            who[r] = k if nearer else who[r]
+            hit[r] = k if nearer else hit[r]
 
 
 @kernel
@@ -234,11 +234,11 @@ def _first_on_map(
     x: float, y: float, dx: float, dy: float, own: float, limit: float, world: Any,
     capsules: AnyArray, start: IntArray, item: IntArray,
 ) -> tuple[float, int]:  # fmt: skip
-    """(distance, kind) of the first fixed capsule nearer than ``limit``; (limit, NOTHING) if none.
+    """Return (distance, kind) of the first fixed capsule within ``limit``, or (limit, NOTHING).
 
-    Frame of the world; (dx, dy) is a unit vector.
+    World frame; (dx, dy) is a unit vector.
     """
-    best, what = limit, _NOTHING
+    best, kind = limit, _NOTHING
     i, j, step_i, step_j, next_i, next_j, each_i, each_j = walk(world, x, y, dx, dy)
     entered = 0.0
     while entered <= best:
@@ -253,9 +253,9 @@ def _first_on_map(
                     continue
                 t = capsule_time(x, y, dx, dy, reach, best, c.x0, c.y0, c.x1, c.y1)
                 if t < best:
-                    best, what = t, c.kind
+                    best, kind = t, c.kind
         if next_i < next_j:
             entered, next_i, i = next_i, next_i + each_i, i + step_i
         else:
             entered, next_j, j = next_j, next_j + each_j, j + step_j
-    return best, what
+    return best, kind

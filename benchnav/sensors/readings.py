@@ -1,6 +1,6 @@
-"""What sensors read: rays, neighbours and edges, of some agents of a batch of worlds.
+"""Sensor readings: rays, neighbours and edges of some agents in a batch of worlds.
 
-Arrays start with (B, A): the worlds of a call and the agents that were asked for.
+Arrays start with (B, A): the worlds and the requested agents of a call.
 World frame.
 """
 
@@ -13,10 +13,10 @@ from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 
 
 class Rows:
-    """Arrays whose first axis is B, of which a subset of worlds can be taken."""
+    """Arrays with first axis B, from which a subset of worlds can be selected."""
 
     def select(self, index: IntArray) -> Self:
-        """The worlds ``index``, in that order."""
+        """Return the worlds ``index``, in that order."""
         changes: dict[str, Any] = {}
         for f in fields(self):  # type: ignore[arg-type]
             value = getattr(self, f.name)
@@ -31,13 +31,13 @@ class Rows:
 
 @dataclass(frozen=True, eq=False)
 class Rays(Rows):
-    """What each ray meets first; the goal is on a layer of its own."""
+    """The first object that each ray hits; the goal is on a separate layer."""
 
     angle: FloatArray  # (R,) [rad] from the agent's heading
-    distance: FloatArray  # (B, A, R) [m] travelled by the ray or its disc; range if nothing
+    distance: FloatArray  # (B, A, R) [m] of the ray or of its disc; the range if nothing is hit
     kind: ByteArray  # (B, A, R) of Kind: NOTHING, AGENT, WALL, STATIC, DYNAMIC
-    approach: FloatArray  # (B, A, R) [m/s] of the mover that is met, towards the agent, else 0
-    goal: FloatArray  # (B, A, R) [m] to the own goal's disc along the ray; inf if missed or hidden
+    approach: FloatArray  # (B, A, R) [m/s] of the hit dynamic obstacle, towards the agent, else 0
+    goal: FloatArray  # (B, A, R) [m] along the ray to the own goal's disc; inf if missed or hidden
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +56,7 @@ class Edges(Rows):
     """The nearest edges of walls and static obstacles that face the agent and are in sight.
 
     Each runs from start to end with the solid on its left; nearest first. A disc
-    is seen as the edges of the regular octagon circumscribed about it.
+    is reported as the edges of the regular octagon circumscribed about it.
     """
 
     start: FloatArray  # (B, A, E, 2) [m]

@@ -1,4 +1,4 @@
-"""All sensors of some agents of a simulation, as the arrays of an observation."""
+"""All sensors of some agents of a simulation, as arrays of an observation."""
 
 import math
 
@@ -18,18 +18,18 @@ from benchnav.world.simulation import Simulation
 from benchnav.world.touch import BRUTE_FORCE
 
 RAYS, NEIGHBOURS, EDGES = "rays", "neighbours", "edges"  # names of the sensors
-LEAST = 64  # agents below which a second thread costs more than it saves
+LEAST = 64  # with fewer agents, a second thread costs more than it saves
 
 
 def sense(
     simulation: Simulation, chosen: IntArray, needs: frozenset[str]
 ) -> tuple[Rays | None, Neighbours | None, Edges | None]:
-    """What the chosen agents perceive now.
+    """Return the current sensor readings of the chosen agents.
 
     Args:
-        simulation: B worlds with one sensing.
-        chosen: (B, An) agent indices; -1 is padding, and senses nothing.
-        needs: which sensors to compute; one that the worlds do not have is None.
+        simulation: B worlds with equal sensing.
+        chosen: (B, An) agent indices; -1 is padding without readings.
+        needs: sensors to compute; the result is None for a sensor that the worlds do not have.
     """
     sensing: Sensing = simulation.worlds[0].sensing
     crowd = simulation.A > BRUTE_FORCE
@@ -51,7 +51,7 @@ def sense(
 
 
 def _cell_side(simulation: Simulation, sensing: Sensing) -> float:
-    """Cells of a few bodies: a crowd is dense where it matters."""
+    """Return the cell side [m], a few body sizes: crowds are dense where many agents meet."""
     limit = sensing.neighbours.range if sensing.neighbours is not None else 0.0
     if sensing.rays is not None:
         limit = max(limit, sensing.rays.range)
@@ -67,7 +67,7 @@ def _sort_agents(
 
 
 def ray_angles(sensor: RaySensor) -> FloatArray:
-    """(R,) [rad] from the heading, from right to left."""
+    """Return the ray angles (R,) [rad] from the heading, from right to left."""
     if sensor.count == 1:
         return np.zeros(1)
     whole = sensor.fan >= 2.0 * math.pi - 1e-9

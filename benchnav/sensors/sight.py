@@ -1,6 +1,6 @@
-"""Lines of sight: is the straight way from an agent to a point free of walls and obstacles?
+"""Lines of sight: whether the segment from an agent to a point is free of walls and obstacles.
 
-Agents hide nobody. The test is against the same capsules that bodies touch.
+Agents do not block the view. The test uses the same capsules as contacts.
 """
 
 from typing import Any
@@ -10,12 +10,12 @@ from benchnav.geometry.capsule import nearest_on_segment, segments_cross
 from benchnav.kernels import kernel
 from benchnav.world.fixed import walk
 
-FEW = 64  # capsules up to which testing all is cheaper than walking the grid
+FEW = 64  # up to this many capsules, testing all is cheaper than walking the grid
 
 
 @kernel
 def hides(c: Any, px: float, py: float, qx: float, qy: float) -> bool:
-    """Does capsule c cut the open segment pq?"""
+    """Whether capsule c cuts the open segment pq."""
     if c.r > 0.0:
         nx, ny = nearest_on_segment(c.x0, c.y0, px, py, qx, qy)
         dx, dy = c.x0 - nx, c.y0 - ny
@@ -28,7 +28,7 @@ def in_sight(
     px: float, py: float, qx: float, qy: float, skip: int, world: Any, capsules: AnyArray,
     start: IntArray, item: IntArray, bodies: AnyArray, shapes: AnyArray,
 ) -> bool:  # fmt: skip
-    """True where nothing stands between p and q; body ``skip`` (or -1) does not count."""
+    """Whether no wall or obstacle lies between p and q; body ``skip`` (or -1) is ignored."""
     for m in range(world.bodies):
         body = bodies[m]
         nx, ny = nearest_on_segment(body.x, body.y, px, py, qx, qy)
@@ -58,7 +58,7 @@ def _clear_along(
     px: float, py: float, qx: float, qy: float, world: Any, capsules: AnyArray, start: IntArray,
     item: IntArray,
 ) -> bool:  # fmt: skip
-    """As `in_sight`, over the cells that pq crosses: what cuts pq in a cell is listed there."""
+    """Like `in_sight`, over the cells that pq crosses: a cell lists all capsules that touch it."""
     i, j, step_i, step_j, next_i, next_j, each_i, each_j = walk(world, px, py, qx - px, qy - py)
     entered = 0.0
     while entered <= 1.0:

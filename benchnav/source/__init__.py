@@ -1,1 +1,1 @@
-"""The source of what is measured: found and hashed without importing it."""
+"""The source code of plugins under test: found and hashed without importing it."""

@@ -1,7 +1,7 @@
-"""The modules that a navigator's code is made of: its own, and what these import of their own.
+"""All own modules of a navigator: its module, and the own modules that it imports in turn.
 
-Own code is what a working copy holds, and what is installed by the same distribution.
-Libraries are not followed, nor is the simulator: their versions stand for them.
+Own code is code in a working copy, or installed by the same distribution. Imports of libraries
+and of the simulator are not followed: their versions represent them.
 """
 
 from collections import deque
@@ -12,40 +12,40 @@ from benchnav.source.module import CORE, Module, installed_with, is_library, loc
 from benchnav.source.syntax import imported, references
 from benchnav.source.tree import files_below
 
-MOST_MODULES = 5_000  # of a navigator
+MAX_MODULES = 5_000  # of a navigator
 
 
 @dataclass
 class Closure:
-    """Modules by name; grows by `add`."""
+    """The modules by name; `add` extends them."""
 
     folders: tuple[str, ...] = ()  # searched before the import path
     modules: dict[str, Module] = field(default_factory=dict)
     _seen: set[str] = field(default_factory=set)
-    _tops: set[str] = field(default_factory=set)  # top-level names that are own code
-    _other: set[str] = field(default_factory=lambda: {CORE})
+    _own_tops: set[str] = field(default_factory=set)  # top-level names that are own code
+    _other_tops: set[str] = field(default_factory=lambda: {CORE})
 
     def add(self, names: Iterable[str]) -> None:
-        """Add the modules called so, as own code wherever they are, and what they import."""
+        """Add the named modules, which count as own code wherever they are, and their imports."""
         names = list(names)
         for top in {name.partition(".")[0] for name in names} - {CORE}:
             module = locate(top, self.folders)
-            self._tops.add(top)
+            self._own_tops.add(top)
             if module is not None and is_library(module):
-                self._tops |= installed_with(top) - {CORE}
+                self._own_tops |= installed_with(top) - {CORE}
         self.follow(names)
 
     def add_file(self, module: Module) -> None:
-        """Add a script, and what it imports."""
+        """Add a script and its imports."""
         self.folders = (*self.folders, str(module.file.parent))
         self.modules[module.name] = module
         self._seen.add(module.name)
         self.follow(self._imports(module))
 
     def follow(self, names: Iterable[str]) -> None:
-        """Add those of the modules called so that are own code, and what they import."""
+        """Add the named modules that are own code, and their imports."""
         pending = deque(names)
-        while pending and len(self.modules) < MOST_MODULES:
+        while pending and len(self.modules) < MAX_MODULES:
             name = pending.popleft()
             if name in self._seen or not self._is_own(name.partition(".")[0]):
                 continue
@@ -58,11 +58,11 @@ class Closure:
                 pending.extend(self._imports(module))
 
     def _is_own(self, top: str) -> bool:
-        if top not in self._tops and top not in self._other:
+        if top not in self._own_tops and top not in self._other_tops:
             module = locate(top, self.folders)
             own = module is not None and not is_library(module)
-            (self._tops if own else self._other).add(top)
-        return top in self._tops
+            (self._own_tops if own else self._other_tops).add(top)
+        return top in self._own_tops
 
     def _imports(self, module: Module) -> Iterator[str]:
         if module.file.suffix != ".py":
@@ -70,10 +70,10 @@ class Closure:
         found = references(module.file.read_bytes())
         yield from imported(found, module.package)
         if found.imports_by_text and module.package:
-            yield from self._whole(module.name.partition(".")[0])
+            yield from self._all_modules(module.name.partition(".")[0])
 
-    def _whole(self, top: str) -> Iterator[str]:
-        """Every module of a package: where imports are computed, each may be one of them."""
+    def _all_modules(self, top: str) -> Iterator[str]:
+        """Yield every module of a package: a computed import can name any of them."""
         package = locate(top, self.folders)
         if package is not None and package.is_package:
             for file in files_below(package.file.parent):

@@ -1,4 +1,4 @@
-"""The source hash of a navigator: of every file, or cell, that it and its parts are made of."""
+"""The source hash of a navigator: of every file or notebook cell of its code and its parts."""
 
 import hashlib
 from collections.abc import Iterable, Mapping
@@ -18,18 +18,18 @@ SIZE = 16  # hexadecimal digits of a source hash
 
 @dataclass(frozen=True)
 class FoundSource:
-    """What was found of a navigator's source."""
+    """The result of a search for a navigator's source."""
 
-    hash: str  # the same on every machine and in every folder
-    edited: tuple[str, ...]  # modules that this process imported before they were edited
+    hash: str  # equal on every machine and in every folder
+    edited: tuple[str, ...]  # modules that were edited after this process imported them
 
 
 def find_source(places: Iterable[str], specs: Iterable[Mapping[str, Any]] = ()) -> FoundSource:
-    """Return the source at ``places`` and in the files that ``specs`` name; nothing is imported.
+    """Find the source at ``places`` and in the files that ``specs`` name, without importing it.
 
     Args:
-        places: ``module:attribute`` of the navigator's class and of its parts'.
-        specs: parameters, whose texts may name programs, scripts, weights and folders.
+        places: ``module:attribute`` of the classes of the navigator and its parts.
+        specs: parameters; their strings may name programs, scripts, weights and folders.
     """
     forget_listings()
     places = sorted(set(places))
@@ -57,12 +57,12 @@ def find_source(places: Iterable[str], specs: Iterable[Mapping[str, Any]] = ()) 
 
 
 def source_hash(places: Iterable[str], specs: Iterable[Mapping[str, Any]] = ()) -> str:
-    """Return the hash that `find_source` finds."""
+    """Return the hash of `find_source`."""
     return find_source(places, specs).hash
 
 
 def _data(modules: Iterable[Module]) -> list[str]:
-    """Lines for the data files of modules and their packages."""
+    """Return a line per data file of the modules and their packages."""
     lines = []
     for module in modules:
         if module.file.suffix == ".py":

@@ -1,4 +1,4 @@
-"""Whether another process of this program can import what was defined in this one."""
+"""Whether another process can import a class or function of this one."""
 
 import ast
 import sys
@@ -16,8 +16,8 @@ _LOCAL = "<locals>"
 def is_importable(thing: Any) -> bool:
     """Whether a worker process finds ``thing`` by its module and name.
 
-    Workers run the script that started this process under another name, so they know what
-    it defines at its top level. They know nothing of the cells of a notebook.
+    Workers import the script that started this process under another name, so they know its
+    top-level definitions. They do not know the cells of a notebook.
     """
     module, name = getattr(thing, "__module__", None), getattr(thing, "__qualname__", "")
     if not module or not name or _LOCAL in name:
@@ -34,7 +34,7 @@ def is_importable(thing: Any) -> bool:
 
 
 def _defined_by(script: Path) -> frozenset[str]:
-    """Names of the classes and functions that a script defines whenever it is imported."""
+    """Return the classes and functions that a script always defines at its top level."""
     try:
         return _defined(script.read_bytes())
     except OSError:

@@ -1,7 +1,7 @@
-"""The source of a class that no file defines: a cell of a notebook, a function of a script.
+"""The source of objects without a file: a cell of a notebook, a local function of a script.
 
-Functions count by their text, or by their bytecode where there is none; with them count
-defaults, closures, and the functions, classes and constants of the same session that they use.
+A function counts by its text, or by its bytecode if the text is unknown. Its defaults, closure,
+and the functions, classes and constants of the same session that it uses count too.
 """
 
 import dis
@@ -20,29 +20,29 @@ from benchnav.source.module import CORE, is_library, locate
 
 _PLAIN = (type(None), bool, int, float, complex, str, bytes, type(...))
 _WRAPPED = ("__func__", "fget", "fset", "func", "py_func", "__wrapped__")
-_DEEPEST = 12
-_MADE_BY_PYTHON = 1 << 9  # Py_TPFLAGS_HEAPTYPE of a class
+_MAX_DEPTH = 12
+_HEAP_TYPE = 1 << 9  # Py_TPFLAGS_HEAPTYPE: a class that Python code created
 
 
 @dataclass
 class LiveSource:
-    """What the source of live objects is made of; grows by `add`."""
+    """The source of live objects; `add` extends it."""
 
     lines: list[str] = field(default_factory=list)
-    imports: set[str] = field(default_factory=set)  # modules whose files count besides
+    imports: set[str] = field(default_factory=set)  # modules whose files count as well
     _seen: dict[int, Any] = field(default_factory=dict)
 
     def add(self, thing: Any, path: str, depth: int = 0) -> None:
-        """Describe ``thing``, found at ``path``, and all that it uses."""
+        """Describe ``thing``, found at ``path``, and everything that it uses."""
         if isinstance(thing, _PLAIN):
             self.lines.append(f"{path} = {thing!r}")
-        elif depth <= _DEEPEST and id(thing) not in self._seen:
+        elif depth <= _MAX_DEPTH and id(thing) not in self._seen:
             self._seen[id(thing)] = thing
             for name, part in self._parts(thing, path):
                 self.add(part, f"{path}.{name}", depth + 1)
 
     def _parts(self, thing: Any, path: str) -> Iterator[tuple[str, Any]]:
-        """What ``thing`` is made of; its own line is written on the way."""
+        """Yield the parts of ``thing``; also append its own line."""
         if isinstance(thing, ModuleType):
             self.imports.add(thing.__name__)
         elif isinstance(thing, FunctionType | type):
@@ -103,11 +103,11 @@ class LiveSource:
 
 
 def _is_live(thing: Any) -> bool:
-    """Whether a function or class was made in this session, and stands in no file of its own."""
+    """Whether a function or class was defined in this session, and not in a file of its own."""
     module = str(getattr(thing, "__module__", None) or "builtins")
     if module == MAIN:
         return True
-    if isinstance(thing, type) and not thing.__flags__ & _MADE_BY_PYTHON:
+    if isinstance(thing, type) and not thing.__flags__ & _HEAP_TYPE:
         return False
     top = module.partition(".")[0]
     if top == CORE or (top in sys.stdlib_module_names and top != "builtins"):
@@ -124,7 +124,7 @@ def _text(function: FunctionType) -> str:
 
 
 def _bytecode(code: CodeType) -> tuple[Any, ...]:
-    """What a code object does, without where it stands."""
+    """Return the operations of a code object, without its location."""
     constants = tuple(
         _bytecode(c) if isinstance(c, CodeType)
         else sorted(map(repr, c)) if isinstance(c, frozenset) else repr(c)
@@ -134,7 +134,7 @@ def _bytecode(code: CodeType) -> tuple[Any, ...]:
 
 
 def _globals_of(code: CodeType) -> set[str]:
-    """Names of the globals that a function and those within it read."""
+    """Return the names of the globals that a function and its inner functions read."""
     found = {
         str(i.argval)
         for i in dis.get_instructions(code)

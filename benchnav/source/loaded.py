@@ -1,15 +1,15 @@
-"""Modules that this process imported, and that were edited since: it still runs the old code."""
+"""Modules that were edited after this process imported them: it still runs the old code."""
 
 import sys
 from collections.abc import Mapping
 
-_SEEN: dict[str, tuple[object, str]] = {}  # module → (its import, sha256 of the file it came from)
+_SEEN: dict[str, tuple[object, str]] = {}  # module → (its spec, sha256 of its file at import)
 
 
 def edited_since_import(modules: Mapping[str, str]) -> tuple[str, ...]:
-    """Return the names among ``modules`` (name → sha256 of the file now) that were edited.
+    """Return the edited modules among ``modules`` (name → sha256 of the file now), sorted.
 
-    The first call after an import takes the file to be what was imported; reloading counts
+    The first call after an import assumes that the file is unchanged since; a reload counts
     as an import.
     """
     edited = []

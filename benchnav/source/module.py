@@ -1,4 +1,4 @@
-"""Python modules on disk, found without importing them or their packages."""
+"""Python modules on disk, located without importing them or their packages."""
 
 import sys
 import sysconfig
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from benchnav.named_module import current_folder
 
-CORE = "benchnav"  # its version stands for it
+CORE = "benchnav"  # represented by its version
 INIT = "__init__.py"
 _LIBRARIES = ("site-packages", "dist-packages")
 
@@ -21,27 +21,27 @@ _LIBRARIES = ("site-packages", "dist-packages")
 class Module:
     """A module, or the ``__init__`` of a package."""
 
-    name: str  # as it is imported: package.module
+    name: str  # as in an import statement: package.module
     file: Path
     is_package: bool
 
     @property
     def package(self) -> str:
-        """Name of the package that relative imports start from; "" for a module without one."""
+        """The package from which relative imports start; "" for a module outside a package."""
         return self.name if self.is_package else self.name.rpartition(".")[0]
 
     @property
     def root(self) -> Path:
-        """The folder that holds the top-level module or package."""
+        """The folder that contains the top-level module or package."""
         return self.file.parents[self.name.count(".") + self.is_package]
 
 
 def locate(name: str, folders: Sequence[str] = ()) -> Module | None:
-    """Return the module called ``name``; None if no file or folder is it.
+    """Return the module ``name``; None if no file or folder has this name.
 
-    ``folders`` are searched before the import path, the current folder after it, as
-    `benchnav.named_module` imports. The file of a package without an
-    ``__init__`` does not exist.
+    ``folders`` are searched before the import path, the current folder after it, like
+    `benchnav.named_module` does. For a package without ``__init__``, the returned file does not
+    exist.
     """
     spec: ModuleSpec | None = None
     path: list[str] | None = None
@@ -60,7 +60,7 @@ def locate(name: str, folders: Sequence[str] = ()) -> Module | None:
 
 
 def forget_listings() -> None:
-    """Make `locate` see files that were made a moment ago."""
+    """Let `locate` see new files."""
     invalidate_caches()
 
 
@@ -74,14 +74,14 @@ def _spec(name: str, path: list[str] | None, folders: Sequence[str]) -> ModuleSp
         try:
             spec: ModuleSpec | None = find(name, path) if find is not None else None
         except (ImportError, AttributeError, KeyError, ValueError):
-            continue  # a finder that needs the parent package to be imported
+            continue  # this finder needs the parent package to be imported
         if spec is not None:
             return spec
     return PathFinder.find_spec(name, [str(current_folder())]) if path is None else None
 
 
 def is_library(module: Module) -> bool:
-    """Whether a module is installed, or Python's own, and not somebody's working copy."""
+    """Whether a module is installed or part of Python, rather than in a working copy."""
     standard = (sysconfig.get_path("stdlib"), sysconfig.get_path("platstdlib"))
     if any(module.file.is_relative_to(folder) for folder in standard):
         return True
@@ -96,7 +96,7 @@ def _holds_distributions(folder: Path) -> bool:
 
 @cache
 def installed_with(top: str) -> frozenset[str]:
-    """Return the top-level names that are installed by the same distribution as ``top``."""
+    """Return the top-level names that the distribution of ``top`` installs."""
     owners = packages_distributions()
-    mine = set(owners.get(top, ()))
-    return frozenset(name for name, dists in owners.items() if mine & set(dists))
+    own = set(owners.get(top, ()))
+    return frozenset(name for name, dists in owners.items() if own & set(dists))

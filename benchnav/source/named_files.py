@@ -9,25 +9,25 @@ from pathlib import Path
 from typing import Any
 
 from benchnav.source.module import Module, is_library
-from benchnav.source.syntax import LONGEST, references
+from benchnav.source.syntax import MAX_LENGTH, references
 from benchnav.source.tree import files_below
 
-MOST_MATCHES = 1_000  # files of one pattern
+MAX_MATCHES = 1_000  # files of one pattern
 _FILE = re.compile(r"[^\n]*\.\w{1,16}")
 _FOLDER = re.compile(r"\.?\w[\w.-]*/?")
 
 
 def named_by_code(module: Module) -> Iterator[tuple[str, Path]]:
-    """Yield (text, file) of every file that a text in the code of ``module`` names.
+    """Yield (text, file) for every file that a string in the code of ``module`` names.
 
-    Texts are taken from the module's folder, from those folders in it that other texts name,
-    and, for a working copy, from the folder that holds its package.
+    A string is relative to the module's folder, to subfolders that other strings name, and, in
+    a working copy, to the folder that contains the package.
     """
     texts = references(module.file.read_bytes()).texts
     folders = [module.file.parent]
     if not is_library(module) and module.root not in folders:
         folders.append(module.root)
-    for _ in range(3):  # "weights" / "v2" / "best.npz" is three texts
+    for _ in range(3):  # "weights" / "v2" / "best.npz" are three strings
         folders += [
             inner
             for folder in folders
@@ -42,43 +42,43 @@ def named_by_code(module: Module) -> Iterator[tuple[str, Path]]:
 
 
 def _matches(folder: Path, pattern: str) -> Iterator[Path]:
-    """Files that ``pattern`` names from ``folder``."""
+    """Yield the files that match ``pattern``, relative to ``folder``."""
     if pattern.startswith(("/", "~")):
-        whole = Path(pattern).expanduser()
-        found: Iterable[Path] = [whole]
+        absolute = Path(pattern).expanduser()
+        found: Iterable[Path] = [absolute]
     elif "*" in pattern and "**" not in pattern:
         found = folder.glob(pattern)
     else:
         found = [folder / pattern]
-    for path in islice(found, MOST_MATCHES):
+    for path in islice(found, MAX_MATCHES):
         try:
             if path.is_file():
                 yield path
-        except OSError:  # a text that is too long for a name, say
+        except OSError:  # for example, the string is too long for a file name
             continue
 
 
 @dataclass
-class Named:
-    """What parameters name."""
+class NamedFiles:
+    """The files that parameters name."""
 
     files: list[tuple[str, Path]] = field(default_factory=list)  # (name, file)
-    scripts: list[Module] = field(default_factory=list)  # Python files, whose imports count too
-    modules: list[str] = field(default_factory=list)  # of ``python -m``
+    scripts: list[Module] = field(default_factory=list)  # Python files; their imports count too
+    modules: list[str] = field(default_factory=list)  # names after ``python -m``
 
     def add(self, path: Path) -> None:
-        """Add a file, or those of a folder."""
+        """Add a file, or all files of a folder."""
         if path.is_dir():
             self.files += [(str(f.relative_to(path)), f) for f in files_below(path)]
         elif path.suffix == ".py":
             self.scripts.append(Module(path.stem, path.absolute(), is_package=False))
-        elif path.is_file():  # reading a pipe or a device might never end
+        elif path.is_file():  # reading a pipe or a device could block for ever
             self.files.append((path.name, path))
 
 
-def named_by_parameters(spec: Mapping[str, Any]) -> Named:
-    """Return what the parameters of a navigator name: files, folders, the program of a command."""
-    named = Named()
+def named_by_parameters(spec: Mapping[str, Any]) -> NamedFiles:
+    """Return the files, folders and programs that the parameters of a navigator name."""
+    named = NamedFiles()
     for text in texts_of({key: value for key, value in spec.items() if key != "type"}):
         path = _path(text)
         if path is not None and ("/" in text.strip("./") or path.is_file()):
@@ -89,8 +89,8 @@ def named_by_parameters(spec: Mapping[str, Any]) -> Named:
     return named
 
 
-def _add_program(command: list[str], named: Named) -> None:
-    """Of a command: the script or module that it runs, or the program itself if there is none."""
+def _add_program(command: list[str], named: NamedFiles) -> None:
+    """Add the scripts and modules that a command runs, or else the program itself."""
     program, *arguments = command
     flags = [i for i, argument in enumerate(arguments[:-1]) if argument == "-m"]
     named.modules += [arguments[i + 1] for i in flags]
@@ -103,8 +103,8 @@ def _add_program(command: list[str], named: Named) -> None:
 
 
 def _path(text: str) -> Path | None:
-    """The file or folder that a text names; None if it does not look like one or is not there."""
-    if not (_FILE.fullmatch(text) or "/" in text) or len(text) > LONGEST:
+    """Return the existing file or folder that a string names; None if it names none."""
+    if not (_FILE.fullmatch(text) or "/" in text) or len(text) > MAX_LENGTH:
         return None
     try:
         path = Path(text).expanduser()
@@ -114,7 +114,7 @@ def _path(text: str) -> Path | None:
 
 
 def texts_of(parameters: Any) -> Iterator[str]:
-    """Yield every text among parameters, at any depth, keys left out."""
+    """Yield every string in parameters, at any depth, without keys."""
     if isinstance(parameters, str):
         yield parameters
     elif isinstance(parameters, Mapping):

@@ -1,4 +1,4 @@
-"""The plugins that a navigator is made of, each as the place that defines it."""
+"""The plugins that form a navigator, each as the place of its definition."""
 
 import re
 import sys
@@ -15,11 +15,11 @@ _BY_MODULE = re.compile(r"[A-Za-z_][\w.]*:[A-Za-z_][\w.]*")
 
 
 def places_of(spec: Mapping[str, Any], declared: Iterable[str] = ()) -> tuple[str, ...]:
-    """Return the places, ``module:attribute``, of a navigator's class and of its parts', sorted.
+    """Return the places, ``module:attribute``, of the classes of a navigator and its parts, sorted.
 
     Args:
         spec: ``{type: name, …every parameter}``.
-        declared: places of the parts that the navigator declares. Names of plugins among its
+        declared: places of the parts that the navigator declares. Plugin names among its
             parameters count as parts too.
     """
     places = {*declared, *_places(str(spec["type"]), (NAVIGATORS,))}
@@ -36,13 +36,13 @@ def _places(name: str, registries: Iterable[Registry]) -> set[str]:
         try:
             if name in registry:
                 found.add(registry.source(name).value)
-        except PluginError:  # two distributions claim it: nothing can be made of it either
+        except PluginError:  # two distributions claim the name, so it cannot be used anyway
             continue
     return found
 
 
-def names_known_here(spec: Mapping[str, Any]) -> list[str]:
-    """Return the names in ``spec`` that stand for what was registered in this process."""
+def local_names(spec: Mapping[str, Any]) -> list[str]:
+    """Return the names in ``spec`` that only this process knows, by registration."""
     return [
         text
         for text in texts_of(spec)
@@ -51,9 +51,10 @@ def names_known_here(spec: Mapping[str, Any]) -> list[str]:
 
 
 def live_object(place: str) -> Any:
-    """Return the object at ``place`` that this process defined itself; None if a module did.
+    """Return the object at ``place`` if this process defined it; None if a module did.
 
-    It was registered here, or stands in ``__main__``: a notebook or the script that runs.
+    This process defines what is registered in it, and what stands in ``__main__``: a notebook or
+    the running script.
     """
     module, _, attribute = place.partition(":")
     thing = _registered(place)

@@ -1,4 +1,4 @@
-"""What Python code refers to: modules that it imports, and text that may name files."""
+"""References of Python code: imported modules, and strings that may name files."""
 
 import ast
 from collections.abc import Iterator
@@ -9,24 +9,24 @@ _BY_TEXT = {
     "import_module", "__import__", "iter_modules", "walk_packages", "run_path", "run_module",
     "spec_from_file_location", "SourceFileLoader",
 }  # fmt: skip
-"""Calls that import what no import statement names."""
-LONGEST = 250  # characters of a text that may name a file
+"""Calls that import modules without an import statement."""
+MAX_LENGTH = 250  # characters of a string that may name a file
 _PATTERN = str.maketrans({c: f"[{c}]" for c in "*?["})
 
 
 @dataclass(frozen=True)
 class References:
-    """What one file of code refers to."""
+    """The references of one code file."""
 
     imports: frozenset[tuple[int, str, str]] = frozenset()
     """(level, module, name): ``from ..a import b`` is (2, "a", "b"); name is "" for ``import``."""
-    texts: frozenset[str] = frozenset()  # as patterns of `glob`; an f-string's fields are *
+    texts: frozenset[str] = frozenset()  # as patterns of `glob`; * replaces fields of an f-string
     imports_by_text: bool = False
 
 
 @lru_cache(4096)
 def references(code: bytes) -> References:
-    """Return what ``code`` refers to; nothing if it is not Python."""
+    """Return the references of ``code``; none if it is not Python."""
     try:
         tree = ast.parse(code)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
@@ -41,14 +41,14 @@ def references(code: bytes) -> References:
             imports.update((node.level, node.module or "", alias.name) for alias in node.names)
             by_text = by_text or any(alias.name in _BY_TEXT for alias in node.names)
         elif isinstance(node, ast.Name | ast.Attribute):
-            by_text = by_text or _named(node) in _BY_TEXT
+            by_text = by_text or _name_of(node) in _BY_TEXT
         elif isinstance(node, ast.Constant | ast.JoinedStr):
             texts.add(_pattern(node))
-    whole = frozenset(t for t in texts if 0 < len(t) <= LONGEST and t.isprintable())
-    return References(frozenset(imports), whole, by_text)
+    usable = frozenset(t for t in texts if 0 < len(t) <= MAX_LENGTH and t.isprintable())
+    return References(frozenset(imports), usable, by_text)
 
 
-def _named(node: ast.Name | ast.Attribute) -> str:
+def _name_of(node: ast.Name | ast.Attribute) -> str:
     return node.id if isinstance(node, ast.Name) else node.attr
 
 
@@ -63,7 +63,7 @@ def _pattern(node: ast.Constant | ast.JoinedStr) -> str:
 
 
 def imported(found: References, package: str) -> Iterator[str]:
-    """Yield names of modules that code in ``package`` may import; some may be of other things."""
+    """Yield the modules that code in ``package`` may import; some names may be other objects."""
     for level, module, name in found.imports:
         base = module
         if level:

@@ -1,4 +1,4 @@
-"""The files of a folder that count as source, in bounded work."""
+"""The files of a folder that count as source, in bounded time."""
 
 import hashlib
 import os
@@ -8,32 +8,32 @@ from pathlib import Path
 
 from benchnav.system.plain_file import open_file
 
-MOST_FILES = 5_000  # of a folder
-MOST_BYTES = 4 << 30  # of a file; of a larger one its size and this much count
+MAX_FILES = 5_000  # of a folder
+MAX_BYTES = 4 << 30  # of a file; of a larger file, its size and this many bytes count
 _SKIPPED = {"__pycache__", "tests", "test", "node_modules", "site-packages"}
-_NO_SOURCE = (
+_NOT_SOURCE = (
     ".pyc", ".pyo", ".pyi", ".md", ".rst", ".typed", ".log", ".nbi", ".nbc", ".kernel", "~", ".swp",
 )  # fmt: skip
 
 
 def files_below(folder: Path) -> Iterator[Path]:
-    """Yield the files below ``folder`` that count, at most `MOST_FILES`, sorted within folders."""
-    yield from islice(_walk(folder), MOST_FILES)
+    """Yield the source files below ``folder``, at most `MAX_FILES`, sorted within each folder."""
+    yield from islice(_walk(folder), MAX_FILES)
 
 
 def data_of(package: Path) -> Iterator[Path]:
-    """Yield the files of a package folder that are not Python, but for those of its packages."""
+    """Yield the files of a package folder that are not Python, without those of its subpackages."""
     found = (path for path in _walk(package, within=True) if path.suffix != ".py")
-    yield from islice(found, MOST_FILES)
+    yield from islice(found, MAX_FILES)
 
 
 def digest_of(file: Path) -> str:
     """Return the sha256 of a file."""
     size = file.stat().st_size
     with open_file(file) as opened:
-        if size <= MOST_BYTES:
+        if size <= MAX_BYTES:
             return hashlib.file_digest(opened, "sha256").hexdigest()
-        digest, left = hashlib.sha256(str(size).encode()), MOST_BYTES
+        digest, left = hashlib.sha256(str(size).encode()), MAX_BYTES
         while left and (piece := opened.read(min(left, 1 << 20))):
             digest.update(piece)
             left -= len(piece)
@@ -41,14 +41,14 @@ def digest_of(file: Path) -> str:
 
 
 def _walk(top: Path, within: bool = False) -> Iterator[Path]:
-    """Files that count; ``within``: without those of packages below. Links are followed once."""
+    """Yield the files that count; ``within`` excludes subpackages. Each link is followed once."""
     visited: set[str] = set()
     for folder, folders, names in os.walk(top, followlinks=True):
         here = Path(folder)
         folders[:] = sorted(name for name in folders if _counts(here / name, within, visited))
         for name in sorted(names):
             path = here / name
-            if not name.startswith(".") and not name.endswith(_NO_SOURCE) and path.is_file():
+            if not name.startswith(".") and not name.endswith(_NOT_SOURCE) and path.is_file():
                 yield path
 
 
@@ -59,10 +59,10 @@ def _counts(folder: Path, within: bool, visited: set[str]) -> bool:
     if (folder / "pyvenv.cfg").exists() or (folder / "conda-meta").exists():
         return False
     if (folder / "manifest.json").exists() and (folder / "parts").is_dir():
-        return False  # a run of this very navigator, maybe
+        return False  # a run folder, perhaps of this navigator
     if within and (folder / "__init__.py").exists():
         return False
     real = os.path.realpath(folder)
-    known = real in visited
+    visited_before = real in visited
     visited.add(real)
-    return not known
+    return not visited_before

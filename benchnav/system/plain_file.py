@@ -1,4 +1,4 @@
-"""Files that a user names, opened only if they are files: nothing else may block or never end."""
+"""Open files that a user named, and only regular files: a pipe or device could block for ever."""
 
 import errno
 import os
@@ -13,13 +13,15 @@ _KINDS = {
     stat.S_IFCHR: "a device",
     stat.S_IFBLK: "a device",
 }
-_AT_ONCE = getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+_OPEN_FLAGS = (
+    getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_CLOEXEC", 0) | getattr(os, "O_BINARY", 0)
+)
 
 
 def open_file(path: Path) -> BufferedReader:
-    """Open ``path`` for reading. Raises OSError where it is not there, or is not a plain file."""
-    _refuse_other(path, path.stat().st_mode)  # before it is opened, which can do things to a device
-    file = os.fdopen(os.open(path, os.O_RDONLY | _AT_ONCE), "rb")
+    """Open ``path`` for reading. Raises OSError if it is missing or not a regular file."""
+    _refuse_other(path, path.stat().st_mode)  # before opening: to open a device can have effects
+    file = os.fdopen(os.open(path, os.O_RDONLY | _OPEN_FLAGS), "rb")
     try:
         _refuse_other(path, os.fstat(file.fileno()).st_mode)
     except OSError:
@@ -29,16 +31,16 @@ def open_file(path: Path) -> BufferedReader:
 
 
 def read_file(path: Path, most: int) -> bytes:
-    """Return the content of ``path``: of a file that is larger, ``most`` + 1 bytes.
+    """Return the content of ``path``, of a larger file only the first ``most`` + 1 bytes.
 
-    Raises OSError where it is not there, cannot be read, or is not a plain file.
+    Raises OSError if it is missing, unreadable, or not a regular file.
     """
     with open_file(path) as file:
         return file.read(most + 1)
 
 
 def require_writable(path: Path) -> None:
-    """Raise OSError where ``path`` is something else than a file, to which one could write."""
+    """Raise OSError if ``path`` exists and is not a regular file."""
     if path.exists():
         _refuse_other(path, path.stat().st_mode)
 

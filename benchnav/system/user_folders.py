@@ -1,9 +1,8 @@
-"""The user's own folders: of the cache, and of what is remembered between commands.
+"""The user's own folders for the cache and for state.
 
-They are those of the XDG base directories. Where these cannot be used (no home, an unknown
-user, the home of another user, a read-only disk), a private folder among the temporary files
-takes their place. A folder that another user could write is never used: compiled code is
-loaded from there.
+They follow the XDG base directories. If these cannot be used (no home, an unknown user, another
+user's home, a read-only disk), a private folder in the temporary folder takes their place. A
+folder that another user can write is never used, as compiled code is loaded from it.
 """
 
 import os
@@ -13,39 +12,39 @@ from dataclasses import dataclass
 from pathlib import Path
 
 _NAME = "benchnav"
-_ROOT = 0  # the user who may write everywhere anyway
+_ROOT = 0  # this user may write everywhere
 
 
 @dataclass(frozen=True)
 class UserFolder:
-    """A folder that this user, and no other, may write."""
+    """A folder that only this user may write."""
 
-    path: Path | None  # None where there is none: nothing can be kept
-    reason: str = ""  # why it is not the usual one; "" if it is
+    path: Path | None  # None: there is no folder, and nothing is kept
+    reason: str = ""  # why it is not the usual folder; "" if it is
 
 
 def user_cache() -> UserFolder:
-    """Return where what can be made again is kept: ``$XDG_CACHE_HOME/benchnav``."""
+    """Return the folder for reproducible data: ``$XDG_CACHE_HOME/benchnav``."""
     return _user_folder("XDG_CACHE_HOME", ".cache")
 
 
 def user_state() -> UserFolder:
-    """Return where what must be remembered is kept: ``$XDG_STATE_HOME/benchnav``."""
+    """Return the folder for lasting data: ``$XDG_STATE_HOME/benchnav``."""
     return _user_folder("XDG_STATE_HOME", ".local/state")
 
 
 def home_is_usable() -> bool:
-    """Whether other libraries can keep their files in the user's home."""
+    """Whether other libraries can write to the user's home."""
     try:
         return os.access(Path.home(), os.W_OK | os.X_OK)
     except RuntimeError:
         return False
 
 
-def make_own(folder: Path) -> None:
-    """Make ``folder`` where it is missing.
+def create_private(folder: Path) -> None:
+    """Create ``folder`` if it is missing.
 
-    Raises OSError where it cannot be made or written, or belongs to another user.
+    Raises OSError if it cannot be created or written, or belongs to another user.
     """
     existing = next(place for place in (folder, *folder.parents) if os.path.exists(place))  # noqa: PTH110 - Path.exists raises on what may not be read
     _require_owner(existing, (_user(), _ROOT))
@@ -59,23 +58,23 @@ def make_own(folder: Path) -> None:
 def _user_folder(variable: str, below_home: str) -> UserFolder:
     try:
         folder = _usual(variable, below_home) / _NAME
-        make_own(folder)
+        create_private(folder)
     except OSError as error:
         refused = _sentence(error)
     else:
         return UserFolder(folder)
     try:
         folder = _temporary_home() / below_home / _NAME
-        make_own(folder)
+        create_private(folder)
     except OSError as error:
         return UserFolder(None, f"{refused}; {_sentence(error)}")
     return UserFolder(folder, refused)
 
 
 def _usual(variable: str, below_home: str) -> Path:
-    """Raise OSError where neither the variable nor the home names a folder."""
+    """Return the standard folder. Raises OSError if neither variable nor home gives one."""
     given = Path(os.environ.get(variable) or "")
-    if given.is_absolute():  # the standard ignores others
+    if given.is_absolute():  # the XDG standard ignores relative paths
         return given
     try:
         home = Path.home()
@@ -87,14 +86,14 @@ def _usual(variable: str, below_home: str) -> Path:
 
 
 def _temporary_home() -> Path:
-    """The user's private folder among the temporary files; others cannot plant anything there.
+    """Return the user's private home in the temporary folder, which others cannot prepare.
 
-    Raises OSError where it cannot be made, or another user made one of that name.
+    Raises OSError if it cannot be created, or another user created one of that name.
     """
     folder = Path(tempfile.gettempdir()) / f"{_NAME}-{_user()}"
     folder.mkdir(mode=0o700, exist_ok=True)
     if not stat.S_ISDIR(folder.lstat().st_mode):
-        raise NotADirectoryError(0, "it must be a folder and no link", str(folder))
+        raise NotADirectoryError(0, "it must be a folder, not a link", str(folder))
     _require_owner(folder, (_user(),))
     folder.chmod(0o700)
     return folder
@@ -107,7 +106,7 @@ def _require_owner(folder: Path, users: tuple[int, ...]) -> None:
 
 
 def _user() -> int:
-    """The number of the user; 0, which owns every file, on systems without."""
+    """Return the user number; 0, the owner of every file, on systems without user numbers."""
     return os.geteuid() if hasattr(os, "geteuid") else 0
 
 

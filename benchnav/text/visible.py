@@ -1,15 +1,15 @@
-"""Text from anybody as what is printed: nothing in it acts on a terminal, a page or a table."""
+"""Make untrusted text printable: no character in it acts on a terminal, page or table."""
 
 import re
 import unicodedata
 
-MARK = "\ufffd"  # stands for a character that is not to be seen
-_SURROGATE = "Cs"  # also bytes of file names, which streams write as they are
+MARK = "\ufffd"  # replaces a character that must not be printed
+_SURROGATE = "Cs"  # includes bytes of file names, which streams write unchanged
 _LINE_ENDS = ("Zl", "Zp")
 
 
 class _Marks(dict[int, str]):
-    """Code point → what is printed, found once for each that occurs."""
+    """Code point → printed text, computed once per code point."""
 
     def __missing__(self, code: int) -> str:
         kind = unicodedata.category(chr(code))
@@ -22,10 +22,10 @@ _MARKS = _Marks({ord("\n"): "\n", ord("\t"): "\t"})
 
 
 def visible_lines(text: str) -> str:
-    """Return the text with a mark for each character that controls or formats, but line breaks."""
+    """Return the text with `MARK` for control and format characters, except line breaks."""
     return text.translate(_MARKS)
 
 
 def visible(text: str) -> str:
-    """Return the same on one line; halves of characters are marked, too."""
+    """Return the text on one line, with `MARK` for control, format and unpaired characters."""
     return visible_lines(re.sub(r"\s+", " ", text)).encode("utf-8", "replace").decode()

@@ -1,1 +1,1 @@
-"""Drawing worlds and stepping them in batches."""
+"""Draw worlds from scenarios, and step them in batches."""

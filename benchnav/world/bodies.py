@@ -1,4 +1,4 @@
-"""Dynamic obstacles and re-placed static obstacles: records, and where their laws put them."""
+"""Records of dynamic obstacles and relocated static obstacles, and positions from their laws."""
 
 import math
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ _CIRCLE = int(LawKind.CIRCLE)
 
 
 def stack_bodies(worlds: Sequence[World]) -> tuple[AnyArray, AnyArray, AnyArray]:
-    """(bodies (B, M), shapes (Q,) capsules in body frames, knots (L,) of the laws)."""
+    """Return (bodies (B, M), shapes (Q,) capsules in body frames, knots (L,) of the laws)."""
     most = max(len(world.bodies) for world in worlds)
     bodies = np.zeros((len(worlds), most), BODY)
     shapes, knots = [np.zeros(0, CAPSULE)], [np.zeros(0, KNOT)]
@@ -48,7 +48,7 @@ def _knots(body: Body) -> AnyArray:
 
 
 def top_speed(world: World) -> float:
-    """Greatest speed [m/s] at which any body's law moves it."""
+    """Return the largest speed [m/s] of any body's law."""
     top = 0.0
     for law in (body.law for body in world.bodies):
         if law.kind == LawKind.CIRCLE:
@@ -62,7 +62,7 @@ def top_speed(world: World) -> float:
 
 @kernel
 def body_at(body: Any, knots: AnyArray, time: float) -> tuple[float, float]:
-    """Position [m] of a body at ``time`` [s]; of a re-placed one, where it stands now."""
+    """Return a body's position [m] at ``time`` [s]; of a relocated one, its current position."""
     first, last = body.law_first, body.law_last - 1
     if body.law == _CIRCLE:
         c, s = cos_sin(knots[last].y + knots[first].t * time)

@@ -1,4 +1,4 @@
-"""What a touch does: the ledger of collision events, and the response of the bodies."""
+"""Effects of contacts: the record of collision events, and the response of the bodies."""
 
 import math
 from typing import Any
@@ -19,8 +19,8 @@ from benchnav.world.touch import (
     from_fixed,
 )
 
-RELEASE = 0.01  # [m] a contact lasts until the gap is wider: sliding bodies part by a sagitta
-MAX_HITS = 8  # touches of one agent within a substep, after which it is wedged and stands
+RELEASE = 0.01  # [m] a contact ends at a wider gap: sliding bodies separate by a sagitta
+MAX_HITS = 8  # after this many touches within a substep, an agent is wedged and stands still
 
 _ACTIVE, _ARRIVED, _ENDED = int(Status.ACTIVE), int(Status.ARRIVED), int(Status.ENDED)
 _STOP, _END = int(ContactRule.STOP), int(ContactRule.END)
@@ -31,7 +31,7 @@ def touch(
     i: int, time: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, opened: AnyArray, closed: AnyArray,
 ) -> int:  # fmt: skip
-    """Agent i meets the partner in its code: record and respond. Returns an agent or -1."""
+    """Record agent i's contact with the partner in its code, and respond. Return an agent or -1."""
     a = agents[i]
     which, k = a.code % 4, a.code // 4
     if which == GOAL:
@@ -61,7 +61,7 @@ def touch(
 def _touch_agent(
     i: int, j: int, time: float, world: Any, agents: AnyArray, opened: AnyArray, closed: AnyArray
 ) -> None:
-    """Each gives up only its own motion towards the other: nobody is pushed by an agent."""
+    """Remove each agent's own motion towards the other: agents do not push each other."""
     a, b = agents[i], agents[j]
     dx, dy, _ = from_agent(a, b)
     nx, ny = _unit(dx, dy)
@@ -107,7 +107,7 @@ def _finish(
     i: int, status: int, vanish: bool, time: float, world: Any, a: Any, opened: AnyArray,
     closed: AnyArray,
 ) -> None:  # fmt: skip
-    """The attempt of agent a is over: it stands, or vanishes, and its contacts end."""
+    """End the attempt of agent a: it stands still or vanishes, and its contacts end."""
     a.status = status
     a.vx = 0.0
     a.vy = 0.0
@@ -121,7 +121,7 @@ def _record(
     i: int, code: int, time: float, closing: float, charged: bool, world: Any, a: Any,
     opened: AnyArray, closed: AnyArray,
 ) -> None:  # fmt: skip
-    """Open an event unless this contact is going on; a full table closes its oldest."""
+    """Open an event unless this contact is already open; a full table closes its oldest."""
     free, oldest = -1, 0
     for slot in range(len(opened)):
         if opened[slot].code == code:
@@ -164,7 +164,7 @@ def follow_up(
     time: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
 ) -> None:  # fmt: skip
-    """After a substep: deepen the overlaps that last, close the contacts that are over."""
+    """After a substep, deepen the overlaps that last, and close the contacts that ended."""
     for i in range(world.agents):
         a = agents[i]
         if not a.open:
@@ -187,7 +187,7 @@ def _gap(
     a: Any, code: int, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray,
 ) -> float:  # fmt: skip
-    """Between agent a and a recorded partner [m]; negative: overlap; inf if it is gone or far."""
+    """Return the gap [m] of agent a to a recorded partner; negative: overlap; inf: gone or far."""
     k = code // 4
     if code % 4 == AGENT:
         return from_agent(a, agents[k])[2] if agents[k].present else math.inf

@@ -1,4 +1,4 @@
-"""What a body makes of a command."""
+"""The motion of a body that follows from a command."""
 
 import math
 
@@ -11,12 +11,12 @@ def limited(
     c0: float, c1: float, twist: bool, unicycle: bool, heading: float,
     max_speed: float, max_turn_rate: float, dt: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """The command within limits: a twist where one was given or the body is a unicycle.
+    """Return the command within limits: as a twist if it is a twist or the body is a unicycle.
 
-    A planar velocity u on a unicycle is tracked by one law: turn towards u at the
+    A unicycle tracks a planar velocity u by one law: turn towards u at the
     rate that would face it at the end of the step, within the limit, and drive at
-    |u| cos(error), but never backwards. A holonomic body obeys a twist as a unicycle
-    would.
+    |u| cos(error), but never backwards. A holonomic body follows a twist as a unicycle
+    does.
     """
     if unicycle or twist:
         v, w = c0, c1
@@ -36,7 +36,7 @@ def limited(
 def planar_velocity(
     d0: float, d1: float, turning: bool, heading: float, h: float
 ) -> tuple[float, float]:
-    """Velocity [m/s] during a substep: a twist's arc is driven along its mid-heading."""
+    """Return the velocity [m/s] in a substep: a twist's arc is driven along its mid-heading."""
     if not turning:
         return d0, d1
     c, s = cos_sin(heading + 0.5 * d1 * h)

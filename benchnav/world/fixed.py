@@ -1,8 +1,8 @@
-"""Geometry that never moves within an episode, behind one grid per arena.
+"""Geometry that is immobile within an episode, in one grid per arena.
 
-Worlds that share their solids share one entry (a map is stored once). Every capsule
-is listed in all cells that it comes nearer to than the margin, so that one cell
-answers for everything that a body in it can touch in a substep.
+Worlds that share their solids share one entry (a map is stored once). Every cell lists all
+capsules within the margin, so that one cell contains everything that a body in it
+can touch in a substep.
 """
 
 import math
@@ -24,10 +24,10 @@ MAX_CELLS = 1 << 16  # of one arena's grid
 def stack_fixed(
     worlds: Sequence[World], records: AnyArray, margin: float
 ) -> tuple[AnyArray, IntArray, IntArray]:
-    """(capsules, start, item) of a batch; writes the grids' frames into the WORLD records.
+    """Return (capsules, start, item) of a batch; write the grids' frames into the WORLD records.
 
     Cell c of a world lists item[start[grid + c] : start[grid + c + 1]], indices into
-    capsules. ``margin`` [m] is how far a cell's list reaches beyond the cell.
+    capsules. A cell's list reaches ``margin`` [m] beyond the cell.
     """
     arenas: dict[tuple[int, ...], int] = {}
     capsules: list[AnyArray] = []
@@ -65,7 +65,7 @@ def _capsules(solids: Sequence[Solid], first: int) -> AnyArray:
 
 
 def _frame(row: Any, world: World, capsules: AnyArray, margin: float) -> None:
-    """Origin, cell size and shape of a grid that covers everything a body can touch."""
+    """Write origin, cell size and shape of a grid that covers everything a body can touch."""
     x0, y0, x1, y1 = world.bounds
     if len(capsules):
         r = capsules["r"]
@@ -83,7 +83,7 @@ def _frame(row: Any, world: World, capsules: AnyArray, margin: float) -> None:
 
 @kernel
 def _fill(worlds: AnyArray, capsules: AnyArray, start: IntArray, margin: float) -> IntArray:
-    """Count, then place, by the same test; fills ``start`` and returns the items."""
+    """Count items, then place them, by the same test; fill ``start`` and return the items."""
     for g in range(len(worlds)):
         world = worlds[g]
         for p in range(world.first, world.last):
@@ -106,7 +106,7 @@ def _fill(worlds: AnyArray, capsules: AnyArray, start: IntArray, margin: float) 
 def _list_capsule(
     world: Any, capsule: Any, p: int, margin: float, cursor: IntArray, item: IntArray
 ) -> None:
-    """Raise the cursor of every cell within reach; write the item there if there is room."""
+    """Raise the cursor of every cell within reach; write the item there if there is space."""
     side = world.side
     ax, ay = capsule.x0 - world.origin_x, capsule.y0 - world.origin_y
     bx, by = capsule.x1 - world.origin_x, capsule.y1 - world.origin_y
@@ -129,7 +129,7 @@ def _list_capsule(
 
 @kernel
 def cell_at(world: Any, x: float, y: float) -> int:
-    """Index into ``start`` of the cell that holds (x, y), or of the nearest cell to it."""
+    """Return the index into ``start`` of the cell of (x, y), or of the cell nearest to it."""
     i = math.floor((x - world.origin_x) / world.side)
     j = math.floor((y - world.origin_y) / world.side)
     i = min(max(i, 0), world.nx - 1)
@@ -141,11 +141,11 @@ def cell_at(world: Any, x: float, y: float) -> int:
 def walk(
     world: Any, x: float, y: float, dx: float, dy: float
 ) -> tuple[int, int, int, int, float, float, float, float]:
-    """How to walk the grid from (x, y) along (dx, dy), cell by cell (Amanatides & Woo 1987).
+    """Return the parameters of a grid walk from (x, y) along (dx, dy) (Amanatides & Woo 1987).
 
-    (i, j) of the first cell, the steps to the next column and row, the multiples of
-    (dx, dy) at which they are entered, and those from one to the next. Enter a column
-    where its multiple is the smaller one, else a row.
+    They are (i, j) of the first cell, the steps to the next column and row, the multiples of
+    (dx, dy) at which these are entered, and the increments of these multiples. The walk enters a
+    column if its multiple is the smaller one, else a row.
     """
     side = world.side
     i = math.floor((x - world.origin_x) / side)

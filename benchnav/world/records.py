@@ -1,7 +1,7 @@
 """The state of a batch of worlds, as a few arrays of records.
 
-A kernel handles one record (an agent, a body, a capsule) and gets it as a pointer;
-passing sixty plain arrays through every call made the step a hundred times slower
+A kernel handles one record (an agent, a body, a capsule) and receives it as a pointer.
+Sixty plain arrays as arguments of every call made the step a hundred times slower
 and its compilation longer. Outside the kernels, `field` gives plain array views.
 """
 
@@ -9,15 +9,15 @@ import numpy as np
 
 from benchnav.arrays import AnyArray
 
-OPEN_CONTACTS = 8  # that an agent can have at once; one more closes the oldest
+OPEN_CONTACTS = 8  # of an agent at one time; one more closes the oldest
 
 
 def _record(**fields: str) -> np.dtype[np.void]:
-    # np.record: an interpreted kernel finds a record's fields as a compiled one does
+    # np.record: an interpreted kernel then accesses fields like a compiled one
     return np.dtype((np.record, np.dtype(list(fields.items()), align=True)))
 
 
-# one world: its clock, rules, and where its part of the flat arrays lies
+# one world: its clock, rules, and the location of its part in the flat arrays
 WORLD = _record(
     dt="f8", h="f8", tolerance="f8", reach="f8", origin_x="f8", origin_y="f8", side="f8",
     substeps="i8", steps="i8", steps_done="i8", revision="i8", contact="i8", nx="i8", ny="i8",
@@ -25,7 +25,7 @@ WORLD = _record(
     vanish_on_arrival="?", vanish_on_end="?", charge_both="?", running="?",
 )  # fmt: skip
 
-# (B, A), padding has present = False; what others look at comes first, in one cache line
+# (B, A), padding has present = False; fields that others read come first, in one cache line
 AGENT = _record(
     x="f8", y="f8", vx="f8", vy="f8", radius="f8", ci="i4", cj="i4", team="i4",
     status="i1", present="?", unicycle="?", evaluated="?", turning="?", halted="?", open="?",
@@ -33,28 +33,28 @@ AGENT = _record(
     preferred_speed="f8", drive_0="f8", drive_1="f8", tau="f8", code="i8", home="i8", hits="i8",
 )  # fmt: skip
 
-# an agent in a hashed cell (ci, cj): where it is, so that a search reads one array in order
+# an agent in a hashed cell (ci, cj) with its position, so that a search reads one array in order
 SPOT = _record(x="f8", y="f8", ci="i4", cj="i4", index="i4", team="i4")
 
-# (B, M): dynamic obstacles and static obstacles that are re-placed
+# (B, M): dynamic obstacles and relocated static obstacles
 BODY = _record(
     x="f8", y="f8", vx="f8", vy="f8", next_x="f8", next_y="f8", bound="f8", phase="f8",
     first="i8", last="i8", law_first="i8", law_last="i8",
     law="i1", kind="i1", periodic="?", placed="?",
 )  # fmt: skip
 
-# fixed ones in the world's frame, those of bodies in the body's frame; (nx, ny) is the unit
+# of fixed solids in the world's frame, of bodies in the body's frame; (nx, ny) is the unit
 # normal of an edge, out of the solid, and zero for a disc
 CAPSULE = _record(
     x0="f8", y0="f8", x1="f8", y1="f8", r="f8", nx="f8", ny="f8",
     solid="i8", before="i8", after="i8", kind="i1",
 )  # fmt: skip
 
-# a corner point of a motion law: position at a time
+# a corner point of a motion law: the position at a time
 KNOT = _record(t="f8", x="f8", y="f8")
 
-# an event that is going on (B, A, OPEN_CONTACTS; code -1: free) or over (B, N); (x, y) is where
-# the agent was at the first touch
+# an event that is open (B, A, OPEN_CONTACTS; code -1: free) or closed (B, N); (x, y) is the
+# agent's position at the first touch
 CONTACT = _record(
     code="i8", agent="i8", start="f8", end="f8", penetration="f8", closing="f8", x="f8", y="f8",
     charged="?",
@@ -62,7 +62,7 @@ CONTACT = _record(
 
 
 def field(records: AnyArray, name: str, width: int = 1) -> AnyArray:
-    """A view of ``width`` neighbouring fields of equal type as a last axis (none if 1)."""
+    """Return a view of ``width`` adjacent fields of equal type as a last axis (none if 1)."""
     kind, offset = records.dtype.fields[name][:2]  # type: ignore[index]
     if width == 1:
         view: AnyArray = records[name]
@@ -77,7 +77,7 @@ def field(records: AnyArray, name: str, width: int = 1) -> AnyArray:
 def capsule_records(
     capsules: AnyArray, before: AnyArray, after: AnyArray, solid: int, kind: int, shift: int
 ) -> AnyArray:
-    """CAPSULE records of one solid; ``shift`` is added to the indices along its loops."""
+    """Return CAPSULE records of one solid; ``shift`` is added to the indices along its loops."""
     out = np.zeros(len(capsules), CAPSULE)
     for k, name in enumerate(("x0", "y0", "x1", "y1", "r")):
         out[name] = capsules[:, k]

@@ -1,4 +1,4 @@
-"""A batch of worlds that is stepped together."""
+"""The simulation of a batch of worlds."""
 
 from collections.abc import Sequence
 
@@ -24,7 +24,7 @@ class Simulation:
     """State of B worlds of up to A agents and M bodies; padding is never `present`.
 
     All worlds of a batch share one clock and one set of rules. `records` and the
-    views below are the live state: copy what must not change.
+    views below are the live state: copy values that must not change.
     """
 
     def __init__(self, worlds: Sequence[World]) -> None:
@@ -35,7 +35,7 @@ class Simulation:
         self.agents = _agent_records(self.worlds)
         self.bodies, self.shapes, self.knots = stack_bodies(self.worlds)
         self.records = _world_records(self.worlds, self.agents)
-        # wider lists change nothing: what is out of reach is never the next touch
+        # wider lists change nothing: an object out of reach is never the next touch
         margin = float((0.5 * self.records["reach"]).max()) + RELEASE
         self.capsules, self.start, self.item = stack_fixed(self.worlds, self.records, margin)
         self._opened = np.zeros((self.B, self.A, OPEN_CONTACTS), CONTACT)
@@ -64,10 +64,10 @@ class Simulation:
         self.body_velocity: FloatArray = field(bodies, "vx", 2)  # (B, M, 2) [m/s]
         self.steps_done: IntArray = field(records, "steps_done")  # (B,)
         self.running: BoolArray = field(records, "running")  # (B,)
-        self.revision: IntArray = field(records, "revision")  # (B,) static obstacles re-placed
+        self.revision: IntArray = field(records, "revision")  # (B,) count of relocations
 
     def _place_bodies(self) -> None:
-        """Bodies at t = 0, with the velocity that they are about to have."""
+        """Put bodies at t = 0, with the velocity of the first substep."""
         for b, world in enumerate(self.worlds):
             for m in range(len(world.bodies)):
                 here = np.array(body_at(self.bodies[b, m], self.knots, 0.0))
@@ -77,21 +77,21 @@ class Simulation:
 
     @property
     def B(self) -> int:
-        """Worlds."""
+        """The number of worlds."""
         return len(self.worlds)
 
     @property
     def A(self) -> int:
-        """Agents of the largest world."""
+        """The number of agents of the largest world."""
         return int(self.agents.shape[1])
 
     @property
     def M(self) -> int:
-        """Bodies of the largest world."""
+        """The number of bodies of the largest world."""
         return int(self.bodies.shape[1])
 
     def world(self, b: int) -> World:
-        """The drawn world that row b started from."""
+        """Return the drawn world from which row b started."""
         return self.worlds[b]
 
     def step(self, command: FloatArray, twist: BoolArray) -> FloatArray:
@@ -99,7 +99,7 @@ class Simulation:
 
         Args:
             command: (B, A, 2) finite planar velocities [m/s] or twists [m/s, rad/s].
-            twist: (B, A) which of the two each agent's command is.
+            twist: (B, A) whether each agent's command is a twist.
 
         Returns:
             (B, A, 2) the commands as executed, within the limits.
@@ -115,7 +115,7 @@ class Simulation:
         return executed
 
     def fail(self, b: int, agents: IntArray) -> None:
-        """The navigator of ``agents`` failed in world b: they stand, and their attempt is over."""
+        """End the attempts of ``agents`` in world b, whose navigator failed: they stand still."""
         active = agents[self.status[b, agents] == int(Status.ACTIVE)]
         self.status[b, active] = int(Status.FAILED)
         self.velocity[b, active] = 0.0
@@ -123,7 +123,7 @@ class Simulation:
         self.running[b] = bool(self.running[b] and (left & self.agents["evaluated"][b]).any())
 
     def contacts(self, b: int) -> Contacts:
-        """The collision events of world b so far; open ones end now."""
+        """Return the collision events of world b so far; open ones end now."""
         rows = self._events(b)
         kind, partner = partners(self.worlds[b], rows["code"])
         return Contacts(
@@ -132,11 +132,11 @@ class Simulation:
         )  # fmt: skip
 
     def touched(self, b: int) -> FloatArray:
-        """(N, 2) [m] where the agents of `contacts` were when they first touched."""
+        """Return the agents' positions (N, 2) [m] at the first touch of each of `contacts`."""
         return field(self._events(b), "x", 2).copy()
 
     def _events(self, b: int) -> AnyArray:
-        """CONTACT records of world b, sorted as `Contacts` are."""
+        """Return CONTACT records of world b, sorted like `Contacts`."""
         self._drain(0)
         agent, slot = np.nonzero(self._opened["code"][b] >= 0)
         going_on = self._opened[b, agent, slot]
@@ -147,14 +147,14 @@ class Simulation:
         return ordered
 
     def _drain(self, above: int) -> None:
-        """Empty the kernels' event lists that hold more than ``above``."""
+        """Empty the kernels' event lists that hold more than ``above`` events."""
         for b in np.flatnonzero(self.records["closed"] > above):
             self._kept[b].append(self._closed[b, : self.records["closed"][b]].copy())
             self.records["closed"][b] = 0
 
 
 def partners(world: World, codes: IntArray) -> tuple[ByteArray, IntArray]:
-    """(kind, partner) of recorded codes, as `Contacts` has them."""
+    """Return (kind, partner) of recorded codes, as in `Contacts`."""
     which, k = codes % 4, codes // 4
     kind = np.full(len(codes), int(Kind.AGENT), np.int8)
     for row in np.flatnonzero(which != AGENT):
@@ -165,7 +165,7 @@ def partners(world: World, codes: IntArray) -> tuple[ByteArray, IntArray]:
 
 
 def _sees(worlds: Sequence[World]) -> BoolArray:
-    """(B, teams, teams) which team senses which."""
+    """Return which team senses which, (B, teams, teams)."""
     most = max(len(world.teams) for world in worlds)
     sees = np.ones((len(worlds), most, most), np.bool_)
     for b, world in enumerate(worlds):
@@ -174,7 +174,7 @@ def _sees(worlds: Sequence[World]) -> BoolArray:
 
 
 def _agent_records(worlds: Sequence[World]) -> AnyArray:
-    """(B, A) AGENT records of worlds that have not started."""
+    """Return AGENT records (B, A) of worlds that have not started."""
     most = max(len(world.agents) for world in worlds)
     records = np.zeros((len(worlds), most), AGENT_RECORD)
     records["arrival"], records["tau"] = np.nan, np.inf
@@ -192,9 +192,9 @@ def _agent_records(worlds: Sequence[World]) -> AnyArray:
 
 
 def _world_records(worlds: Sequence[World], agents: AnyArray) -> AnyArray:
-    """(B,) WORLD records; `stack_fixed` adds the grids' frames."""
+    """Return WORLD records (B,); `stack_fixed` adds the grids' frames."""
     records = np.zeros(len(worlds), WORLD)
-    for row, world, crew in zip(records, worlds, agents, strict=True):
+    for row, world, members in zip(records, worlds, agents, strict=True):
         clock, rules = world.clock, world.rules
         row["dt"], row["h"] = clock.dt, clock.dt / clock.substeps
         row["substeps"], row["steps"] = clock.substeps, clock.steps
@@ -205,7 +205,7 @@ def _world_records(worlds: Sequence[World], agents: AnyArray) -> AnyArray:
         row["agents"], row["bodies"] = len(world.agents), len(world.bodies)
         row["running"] = bool(world.agents.evaluated.any())
         # no pair farther apart than this can touch within a substep
-        speed = max(float(crew["max_speed"].max()), top_speed(world))
-        reach = 2.0 * float(crew["radius"].max()) + 2.0 * speed * float(row["h"])
+        speed = max(float(members["max_speed"].max()), top_speed(world))
+        reach = 2.0 * float(members["radius"].max()) + 2.0 * speed * float(row["h"])
         row["reach"] = 1.001 * reach + 1e-6
     return records

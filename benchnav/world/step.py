@@ -1,8 +1,8 @@
 """One decision of every running world: reads t, writes t + dt.
 
 Within a substep all bodies move straight, so every touch has a closed-form time.
-The world is advanced from touch to touch, earliest first (ties by agent index,
-then by the order in `touch.find_next`): nothing tunnels at any speed, and no
+The world advances from touch to touch, earliest first (ties by agent index,
+then by the order in `touch.find_next`): bodies never tunnel at any speed, and no
 result depends on how worlds are batched or shared between threads.
 """
 
@@ -47,7 +47,7 @@ def step_world(
     bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
     item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray, spots: AnyArray,
 ) -> None:  # fmt: skip
-    """One world: arrays over its agents (A,), bodies (M,) and contacts (A, 8)."""
+    """Advance one world: arrays over its agents (A,), bodies (M,) and contacts (A, 8)."""
     relocate(world.steps_done * world.dt, world, agents, bodies, knots)
     obey(command, twist, executed, world, agents)
     for s in range(world.substeps):
@@ -69,10 +69,10 @@ def step_world(
 
 @kernel
 def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots: AnyArray) -> None:
-    """Re-place the static obstacles whose time has come and whose new place is free.
+    """Relocate the static obstacles that are due and whose new place is free.
 
-    Free: no agent and no dynamic obstacle comes within its circumscribed circle there.
-    Drawing keeps it clear of what else is static.
+    Free: no agent or dynamic obstacle touches the obstacle's circumscribed circle there.
+    `build` keeps the new place clear of other static solids.
     """
     for m in range(world.bodies):
         body = bodies[m]
@@ -105,7 +105,7 @@ def _within(dx: float, dy: float, reach: float) -> bool:
 def obey(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray
 ) -> None:
-    """Commands within limits."""
+    """Store commands within limits."""
     for i in range(world.agents):
         a = agents[i]
         a.halted = False
@@ -121,7 +121,7 @@ def obey(
 
 @inlined
 def aim_bodies(end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
-    """Velocities that carry the bodies straight to where their laws put them at ``end`` [s]."""
+    """Set the velocities that move the bodies straight to their laws' positions at ``end`` [s]."""
     for m in range(world.bodies):
         body = bodies[m]
         body.next_x, body.next_y = body_at(body, knots, end)
@@ -130,7 +130,7 @@ def aim_bodies(end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> Non
 
 @inlined
 def aim_agents(world: Any, agents: AnyArray) -> None:
-    """Velocities of this substep."""
+    """Set the velocities of this substep."""
     for i in range(world.agents):
         a = agents[i]
         a.hits = 0
@@ -144,7 +144,7 @@ def find_all(
     world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
     start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
 ) -> None:  # fmt: skip
-    """The next touch of every agent."""
+    """Find the next touch of every agent."""
     if len(agents) > BRUTE_FORCE:
         fill(agents, hashed, spots, world.reach)
     for i in range(world.agents):
@@ -164,7 +164,7 @@ def advance(
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
     hashed: IntArray, spots: AnyArray,
 ) -> None:  # fmt: skip
-    """From touch to touch, to the end of the substep."""
+    """Advance from touch to touch, to the end of the substep."""
     left = world.h
     while True:
         i = earliest(world, agents)
@@ -180,7 +180,7 @@ def advance(
             if k != i and k != j and not _affected(a, i, j, world.reach, agents):
                 continue
             a.tau = math.inf
-            # a wedged agent is let be until the next substep
+            # a wedged agent is left alone until the next substep
             if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
                 find_next(
                     k, left, world.tolerance, agents, bodies, shapes, capsules, start, item,
@@ -191,7 +191,7 @@ def advance(
 
 @kernel
 def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
-    """Could the next touch of a be with i or j, now that they move otherwise?"""
+    """Whether the next touch of a could be with i or j, after their motion changed."""
     if _within(a.x - agents[i].x, a.y - agents[i].y, reach):
         return True
     return j >= 0 and _within(a.x - agents[j].x, a.y - agents[j].y, reach)
@@ -199,17 +199,17 @@ def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
 
 @kernel
 def earliest(world: Any, agents: AnyArray) -> int:
-    """The agent whose next touch comes first; -1 if there is none."""
-    best, who = math.inf, -1
+    """Return the agent with the earliest next touch; -1 if there is none."""
+    best, first = math.inf, -1
     for i in range(world.agents):
         if agents[i].tau < best:
-            best, who = agents[i].tau, i
-    return who
+            best, first = agents[i].tau, i
+    return first
 
 
 @inlined
 def drift(t: float, world: Any, agents: AnyArray, bodies: AnyArray) -> None:
-    """Everything moves straight for t seconds."""
+    """Move everything straight for t seconds."""
     for i in range(world.agents):
         a = agents[i]
         a.x += a.vx * t
@@ -223,7 +223,7 @@ def drift(t: float, world: Any, agents: AnyArray, bodies: AnyArray) -> None:
 
 @inlined
 def land_bodies(world: Any, bodies: AnyArray) -> None:
-    """Bodies are where their laws say, free of accumulated rounding."""
+    """Put bodies at their laws' positions, to remove accumulated rounding."""
     for m in range(world.bodies):
         body = bodies[m]
         body.x, body.y = body.next_x, body.next_y
@@ -231,7 +231,7 @@ def land_bodies(world: Any, bodies: AnyArray) -> None:
 
 @inlined
 def turn(world: Any, agents: AnyArray) -> None:
-    """Twists turn at their rate; with a planar velocity one looks where one is told to go."""
+    """Turn agents: by a twist's turn rate, or to face the direction of a planar velocity."""
     for i in range(world.agents):
         a = agents[i]
         if a.status != _ACTIVE or not a.present:
@@ -244,7 +244,7 @@ def turn(world: Any, agents: AnyArray) -> None:
 
 @inlined
 def goes_on(world: Any, agents: AnyArray) -> bool:
-    """True while an evaluated agent is active and the horizon is ahead."""
+    """Whether an evaluated agent is active and the horizon is ahead."""
     if world.steps_done >= world.steps:
         return False
     for i in range(world.agents):

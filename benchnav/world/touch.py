@@ -1,4 +1,4 @@
-"""Which partner a moving agent touches next, and the geometry of a touch.
+"""The partner that a moving agent touches next, and the geometry of a touch.
 
 Partner codes: 4k + 0 own goal, 4k + 1 agent k, 4k + 2 fixed capsule k (recorded as
 its solid), 4k + 3 body k.
@@ -13,12 +13,12 @@ from benchnav.geometry.hash_grid import bucket
 from benchnav.kernels import inlined, kernel
 
 GOAL, AGENT, FIXED, BODY = 0, 1, 2, 3
-BRUTE_FORCE = 24  # agents up to which all pairs are cheaper than a grid
+BRUTE_FORCE = 24  # up to this many agents, testing all pairs is cheaper than a grid
 
 
 @kernel
 def goal_time(a: Any, tolerance: float) -> float:
-    """Time until agent a touches its goal disc; 0 inside it."""
+    """Return the time until agent a touches its goal disc; 0 inside it."""
     fx, fy = a.x - a.goal_x, a.y - a.goal_y
     if fx * fx + fy * fy <= tolerance * tolerance:
         return 0.0
@@ -27,19 +27,19 @@ def goal_time(a: Any, tolerance: float) -> float:
 
 @kernel
 def pair_time(a: Any, b: Any) -> float:
-    """Time until agents a and b touch, moving as they do now."""
+    """Return the time until agents a and b touch at their current velocities."""
     return disc_time(a.x - b.x, a.y - b.y, a.vx - b.vx, a.vy - b.vy, a.radius + b.radius)
 
 
 @kernel
 def fixed_time(a: Any, c: Any, way: float) -> float:
-    """Time until agent a, which goes no farther than ``way`` [m], touches a fixed capsule."""
+    """Return the time until agent a touches a fixed capsule, within ``way`` [m]."""
     return capsule_time(a.x, a.y, a.vx, a.vy, a.radius + c.r, way, c.x0, c.y0, c.x1, c.y1)
 
 
 @kernel
 def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
-    """Time until agent a touches a body; inf where it cannot within ``left`` [s]."""
+    """Return the time until agent a touches a body; inf if it cannot within ``left`` [s]."""
     fx, fy = a.x - body.x, a.y - body.y
     wx, wy = a.vx - body.vx, a.vy - body.vy
     way = (abs(wx) + abs(wy)) * left
@@ -58,19 +58,19 @@ def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
 def next_agent(
     i: int, left: float, agents: AnyArray, hashed: IntArray, spots: AnyArray
 ) -> tuple[float, int]:
-    """(time, index) of the agent that i touches first within ``left`` [s]; (inf, -1) if none.
+    """Return (time, index) of the agent that i touches first within ``left`` [s], or (inf, -1).
 
-    Crowds are searched in the 3 × 3 cells around i, whose side no two bodies that
-    are farther apart can bridge within a substep.
+    Crowds are searched in the 3 × 3 cells around i. Their side is so large that agents farther
+    apart cannot meet within a substep.
     """
-    a, best, who = agents[i], math.inf, -1
+    a, best, partner = agents[i], math.inf, -1
     if len(agents) <= BRUTE_FORCE:
         for j in range(len(agents)):
             if j != i and agents[j].present:
                 t = pair_time(a, agents[j])
                 if t <= left and t < best:
-                    best, who = t, j
-        return best, who
+                    best, partner = t, j
+        return best, partner
     size = len(hashed) - 1
     for ci in range(a.ci - 1, a.ci + 2):
         for cj in range(a.cj - 1, a.cj + 2):
@@ -80,9 +80,9 @@ def next_agent(
                 other = agents[j]
                 if other.ci == ci and other.cj == cj and j != i and other.present:
                     t = pair_time(a, other)
-                    if t <= left and (t < best or (t == best and j < who)):
-                        best, who = t, j
-    return best, who
+                    if t <= left and (t < best or (t == best and j < partner)):
+                        best, partner = t, j
+    return best, partner
 
 
 @inlined
@@ -91,10 +91,10 @@ def find_next(
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     body_count: int,
 ) -> None:  # fmt: skip
-    """Writes tau and code of active agent i: its next touch within ``left`` [s].
+    """Write tau and code of active agent i: its next touch within ``left`` [s].
 
     Of simultaneous touches the goal comes first, then fixed geometry, bodies, and
-    agents, each by index: a fixed order, so that nothing depends on how it was found.
+    agents, each by index: a fixed order, independent of the search.
     """
     a = agents[i]
     best, code = math.inf, -1
@@ -119,7 +119,7 @@ def find_next(
 
 @kernel
 def from_fixed(a: Any, c: Any) -> tuple[float, float, float]:
-    """(dx, dy, gap): from the capsule's nearest core point to agent a, and between the surfaces."""
+    """Return (dx, dy, gap): from the nearest core point to agent a, and between the surfaces."""
     qx, qy = nearest_on_segment(a.x, a.y, c.x0, c.y0, c.x1, c.y1)
     dx, dy = a.x - qx, a.y - qy
     return dx, dy, math.sqrt(dx * dx + dy * dy) - c.r - a.radius
@@ -127,7 +127,7 @@ def from_fixed(a: Any, c: Any) -> tuple[float, float, float]:
 
 @kernel
 def from_body(a: Any, body: Any, shapes: AnyArray) -> tuple[float, float, float]:
-    """As `from_fixed`, for the nearest of a body's capsules."""
+    """Like `from_fixed`, for the nearest of a body's capsules."""
     gap, dx, dy = math.inf, 0.0, 0.0
     fx, fy = a.x - body.x, a.y - body.y
     for q in range(body.first, body.last):
@@ -142,7 +142,7 @@ def from_body(a: Any, body: Any, shapes: AnyArray) -> tuple[float, float, float]
 
 @kernel
 def encloses(body: Any, shapes: AnyArray, x: float, y: float) -> bool:
-    """Is (x, y) inside the loops of a body (even-odd rule)? A disc has none."""
+    """Whether (x, y) is inside the loops of a body (even-odd rule); False for a disc."""
     inside = False
     fx, fy = x - body.x, y - body.y
     for q in range(body.first, body.last):
@@ -154,6 +154,6 @@ def encloses(body: Any, shapes: AnyArray, x: float, y: float) -> bool:
 
 @kernel
 def from_agent(a: Any, b: Any) -> tuple[float, float, float]:
-    """As `from_fixed`, for another agent."""
+    """Like `from_fixed`, for another agent."""
     dx, dy = a.x - b.x, a.y - b.y
     return dx, dy, math.sqrt(dx * dx + dy * dy) - a.radius - b.radius

@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchnav.processes.process_tree import tells_memory
+from benchnav.processes.process_tree import memory_is_known
 from studies.kill_nine import courses, survive
 
 SCENARIO = """
@@ -21,7 +21,7 @@ clock: {dt: 0.2, substeps: 2, horizon: 6}
 
 
 @pytest.mark.long
-@pytest.mark.skipif(not tells_memory(), reason="without /proc nobody knows who is still there")
+@pytest.mark.skipif(not memory_is_known(), reason="without /proc nobody knows who is still there")
 @pytest.mark.parametrize(("k", "parent_only"), [(0, True), (2, False)])
 def test_what_is_killed_ends_as_an_unbroken_one(tmp_path, k, parent_only):
     (tmp_path / "open.yaml").write_text(SCENARIO)

@@ -50,7 +50,7 @@ def test_a_full_disk_and_a_read_only_one_are_told_and_nothing_is_lost(suite, tmp
     said = dict(block.split("\n", 1) for block in done.stdout.split("== ")[1:])
     assert "Traceback" not in done.stdout
     assert said["full"].count("status 1") == 1
-    assert "must be writable and have room. The system says: No space left" in said["full"]
+    assert "is not writable, or the disk is full: No space left" in said["full"]
     kept = [line for line in said["full"].splitlines() if line.startswith("file ")]
     sealed = sum(line.endswith(SEAL) for line in kept)
     assert sealed > 0
@@ -60,8 +60,8 @@ def test_a_full_disk_and_a_read_only_one_are_told_and_nothing_is_lost(suite, tmp
     stems = [line.removesuffix(SEAL).split()[-1] for line in kept if line.endswith(SEAL)]
     fresh = 400 - sum(int(stop) - int(first) for first, stop in (s.split("-") for s in stems))
     assert f"400 episodes stored, {fresh} of them run" in said["room"]
-    assert "disk/run must be writable. The system says: Read-only file system" in said["again"]
-    assert "must be writable. The system says: Read-only file system" in said["new"]
+    assert "disk/run is not writable: Read-only file system" in said["again"]
+    assert "is not writable: Read-only file system" in said["new"]
     assert "status 1" in said["again"]
     assert "status 1" in said["new"]
     assert "status 0" in said["read"]

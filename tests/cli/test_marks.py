@@ -36,7 +36,7 @@ def test_rows_under_the_label_of_a_verified_entry_are_refused(call, runs):
                       ("leaderboard", *runs, "--verify")):  # fmt: skip
         code, stdout, stderr = call(*arguments)
         assert (code, stdout) == (1, "")
-        assert "results.parquet must be what was written" in stderr
+        assert "results.parquet is damaged" in stderr
         assert "must say navigator 'random-walk' in row 0" in stderr
         assert "Traceback" not in stderr
 

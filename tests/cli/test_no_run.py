@@ -29,4 +29,4 @@ def test_a_damaged_run_is_work_that_failed(call, places, tmp_path, verb):
     (tmp_path / "empty" / "manifest.json").write_text("{")
     code, _, stderr = call(*("empty" if word == "RUN" else word for word in verb))
     assert code == 1
-    assert "must be what was written" in stderr
+    assert "is damaged" in stderr

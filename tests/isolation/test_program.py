@@ -61,7 +61,11 @@ def test_what_it_has_to_tell_is_kept():
         ("nan", "act must return finite numbers. Got (nan, nan) for agent 0 instead at t = 0 s"),
         ("shape", "act must return an array of shape (1, 2, 2). Got shape (1, 2, 3) instead at"),
         ("flags", "act must return real numbers. Got dtype bool instead at t = 0 s"),
-        ("prints", "act: its process answered what is no frame: no frame begins with b'a line"),
+        (
+            "prints",
+            "act: its process answered something that is not a frame: no frame begins with"
+            " b'a line",
+        ),
         ("refuses", "lost at t = 0.4 s"),
         ("other", "act: its process must answer 'command'. Got 'done' instead at t = 0.4 s"),
         ("twice", "act: its process answered more than was asked, after 'command' at t = 0.4 s"),
@@ -88,7 +92,7 @@ def test_every_world_of_a_batch_is_tried_alone():
     ("how", "cause"),
     [
         ("dies at once", "its process ended with exit status 1 (no licence)"),
-        ("strange", "must introduce itself by what docs/isolation.md lists: needs.0"),
+        ("strange", "must answer .hello. with the fields in docs/isolation.md: needs.0"),
     ],
 )
 def test_what_cannot_be_started_is_asked_wrongly_and_in_a_run_charged(how, cause):
@@ -122,7 +126,7 @@ def test_it_ends_with_its_navigator():
     process.stop()
     assert not process.alive
     with pytest.raises(NavigatorError, match="its process"):
-        process.ask("hello", {}, 1.0)
+        process.request("hello", {}, 1.0)
 
 
 def test_the_host_is_a_program_like_any():

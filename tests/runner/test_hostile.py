@@ -11,7 +11,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from benchnav.metrics.measure import own_metrics
-from benchnav.processes.process_tree import tells_memory
+from benchnav.processes.process_tree import memory_is_known
 from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
 from benchnav.store.runs.reading import read_episodes, read_results
@@ -207,7 +207,7 @@ def test_the_reason_is_told(honest, name, why):
         assert _survives(honest, name) == {f"the navigator's process {why}"}
 
 
-@pytest.mark.skipif(not tells_memory(), reason="the system does not tell processes")
+@pytest.mark.skipif(not memory_is_known(), reason="the system does not tell processes")
 def test_what_a_worker_started_ends_with_it(honest):
     if not (honest[0] / "Hostile_act_orphans").exists():
         _survives(honest, "Hostile_act_orphans")

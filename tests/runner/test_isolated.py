@@ -27,7 +27,7 @@ from benchnav.store.runs.reading import read_episodes
 @pytest.fixture(autouse=True)
 def nobody_stays():
     yield
-    process_pool.dismiss()
+    process_pool.stop_all()
 
 
 def told(episodes):

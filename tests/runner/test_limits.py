@@ -15,7 +15,7 @@ from benchnav.errors import RunConflictError, UsageError
 from benchnav.metrics.metric import Metric
 from benchnav.navigation.command_check import kind_of
 from benchnav.plugins import METRICS
-from benchnav.processes.process_tree import tells_memory, tree
+from benchnav.processes.process_tree import memory_is_known, tree
 from benchnav.runner.plan import prepare as start_module
 from benchnav.runner.plan import task as task_module
 from benchnav.runner.plan.limits import Limits
@@ -25,7 +25,7 @@ from benchnav.store.runs.manifest import load_manifest
 from benchnav.store.runs.reading import read_episodes, read_results
 
 SEEDS = range(3, 5)  # guilty, innocent
-needs_memory = pytest.mark.skipif(not tells_memory(), reason="the system does not tell memory")
+needs_memory = pytest.mark.skipif(not memory_is_known(), reason="the system does not tell memory")
 
 
 @pytest.fixture
@@ -113,8 +113,8 @@ def test_limits_that_cannot_be_kept_are_refused(suite_file, tmp_path, monkeypatc
             run_suite(suite, out, workers=1, timeout=wrong)
     with pytest.raises(UsageError, match="Got --workers 0"):
         run_suite(suite, out, workers=0, memory=1.0)
-    monkeypatch.setattr(start_module, "tells_memory", lambda: False)
-    with pytest.raises(UsageError, match="--memory must stand on a system that tells"):
+    monkeypatch.setattr(start_module, "memory_is_known", lambda: False)
+    with pytest.raises(UsageError, match="--memory is not supported here"):
         run_suite(suite, out, workers=1, memory=1.0)
     assert not out.exists()
     assert Limits.of({}) == Limits()  # a run of before there were limits

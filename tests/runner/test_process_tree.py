@@ -8,7 +8,7 @@ import time
 import pytest
 
 from benchnav.processes import process_tree
-from benchnav.processes.process_tree import kill, resident, tells_memory, tree
+from benchnav.processes.process_tree import kill, memory_is_known, resident, tree
 
 HOLD = "import time; kept = bytearray(b'x') * 300_000_000; print('held', flush=True); {more}"
 LEAF = HOLD.format(more="time.sleep(600)")
@@ -17,7 +17,7 @@ BRANCH = (
     f"child = subprocess.Popen([sys.executable, '-c', {LEAF!r}]); time.sleep(600)"
 )
 
-linux = pytest.mark.skipif(not tells_memory(), reason="the system does not tell memory")
+linux = pytest.mark.skipif(not memory_is_known(), reason="the system does not tell memory")
 
 
 @pytest.fixture
@@ -59,4 +59,4 @@ def test_where_the_system_tells_nothing_a_process_is_alone(monkeypatch, tmp_path
     monkeypatch.setattr(process_tree, "PROC", tmp_path / "none")
     assert tree(os.getpid()) == [os.getpid()]
     assert resident(os.getpid()) == 0
-    assert not tells_memory()
+    assert not memory_is_known()

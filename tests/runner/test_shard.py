@@ -78,7 +78,7 @@ def test_shards_that_are_merged_are_the_run_that_nobody_shared_out(suite, tmp_pa
     some = merge(shards[:2], out)
     lacking = dict(some.run.missing())
     assert some.copied + sum(map(count, lacking.values())) == total
-    assert lacking == {k: s for k, s in RunFolder.open(shards[2]).wanted() if s}
+    assert lacking == {k: s for k, s in RunFolder.open(shards[2]).planned() if s}
     done = merge(shards, out)
     assert (done.copied, done.twice) == (total - some.copied, some.copied)
     assert facts(out) == facts(whole)

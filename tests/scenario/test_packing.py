@@ -129,8 +129,8 @@ def test_a_team_that_only_a_perfect_packing_would_hold_is_told_where_and_how_man
     assert "no free place for the start of teams[many] agent" in said
     assert said.endswith(
         "\nhall.yaml:8: teams[0].start of 'many' holds at most 58 agents of radius 0.25 m that are"
-        " 0.1 m apart, packed closely and with nothing else there; drawn at random, about half as"
-        " many find a place."
+        " 0.1 m apart, densely packed and without other objects; at random places, about half as"
+        " many fit."
     )
 
 

@@ -67,7 +67,7 @@ def test_damage_to_rehearsals_is_found(run, written, damage):
     else:
         data[len(data) // 2] ^= 1
         path.write_bytes(data)
-    with pytest.raises(CorruptPartError, match=r"rehearsals\.parquet must be what was written"):
+    with pytest.raises(CorruptPartError, match=r"rehearsals\.parquet is damaged"):
         list(read_rehearsals(run))
     if damage != "changed":
         with pytest.raises(CorruptPartError):

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchnav.arrays import AnyArray, FloatArray, IntArray
-from benchnav.geometry.capsule_grid import is_clear, longer
+from benchnav.geometry.capsule_grid import doubled, is_clear
 from benchnav.geometry.heap import pop, push
 from benchnav.kernels import kernel
 
@@ -87,14 +87,14 @@ def search(grid: Lattice, ends: Ends, any_angle: bool) -> tuple[FloatArray, int]
             if through < cost[m]:
                 cost[m], parent[m] = through, via
                 if waiting == len(key):
-                    key, item = longer(key.reshape(-1, 1)).ravel(), _longer(item)
+                    key, item = doubled(key.reshape(-1, 1)).ravel(), _doubled(item)
                 bound = through + _ahead(grid, ends, m, any_angle, slack)
                 waiting = push(key, item, waiting, bound, m)
     return _path(grid, ends, cost, parent, end), seen
 
 
 @kernel
-def _longer(item: IntArray) -> IntArray:
+def _doubled(item: IntArray) -> IntArray:
     more = np.empty(2 * len(item), np.int64)
     more[: len(item)] = item
     return more

@@ -34,7 +34,7 @@ def warn_if_unfinished(folder: "RunFolder") -> None:
     missing = dict(folder.missing())
     if not missing:
         return
-    total = sum(count(seeds) for _, seeds in folder.wanted())
+    total = sum(count(seeds) for _, seeds in folder.planned())
     stored = total - sum(map(count, missing.values()))
     advice = f": run the same suite with --out {folder.path} to finish it."
     end = "." if folder.packed else advice

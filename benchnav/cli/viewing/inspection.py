@@ -20,7 +20,7 @@ from benchnav.plugins import (
     Registry,
 )
 from benchnav.processes.channel import Channel
-from benchnav.source.parts import names_known_here
+from benchnav.source.parts import local_names
 
 SENTENCE, MADE, PAGE, PAIR = "sentence", "made", "page", "pair"  # what can be asked
 _TIMEOUT = 30.0  # [s] for an import, or to be made
@@ -91,7 +91,7 @@ def _is_known_here(registry: Registry, name: str) -> bool:
         full, parameters = split(registry, name)
     except PluginError:  # it is refused wherever it is asked
         return False
-    return bool(names_known_here({"type": full, **parameters}))
+    return bool(local_names({"type": full, **parameters}))
 
 
 def _here(question: Any) -> str | BenchnavError:

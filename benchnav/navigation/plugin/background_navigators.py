@@ -16,7 +16,7 @@ from benchnav.navigation.plugin.plugin_process import (
 from benchnav.plugins import NAVIGATORS
 from benchnav.processes.channel import Channel
 from benchnav.scenario.scenario import Scenario
-from benchnav.source.parts import names_known_here
+from benchnav.source.parts import local_names
 
 
 def check_drivers(*scenarios: Scenario, timeout: float = TIMEOUT) -> None:
@@ -70,7 +70,7 @@ def _is_known_here(driver: Plugin) -> bool:
         name, parameters = split(NAVIGATORS, driver.question["spec"])
     except PluginError:  # it is refused wherever it is asked
         return False
-    return bool(names_known_here({"type": name, **parameters}))
+    return bool(local_names({"type": name, **parameters}))
 
 
 def _error_of(driver: Plugin) -> BenchnavError | None:

@@ -12,7 +12,7 @@ from benchnav.metrics.measure import is_own
 from benchnav.navigation.command_check import short
 from benchnav.plugins import METRICS, Registration
 from benchnav.processes.channel import ChannelError
-from benchnav.processes.fork_server import Child, start_process, words
+from benchnav.processes.fork_server import Child, exit_text, start_process
 from benchnav.processes.main_module import main_module
 from benchnav.processes.process_tree import resident, tree
 from benchnav.runner.execute.call_timer import Watch
@@ -89,7 +89,7 @@ class Desk:
                     yield from self._understood(child, message)
             except (EOFError, ChannelError) as error:
                 ended = child is not None and child.join(1.0)
-                how = words(child.exitcode) if child is not None and ended else str(error)
+                how = exit_text(child.exitcode) if child is not None and ended else str(error)
                 yield from self._gone(child, how or "closed what it speaks through")
 
     def look(self, elapsed: float) -> Fault | None:
@@ -102,7 +102,7 @@ class Desk:
             watch.rest()
             return None
         if worker.exitcode is not None:
-            return self._fault(words(worker.exitcode), worker.exitcode)
+            return self._fault(exit_text(worker.exitcode), worker.exitcode)
         if watch.twice:
             return self._fault("forked, and a call returned in both processes")
         if not self._began <= watch.notes[0] <= self._began + self._most:
@@ -229,7 +229,7 @@ class Desk:
     def _look_at_measurer(self, measurer: Child, elapsed: float) -> Fault | None:
         self._unmeasured += min(elapsed, 1.0)
         if measurer.exitcode is not None:
-            return self._fault(words(measurer.exitcode), measurer.exitcode)
+            return self._fault(exit_text(measurer.exitcode), measurer.exitcode)
         room = PATIENCE + CHUNK * len(self._plugins) * self._limits.timeout
         if self._unmeasured > room:
             return self._fault(f"left an episode that cannot be measured within {room:g} s")

@@ -22,7 +22,7 @@ from benchnav.processes.channel import Channel
 from benchnav.runner.execute.call_timer import Notes, beat, calling, write_to
 from benchnav.runner.plan.source_check import SourceCheck
 from benchnav.runner.plan.task import Task, play
-from benchnav.system.streams import prepare_streams, talk
+from benchnav.system.streams import message_stream, prepare_streams
 
 
 def serve(channel: Channel, notes: Notes) -> None:
@@ -32,7 +32,7 @@ def serve(channel: Channel, notes: Notes) -> None:
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
     prepare_streams()
-    sys.stdout = talk(sys.stdout)  # what a navigator prints goes to stderr
+    sys.stdout = message_stream(sys.stdout)  # what a navigator prints goes to stderr
     _go_first()
     write_to(notes, getpid())
     check = SourceCheck()

@@ -15,7 +15,7 @@ from benchnav.navigation.plugin.guarded_capabilities import introductions
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.limits import Limits
 from benchnav.source.digest import FoundSource, find_source
-from benchnav.source.parts import names_known_here, places_of
+from benchnav.source.parts import local_names, places_of
 from benchnav.store.runs.manifest import IN_PROCESS, ISOLATED, Mode
 from benchnav.store.runs.navigator_hash import navigator_hash
 
@@ -81,7 +81,7 @@ class Meeting:
             name, parameters = split(NAVIGATORS, spec, where=where)
             if self.isolate and name != PROCESS:
                 found[k] = _isolated(spec, self.sensings, where)
-            elif names_known_here({"type": name, **parameters}):
+            elif local_names({"type": name, **parameters}):
                 found[k] = introduction(spec, self.sensings, where=where)
             else:
                 away.append(k)

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from benchnav.errors import RunConflictError, UsageError
-from benchnav.processes.process_tree import tells_memory
+from benchnav.processes.process_tree import memory_is_known
 from benchnav.runner.plan.contestant import sources_of
 from benchnav.runner.plan.job import Cell
 from benchnav.runner.plan.limits import Limits
@@ -24,10 +24,9 @@ def refuse_limits(workers: int | None, timeout: float | None, memory: float | No
         raise UsageError(
             "A limit must have a worker process to hold in. Got --workers 0, which has none."
         )
-    if memory is not None and not tells_memory():
+    if memory is not None and not memory_is_known():
         raise UsageError(
-            "--memory must stand on a system that tells how much memory a process holds."
-            " This one does not; leave it out."
+            "--memory is not supported here: process memory cannot be read. Leave the option out."
         )
 
 

@@ -155,7 +155,7 @@ def play(task: Task) -> Played:
 def _play(task: Task) -> Played:
     cell = task.cell
     if task.assignment.isolated:
-        sandbox.hide()  # before there is anything to hide
+        sandbox.hide_memory()  # before there is anything to hide
     worlds = [(seed, _built(cell, seed)) for seed in task.seeds]
     unled: list[tuple[int, str]] = []
     with EpisodeFiles(Part(task.folder, task.first, task.stop)) as files:

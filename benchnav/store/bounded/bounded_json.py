@@ -1,4 +1,4 @@
-"""JSON from anybody: what reading it takes is bounded before it is read."""
+"""Read untrusted JSON with bounded memory."""
 
 import json
 import re
@@ -8,16 +8,16 @@ from typing import Any
 
 from benchnav.config.document import shown
 
-MOST_CONTAINERS = 1_000_000  # lists and objects, of which an empty one takes 64 bytes for its two
+MAX_CONTAINERS = 1_000_000  # lists and objects; an empty one takes 64 bytes for its two
 
-MOST_DEPTH = 100  # of lists and objects within each other
+MAX_DEPTH = 100  # of nested lists and objects
 _SURROGATE = re.compile("[\ud800-\udfff]")
 
 
 def read_text(path: Path, most: int) -> str:
     """Return the text of a file of at most ``most`` bytes.
 
-    Raises OSError where it cannot be read, ValueError where it is longer or no UTF-8.
+    Raises OSError if it cannot be read, ValueError if it is longer or not UTF-8.
     """
     with path.open("rb") as file:
         content = file.read(most + 1)
@@ -26,10 +26,10 @@ def read_text(path: Path, most: int) -> str:
     return content.decode()
 
 
-def load(text: str, containers: int = MOST_CONTAINERS) -> Any:
-    """Return the value in ``text``, with at most so many lists and objects.
+def load(text: str, containers: int = MAX_CONTAINERS) -> Any:
+    """Return the value in ``text``, with at most ``containers`` lists and objects.
 
-    Raises ValueError where it is no JSON, holds more, is nested too deep, or gives a key twice.
+    Raises ValueError if it is not JSON, is larger, is nested too deep, or repeats a key.
     """
     if text.count("[") + text.count("{") > containers:
         raise ValueError(f"it must have at most {containers} lists and objects, and has more")
@@ -37,16 +37,16 @@ def load(text: str, containers: int = MOST_CONTAINERS) -> Any:
         value = json.loads(text, object_pairs_hook=_object)
     except RecursionError:
         raise ValueError("it is nested too deep") from None
-    _require_depth(value, MOST_DEPTH)
+    _require_depth(value, MAX_DEPTH)
     if "\\u" in text and _SURROGATE.search(json.dumps(value, ensure_ascii=False)):
-        raise ValueError("it holds half a character: a lone surrogate")
+        raise ValueError("it contains a lone surrogate (half a character)")
     return value
 
 
 def _require_depth(value: Any, most: int) -> None:
-    """Raise ValueError where lists and objects are nested deeper than ``most``."""
+    """Raise ValueError if lists and objects are nested deeper than ``most``."""
     if not most:
-        raise ValueError(f"it is nested more than {MOST_DEPTH} deep")
+        raise ValueError(f"it is nested more than {MAX_DEPTH} deep")
     below = value.values() if isinstance(value, dict) else value
     for item in below if isinstance(below, list) or isinstance(value, dict) else ():
         if isinstance(item, list | dict):

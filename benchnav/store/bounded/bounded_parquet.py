@@ -1,9 +1,8 @@
-"""Parquet files from anybody: how much one decodes to is known before any of it is decoded.
+"""Read untrusted Parquet files with bounded memory: the decoded size is bounded before decoding.
 
-What the footer says of sizes is only a claim. A bound follows from the headers of the pages, which
-the decoder believes, and from two rules: the encodings are those that our writer uses, none of
-which makes many long texts of few bytes, and texts that repeat are kept as references until their
-length is known.
+The sizes in the footer are only a claim. The bound uses the page headers, which the decoder
+trusts, and two rules: only the encodings of our writer are allowed, none of which expands few
+bytes to many long strings; and repeated strings stay references until their length is known.
 """
 
 from collections.abc import Collection, Iterator
@@ -17,59 +16,59 @@ from benchnav.navigation.command_check import short
 from benchnav.store.bounded import page_headers
 from benchnav.store.bounded.page_headers import Page
 
-FREE = 256 << 20  # [bytes] that any file may decode to
-RATIO = 64  # times its own size that a larger file may decode to, besides
-_MOST_FOOTER = 1 << 20  # [bytes]; a row group takes 9 kB, and a part has one for each batch
-_MOST_PAGES = 50_000  # of a file; a page holds about 1 MB
-_MOST_DICTIONARY = 4 << 20  # [bytes] of texts that are written out; our writer has 1 MB
-_MOST_IN_LIST = 1_000  # of the footer: row groups, columns
-_MOST_TEXT = 1 << 20  # [bytes] of a text in the footer
+FREE = 256 << 20  # [bytes] decoded size that is allowed for any file
+RATIO = 64  # allowed decoded size per stored byte, in addition
+_MAX_FOOTER = 1 << 20  # [bytes]; a row group takes 9 kB, and a part has one per batch
+_MAX_PAGES = 50_000  # of a file; a page holds about 1 MB
+_MAX_DICTIONARY = 4 << 20  # [bytes] of a dictionary of strings; our writer's limit is 1 MB
+_MAX_IN_LIST = 1_000  # of the footer: row groups, columns
+_MAX_TEXT = 1 << 20  # [bytes] of a string in the footer
 _WRITER = "parquet-cpp-arrow"
-_LEVELS = 4  # [bytes] for each value of a list: at which depth it stands
+_LEVELS = 4  # [bytes] per list value: its nesting level
 _ENCODINGS = {
     page_headers.PLAIN, page_headers.RLE, page_headers.PLAIN_DICTIONARY,
     page_headers.RLE_DICTIONARY,
 }  # fmt: skip
-_FEW = 1 << 20  # [bytes] of texts, below which the most that they can be is near enough
+_FEW = 1 << 20  # [bytes] of strings, below which the upper bound is precise enough
 _MAGIC = b"PAR1"
 
 
 def allowed(size: int) -> int:
-    """Return how many bytes a file, or files together, of ``size`` bytes may decode to."""
+    """Return the allowed decoded size [bytes] of files of ``size`` bytes together."""
     return FREE + RATIO * size
 
 
 @dataclass(frozen=True)
 class _Leaf:
-    """A column as it is stored: of a list, its elements."""
+    """A stored column; for a list column, its elements."""
 
     path: str  # "remarks.list.element"
-    width: int  # [bytes] of a value once it is decoded; of a text, of the reference to it
-    text: bool = False  # of which equal ones may be stored once, and are read as references
-    spelled: bool = False  # the same, but each is written out when it is read
+    width: int  # [bytes] of a decoded value; for a string, of the reference to it
+    text: bool = False  # strings that may be stored once and are read as references
+    spelled: bool = False  # strings of which each is copied when read
 
 
 def read(content: bytes, schema: pa.Schema, later: Collection[str] = ()) -> pa.Table:
     """Return the table in a file's ``content``.
 
     Args:
-        content: the file.
+        content: the bytes of the file.
         schema: its columns, in this order.
-        later: columns that it may lack.
+        later: columns that may be missing.
 
-    Raises ValueError where it is not such a file, or decodes to more than `allowed`.
+    Raises ValueError if it is not such a file, or decodes to more than `allowed`.
     """
     length = int.from_bytes(content[-8:-4], "little")
-    if len(content) < 12 or content[-4:] != _MAGIC or length > min(_MOST_FOOTER, len(content)):
-        raise ValueError("is no Parquet file, or has a footer that is too large")
+    if len(content) < 12 or content[-4:] != _MAGIC or length > min(_MAX_FOOTER, len(content)):
+        raise ValueError("is not a Parquet file, or has a footer that is too large")
     try:
-        return _decoded(content, schema, later)
+        return _decode(content, schema, later)
     except (pa.ArrowException, OSError, OverflowError) as error:
         raise ValueError(f"cannot be decoded ({short(error)})") from error
 
 
-def _decoded(content: bytes, schema: pa.Schema, later: Collection[str]) -> pa.Table:
-    file = _opened(content)
+def _decode(content: bytes, schema: pa.Schema, later: Collection[str]) -> pa.Table:
+    file = _open(content)
     found = file.schema_arrow
     names = set(found.names)
     expected = pa.schema([f for f in schema if f.name in names or f.name not in later])
@@ -77,19 +76,19 @@ def _decoded(content: bytes, schema: pa.Schema, later: Collection[str]) -> pa.Ta
     leaves = [leaf for field in expected for leaf in _leaves(field)]
     _require_bound(content, file.metadata, leaves)
     texts = [leaf.path for leaf in leaves if leaf.text]
-    table = _opened(content, texts, file.metadata).read(use_threads=False)
+    table = _open(content, texts, file.metadata).read(use_threads=False)
     spelled = sum(map(_length, table.columns))
     if spelled > allowed(len(content)):
         raise ValueError(f"holds texts of {spelled} bytes, more than {allowed(len(content))}")
     return table.cast(expected)
 
 
-def _opened(
+def _open(
     content: bytes, texts: Collection[str] = (), metadata: pq.FileMetaData = None
 ) -> pq.ParquetFile:
     return pq.ParquetFile(
         pa.BufferReader(content), metadata=metadata, read_dictionary=list(texts),
-        thrift_string_size_limit=_MOST_TEXT, thrift_container_size_limit=_MOST_IN_LIST,
+        thrift_string_size_limit=_MAX_TEXT, thrift_container_size_limit=_MAX_IN_LIST,
     )  # fmt: skip
 
 
@@ -98,10 +97,10 @@ def _require_columns(found: pa.Schema, expected: pa.Schema) -> None:
         missing = [name for name in expected.names if name not in found.names]
         strange = [name for name in found.names if name not in expected.names]
         if missing:
-            raise ValueError(f"must have the column {missing[0]!r}, and has none")
+            raise ValueError(f"must have the column {missing[0]!r}; it is missing")
         if strange:
-            raise ValueError(f"has a column {strange[0][:60]!r}, which no part has")
-        raise ValueError("has its columns twice or in another order than a part")
+            raise ValueError(f"has an unknown column {strange[0][:60]!r}")
+        raise ValueError("has duplicate columns, or columns in another order than a part")
     for field, other in zip(expected, found, strict=True):
         if field.type != other.type:
             raise ValueError(
@@ -124,8 +123,8 @@ def _leaves(field: pa.Field) -> Iterator[_Leaf]:
 
 
 def _require_bound(content: bytes, metadata: pq.FileMetaData, leaves: list[_Leaf]) -> None:
-    """Raise ValueError where the file decodes to more than `allowed`."""
-    if not metadata.created_by.startswith(_WRITER):  # else the decoder repairs what others wrote
+    """Raise ValueError if the file decodes to more than `allowed`."""
+    if not metadata.created_by.startswith(_WRITER):  # the decoder corrects files of other writers
         raise ValueError(f"must be written by {_WRITER}; got {metadata.created_by[:60]!r}")
     if metadata.num_columns != len(leaves):
         raise ValueError(f"must have {len(leaves)} stored columns; it has {metadata.num_columns}")
@@ -139,21 +138,21 @@ def _require_bound(content: bytes, metadata: pq.FileMetaData, leaves: list[_Leaf
             column = group.column(c)
             if column.path_in_schema != leaf.path:
                 raise ValueError(f"must store {leaf.path}; it stores {column.path_in_schema[:60]}")
-            longest = 0  # [bytes] of the texts that are written out
+            longest = 0  # [bytes] of the strings that are copied
             for page in page_headers.pages(_chunk(content, column)):
                 if leaf.spelled and page.kind == page_headers.DICTIONARY:
                     longest = _longest(page, column.compression)
                 size += _size(page, leaf) + page.values * longest
                 count += 1
-                if size > allowed(len(content)) or count > _MOST_PAGES:
+                if size > allowed(len(content)) or count > _MAX_PAGES:
                     raise ValueError(
-                        f"holds more than {allowed(len(content))} bytes or {_MOST_PAGES} pages"
+                        f"holds more than {allowed(len(content))} bytes or {_MAX_PAGES} pages"
                         f" once it is decoded ({len(content)} bytes are stored)"
                     )
 
 
 def _chunk(content: bytes, column: pq.ColumnChunkMetaData) -> memoryview:
-    """Return the bytes of a column in one row group, where the decoder will look for them."""
+    """Return the bytes of a column in one row group, at the place where the decoder reads them."""
     first, size = column.data_page_offset, column.total_compressed_size
     dictionary = column.dictionary_page_offset
     if column.has_dictionary_page and dictionary is not None and 0 < dictionary < first:
@@ -164,16 +163,16 @@ def _chunk(content: bytes, column: pq.ColumnChunkMetaData) -> memoryview:
 
 
 def _size(page: Page, leaf: _Leaf) -> int:
-    """Return how much decoding a page takes at most: its bytes, and its values."""
+    """Return an upper bound [bytes] of the decoded page: its bytes and its values."""
     if page.encoding not in _ENCODINGS:
-        raise ValueError(f"has a page in the encoding {page.encoding}, which no part has")
+        raise ValueError(f"has a page in the encoding {page.encoding}, which parts do not use")
     return page.raw + page.values * leaf.width
 
 
 def _longest(page: Page, compression: str) -> int:
-    """Return the bytes of the longest text in a dictionary."""
-    if page.raw > _MOST_DICTIONARY:
-        raise ValueError(f"has a dictionary of {page.raw} bytes, more than {_MOST_DICTIONARY}")
+    """Return the length [bytes] of the longest string in a dictionary."""
+    if page.raw > _MAX_DICTIONARY:
+        raise ValueError(f"has a dictionary of {page.raw} bytes, more than {_MAX_DICTIONARY}")
     body = bytes(page.body)
     if compression != "UNCOMPRESSED":
         body = pa.Codec(compression.lower()).decompress(body, page.raw).to_pybytes()
@@ -185,7 +184,7 @@ def _longest(page: Page, compression: str) -> int:
 
 
 def _length(column: pa.ChunkedArray) -> int:
-    """Return the bytes of the texts in a column once each is written out, or few more."""
+    """Return about the length [bytes] of a column's strings if each is copied; rarely more."""
     total = 0
     for chunk in column.chunks:
         if not pa.types.is_dictionary(chunk.type) or not len(chunk.dictionary):

@@ -1,7 +1,7 @@
-"""The headers of the pages of a Parquet column: what decoding it really takes.
+"""The page headers of a Parquet column: the true cost of decoding it.
 
-The footer of a file and the header of a page both say how large a page is once it is decompressed.
-The decoder believes the header, so a bound must be taken from there.
+The footer of a file and the header of a page both give the decompressed size of a page. The
+decoder trusts the header, so a bound must use the header.
 """
 
 from collections.abc import Iterator
@@ -12,10 +12,10 @@ DATA, DICTIONARY, DATA_V2 = 0, 2, 3  # kinds of pages
 PLAIN, PLAIN_DICTIONARY, RLE, RLE_DICTIONARY = 0, 2, 3, 8  # encodings
 _KIND, _RAW, _PACKED = 1, 2, 3  # fields of a header
 _OF_KIND = {DATA: (5, 1, 2), DICTIONARY: (7, 1, 2), DATA_V2: (8, 1, 4)}
-"""Kind of page → field with its own header, and fields of the count and the encoding in that."""
-_DEEPEST = 4  # structures within each other: page, data page, statistics
-_LONGEST = 10  # bytes of an integer
-_MOST_FIELDS = 64  # of a structure; the decoder reads larger names as other ones
+"""Kind of page → field with its own header, and the fields of count and encoding in it."""
+_MAX_DEPTH = 4  # nested structures: page, data page, statistics
+_MAX_INTEGER = 10  # bytes of an integer
+_MAX_FIELDS = 64  # of a structure; the decoder reads larger field numbers as other ones
 _TRUE, _FALSE, _BYTE, _INT16, _INT32, _INT64, _DOUBLE, _TEXT = range(1, 9)  # kinds of fields
 _STRUCTURE = 12
 _KINDS = {*range(_TRUE, _TEXT + 1), _STRUCTURE}
@@ -23,24 +23,24 @@ _KINDS = {*range(_TRUE, _TEXT + 1), _STRUCTURE}
 
 @dataclass(frozen=True)
 class Page:
-    """What the header of a page says, and the decoder believes."""
+    """The header of a page, as the decoder uses it."""
 
     kind: int
-    raw: int  # [bytes] once it is decompressed
-    values: int  # how many it holds, nulls included
+    raw: int  # [bytes] after decompression
+    values: int  # number of values, nulls included
     encoding: int
-    body: memoryview  # as it is stored
+    body: memoryview  # as stored
 
 
 def pages(chunk: memoryview) -> Iterator[Page]:
     """Yield the pages of a column of one row group, whose bytes are ``chunk``.
 
-    Raises ValueError where these are no pages.
+    Raises ValueError if these are not pages.
     """
     at = 0
     while at < len(chunk):
         try:
-            fields, at = _structure(chunk, at, _DEEPEST)
+            fields, at = _structure(chunk, at, _MAX_DEPTH)
             kind, raw, packed = fields[_KIND], fields[_RAW], fields[_PACKED]
             own, count, encoding = _OF_KIND[kind]
             values, body = fields[own][count], chunk[at : at + packed]
@@ -48,16 +48,16 @@ def pages(chunk: memoryview) -> Iterator[Page]:
         except (IndexError, KeyError, TypeError) as error:
             raise ValueError("the header of a page cannot be read") from error
         if min(page.raw, packed, page.values) < 0 or at + packed > len(chunk):
-            raise ValueError("the header of a page has sizes that cannot be")
+            raise ValueError("the header of a page has impossible sizes")
         at += packed
         yield page
 
 
 def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], int]:
-    """Return the fields of a structure in Thrift's compact protocol, and where it ends.
+    """Return the fields of a structure in Thrift's compact protocol, and its end.
 
-    Only structures and integers of 32 bits are kept, as the decoder takes a field of another type
-    for one that it does not know.
+    Only structures and 32-bit integers are returned, as the decoder treats a field of another type
+    like an unknown field.
     """
     if not deep:
         raise ValueError("the header of a page is nested too deep")
@@ -70,8 +70,8 @@ def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], in
             name += delta
         else:
             name, at = _integer(data, at)
-        if not 0 < name < _MOST_FIELDS or kind not in _KINDS:
-            raise ValueError("the header of a page holds what no page has")
+        if not 0 < name < _MAX_FIELDS or kind not in _KINDS:
+            raise ValueError("the header of a page has a field that no page has")
         if kind == _INT32:
             fields[name], at = _integer(data, at)
         elif kind == _STRUCTURE:
@@ -82,7 +82,7 @@ def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], in
 
 
 def _after(data: memoryview, at: int, kind: int) -> int:
-    """Where a value ends that is not kept."""
+    """Return the end of a value that is skipped."""
     if kind in (_TRUE, _FALSE):
         return at
     if kind == _BYTE:
@@ -103,7 +103,7 @@ def _unsigned(data: memoryview, at: int) -> tuple[int, int]:
     if byte < 128:
         return byte, at + 1
     value = byte & 127
-    for k in range(1, _LONGEST):
+    for k in range(1, _MAX_INTEGER):
         byte = data[at + k]
         value |= (byte & 127) << 7 * k
         if byte < 128:

@@ -1,7 +1,7 @@
-"""One file of a run for somebody else: ``.bnrun``.
+"""A run as one file, to give to others: ``.bnrun``.
 
-A zip archive of what the run folder holds, nothing compressed (Parquet is already), led
-by an index with size and sha256 of every member. The same run gives the same bytes.
+A zip archive of the run folder's files, uncompressed (Parquet is compressed already), with an
+index of size and sha256 of every member first. The same run gives the same bytes.
 """
 
 import hashlib
@@ -24,19 +24,19 @@ from benchnav.store.runs.spans import SEED_DIGITS
 SUFFIX = ".bnrun"
 INDEX = "index.json"
 FORMAT = 1  # of the archive
-MOST_MEMBERS = 100_000  # about 33,000 parts
-_EPOCH = (1980, 1, 1, 0, 0, 0)  # the first that zip knows: a pack does not tell when it was made
+MAX_MEMBERS = 100_000  # about 33,000 parts
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest date in zip files: a pack holds no creation time
 _SEED = rf"[0-9]{{6,{SEED_DIGITS}}}"
 _SUFFIXES = "|".join(re.escape(suffix) for suffix in (*FILES, SEAL))
 MEMBER = re.compile(
     rf"{re.escape(MANIFEST)}|{FOLDER}/[0-9a-f]{{64}}"
     rf"|parts/[A-Za-z0-9@_-][A-Za-z0-9@._-]{{0,250}}/{_SEED}-{_SEED}(?:{_SUFFIXES})"
 )
-"""What a member may be called: none of it leads out of a folder."""
+"""Allowed names of members: none of them leaves the folder."""
 
 
 def members(run: RunFolder) -> Iterator[str]:
-    """Names, within the folder, of all that a run is made of."""
+    """Yield the names of all files of a run, relative to its folder."""
     yield MANIFEST
     named = suite_files(run)
     yield from sorted(f"{FOLDER}/{sha}" for sha in named)
@@ -48,16 +48,16 @@ def members(run: RunFolder) -> Iterator[str]:
 
 
 def suite_files(run: RunFolder) -> set[str]:
-    """The sha256 of the files that the scenarios of a run name."""
+    """Return the sha256 of the files that the scenarios of a run name."""
     return {
         sha
-        for said in run.manifest.suite.get("scenarios", ())
-        for sha in said.get("files", {}).values()
+        for scenario in run.manifest.suite.get("scenarios", ())
+        for sha in scenario.get("files", {}).values()
     }
 
 
 def content(run: RunFolder) -> dict[str, dict[str, int | str]]:
-    """Size and sha256 of every member. Raises StoreError where one lacks or cannot be packed."""
+    """Return size and sha256 of every member. Raises StoreError if one is missing or unusual."""
     found: dict[str, dict[str, int | str]] = {}
     for name in sorted(members(run)):
         path = run.path / name
@@ -71,12 +71,12 @@ def content(run: RunFolder) -> dict[str, dict[str, int | str]]:
 
 
 def content_digest(run: RunFolder) -> str:
-    """sha256 of all that a run holds: the same for a folder and for the pack made of it."""
+    """Return the sha256 of a run's content, equal for a folder and its pack."""
     return digest_of({name: str(facts["sha256"]) for name, facts in content(run).items()})
 
 
 def digest_of(sums: Mapping[str, str]) -> str:
-    """The same of members by name, with the sha256 of each."""
+    """Return the same digest from the sha256 of each member by name."""
     lines = [f"{sums[name]} {name}\n" for name in sorted(sums)]
     return hashlib.sha256("".join(lines).encode()).hexdigest()
 
@@ -85,19 +85,19 @@ def pack(run: RunFolder, out: Path) -> None:
     """Write the pack of a run to ``out``.
 
     Raises:
-        UsageError: ``out`` is there already, a scenario's file is named by its whole path, or
+        UsageError: ``out`` exists already, a scenario's file has an absolute path, or
             there are too many files.
         RunConflictError: another process writes ``out``.
-        StoreError: a file of the run lacks, or the disk refuses.
+        StoreError: a file of the run is missing, or the disk refuses.
     """
     _refuse_existing(out)
-    _refuse_whole_paths(run)
+    _refuse_absolute_paths(run)
     for part in run.parts():
         part.check_rows()
     found = content(run)
-    if len(found) > MOST_MEMBERS:
+    if len(found) > MAX_MEMBERS:
         raise UsageError(
-            f"A pack must have at most {MOST_MEMBERS} files. {run.path} has {len(found)}: run its"
+            f"A pack must have at most {MAX_MEMBERS} files. {run.path} has {len(found)}: run its"
             " scenarios as several suites."
         )
     index = json.dumps({"format": FORMAT, "files": found}, indent=1, sort_keys=True)
@@ -113,27 +113,27 @@ def pack(run: RunFolder, out: Path) -> None:
                 os.fsync(file.fileno())
             temporary.replace(out)
     except OSError as error:
-        raise StoreError(f"{out} must be writable. The system says: {error.strerror}.") from error
+        raise StoreError(f"{out} is not writable: {error.strerror}.") from error
 
 
 def _refuse_existing(out: Path) -> None:
     if out.exists():
-        raise UsageError(f"{out} must be a new file. It is there already.")
+        raise UsageError(f"{out} must be a new file. It exists already.")
 
 
-def _refuse_whole_paths(run: RunFolder) -> None:
-    for said in run.manifest.suite.get("scenarios", ()):
-        for name in said.get("files", ()):
+def _refuse_absolute_paths(run: RunFolder) -> None:
+    for scenario in run.manifest.suite.get("scenarios", ()):
+        for name in scenario.get("files", ()):
             if Path(name).is_absolute():
                 raise UsageError(
-                    f"The scenario {said['scenario']} must name its files relative to its own for"
-                    f" its run to be packed. Got {name!r} instead; name it so and run again."
+                    f"The scenario {scenario['scenario']} must name its files relative to its own"
+                    f" file, to be packed. Got {name!r}; use a relative name and run again."
                 )
 
 
 def _info(name: str, size: int) -> ZipInfo:
     info = ZipInfo(name, _EPOCH)
-    info.create_system = 3  # whatever this one is: the same bytes everywhere
+    info.create_system = 3  # constant, for equal bytes on every system
     info.external_attr = 0o100644 << 16
     info.file_size = size
     return info

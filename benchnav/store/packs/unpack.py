@@ -1,4 +1,4 @@
-"""Runs from folders and from packs. A pack comes from a stranger: nothing in it is believed."""
+"""Open runs from folders and from packs. A pack is untrusted: every claim in it is checked."""
 
 import hashlib
 import stat
@@ -11,7 +11,7 @@ from benchnav.config.document import shown
 from benchnav.errors import CorruptPartError, NoRunError, StoreError
 from benchnav.navigation.command_check import short
 from benchnav.store.bounded import bounded_json
-from benchnav.store.packs.pack import FORMAT, INDEX, MEMBER, MOST_MEMBERS
+from benchnav.store.packs.pack import FORMAT, INDEX, MAX_MEMBERS, MEMBER
 from benchnav.store.parts.part import CURE
 from benchnav.store.parts.seal import Facts, require_facts
 from benchnav.store.runs.manifest import load_manifest
@@ -19,20 +19,20 @@ from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.run_path import RunPath, run_path
 from benchnav.system.temporary_folder import TemporaryFolder
 
-MOST_DIRECTORY = 48 << 20  # bytes; a member takes about 150
-_ZIP = b"PK"  # with which every zip archive begins
-_END, _LOCATOR, _END64 = 22, 20, 76  # [bytes] of the records at the end; of large archives, before
-MOST_INDEX = 64 << 20  # bytes; a member takes about 170
+MAX_DIRECTORY = 48 << 20  # bytes; a member takes about 150
+_ZIP = b"PK"  # the first bytes of every zip archive
+_END, _LOCATOR, _END64 = 22, 20, 76  # [bytes] of the end records; the last two in large archives
+MAX_INDEX = 64 << 20  # bytes; a member takes about 170
 
 
 @contextmanager
 def opened(path: RunPath) -> Iterator[RunFolder]:
-    """A run for reading: a folder as it is, a pack unpacked for as long as this lasts.
+    """Open a run for reading: a folder as it is; a pack is unpacked inside this context.
 
     Raises:
         NoRunError: there is no run, and the file is not a pack.
         StoreError: the file cannot be read, or another version made the pack.
-        CorruptPartError: the pack, or its manifest, is not what was written.
+        CorruptPartError: the pack or its manifest is damaged.
     """
     path = run_path(path)
     if not path.is_file():
@@ -44,74 +44,74 @@ def opened(path: RunPath) -> Iterator[RunFolder]:
             unpack(path, folder)
             yield RunFolder(folder, load_manifest(folder), path)
         except StoreError as error:
-            text, _, _ = str(error).partition(CURE)  # which a pack cannot have
+            text, _, _ = str(error).partition(CURE)  # this cure does not apply to a pack
             raise type(error)(text.replace(str(folder), str(path))) from error
 
 
 def unpack(path: Path, folder: Path) -> None:
-    """Write the members of a pack into ``folder``, each only if it is what the index says."""
+    """Write the members of a pack into ``folder``, each only if it matches the index."""
     try:
         _refuse_other_files(path)
         with ZipFile(path) as archive:
             infos = archive.infolist()
             _refuse_strange(path, infos)
-            said = _index(path, archive, infos)
+            index = _index(path, archive, infos)
             for info in infos[1:]:
-                _extract(path, archive, info, said[info.filename], folder)
+                _extract(path, archive, info, index[info.filename], folder)
     except (BadZipFile, NotImplementedError, EOFError, OSError, RuntimeError) as error:
         raise StoreError(
-            f"{path} must be a run folder, or a pack that 'benchnav pack' made."
+            f"{path} must be a run folder, or a pack of 'benchnav pack'."
             f" It cannot be read: {error}."
         ) from error
 
 
 def _refuse_other_files(path: Path) -> None:
-    """Before the directory of the archive is read, which may be large."""
+    """Check the end records before the directory of the archive is read, which may be large."""
     with path.open("rb") as file:
         begin = file.read(len(_ZIP))
         file.seek(max(0, path.stat().st_size - _END64 - _END))
         end = file.read()
     if begin != _ZIP:
         raise NoRunError(
-            f"{path} must be a run folder, or a pack that 'benchnav pack' made. It is neither."
+            f"{path} must be a run folder, or a pack of 'benchnav pack'. It is neither."
         )
     size = int.from_bytes(end[12 - _END : 16 - _END], "little")
-    if end[-_END - _LOCATOR :].startswith(b"PK\6\7"):  # a large archive: its size stands before
+    if end[-_END - _LOCATOR :].startswith(b"PK\6\7"):  # a large archive: its size is stored before
         size = int.from_bytes(end[40 - _END64 - _END : 48 - _END64 - _END], "little")
     if not end[-_END:].startswith(b"PK\5\6"):
         raise StoreError(
-            f"{path} must be a run folder, or a pack that 'benchnav pack' made. It is cut short, or"
-            " something stands behind its end."
+            f"{path} must be a run folder, or a pack of 'benchnav pack'. It is truncated, or"
+            " has data after its end."
         )
-    if size > MOST_DIRECTORY:
-        raise _corrupt(path, f"has a directory of {size} bytes, more than {MOST_DIRECTORY}")
+    if size > MAX_DIRECTORY:
+        raise _corrupt(path, f"has a directory of {size} bytes, more than {MAX_DIRECTORY}")
 
 
 def _refuse_strange(path: Path, infos: list[ZipInfo]) -> None:
-    """Before a byte is written: names, kinds and sizes."""
+    """Check names, kinds and sizes before any byte is written."""
     if not infos or infos[0].filename != INDEX:
-        raise NoRunError(f"{path} must be a pack that 'benchnav pack' made. It has no {INDEX}.")
-    if len(infos) > MOST_MEMBERS:
-        raise _corrupt(path, f"has {len(infos)} members, more than {MOST_MEMBERS}")
-    seen: set[str] = set()
+        raise NoRunError(f"{path} must be a pack of 'benchnav pack'. It has no {INDEX}.")
+    if len(infos) > MAX_MEMBERS:
+        raise _corrupt(path, f"has {len(infos)} members, more than {MAX_MEMBERS}")
+    earlier: set[str] = set()
     for info in infos:
         kind = stat.S_IFMT(info.external_attr >> 16)
         if info.filename != INDEX and MEMBER.fullmatch(info.filename) is None:
-            raise _corrupt(path, f"has a member {info.filename[:100]!r}, which no run has")
+            raise _corrupt(path, f"has an unknown member {info.filename[:100]!r}")
         if kind not in (0, stat.S_IFREG):
             raise _corrupt(path, f"has a member {info.filename!r} that is not a plain file")
         if info.compress_type != ZIP_STORED or info.file_size != info.compress_size:
             raise _corrupt(path, f"has a member {info.filename!r} that is compressed")
-        if info.filename in seen:
+        if info.filename in earlier:
             raise _corrupt(path, f"has {info.filename!r} twice")
-        seen.add(info.filename)
+        earlier.add(info.filename)
     if sum(info.file_size for info in infos) > path.stat().st_size:
         raise _corrupt(path, "has members that are larger than itself")
 
 
 def _index(path: Path, archive: ZipFile, infos: list[ZipInfo]) -> Mapping[str, Facts]:
-    """Return size and sha256 of every other member; they are what is there, and of those sizes."""
-    if infos[0].file_size > MOST_INDEX:
+    """Return size and sha256 of every other member; members and sizes match the archive."""
+    if infos[0].file_size > MAX_INDEX:
         raise _corrupt(path, f"has an {INDEX} of {infos[0].file_size} bytes")
     try:
         index = bounded_json.load(archive.read(infos[0]).decode())
@@ -131,7 +131,7 @@ def _index(path: Path, archive: ZipFile, infos: list[ZipInfo]) -> Mapping[str, F
         raise _corrupt(path, f"has an {INDEX} that cannot be read ({short(error)})") from error
     sizes = {info.filename: info.file_size for info in infos[1:]}
     if {name: facts["bytes"] for name, facts in files.items()} != sizes:
-        raise _corrupt(path, f"has other members, or of other sizes, than its {INDEX} says")
+        raise _corrupt(path, f"has other members, or of other sizes, than in its {INDEX}")
     return files
 
 
@@ -143,12 +143,12 @@ def _extract(path: Path, archive: ZipFile, info: ZipInfo, facts: Facts, folder: 
         while piece := source.read(1 << 20):
             size += len(piece)
             if size > info.file_size:
-                raise _corrupt(path, f"has a member {info.filename!r} larger than it says")
+                raise _corrupt(path, f"has a member {info.filename!r} larger than announced")
             hashed.update(piece)
             file.write(piece)
     if size != info.file_size or hashed.hexdigest() != facts["sha256"]:
         raise _corrupt(path, f"has a member {info.filename!r} with another sha256 than indexed")
 
 
-def _corrupt(path: Path, what: str) -> CorruptPartError:
-    return CorruptPartError(f"{path} must be what 'benchnav pack' wrote. It {what}.")
+def _corrupt(path: Path, problem: str) -> CorruptPartError:
+    return CorruptPartError(f"{path} is not a valid pack of 'benchnav pack'. It {problem}.")

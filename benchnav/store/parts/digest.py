@@ -1,4 +1,4 @@
-"""The digest of what happened: equal digests mean equal states, commands and events."""
+"""The digest of an episode: equal digests mean equal states, commands and events."""
 
 import hashlib
 
@@ -8,12 +8,12 @@ from benchnav.episode.episode import Episode
 
 
 def digest(episode: Episode) -> str:
-    """sha256 over states, commands and events, as little-endian bytes in C order.
+    """Return the sha256 over states, commands and events, as little-endian bytes in C order.
 
     Each array is preceded by its name, type and shape, so that no two different
-    episodes share a byte stream. Timings and names are left out: they may differ. The
-    kinds of command enter where somebody answered twists, so that the digests of before
-    kinds were recorded mean the same for ever.
+    episodes share a byte stream. Timings and names do not count: they may differ. The
+    kinds of commands count only if there are twists, so that digests from before
+    kinds were recorded stay valid.
     """
     hashed = hashlib.sha256()
     contacts, twist = episode.contacts, episode.twist

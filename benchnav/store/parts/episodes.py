@@ -1,7 +1,7 @@
 """Episodes ↔ rows of a table: one row per episode, arrays flattened in C order.
 
-A column of states holds the numbers of all agents and times of one episode; the
-shapes follow from ``steps`` T, ``agents`` A and ``bodies`` M as `SHAPES` says.
+A column of states holds the numbers of all agents and times of one episode; its
+shape follows from ``steps`` T, ``agents`` A and ``bodies`` M by `SHAPES`.
 """
 
 from collections.abc import Iterator, Sequence
@@ -52,17 +52,17 @@ EPISODES = pa.schema(
         ("decision_seconds", pa.large_list(pa.float64())),
         ("planning_seconds", pa.float64()),
         ("batch", pa.int64()),
-        ("latency_seconds", pa.large_list(pa.float64())),  # null where not taken
-        ("memory_bytes", pa.int64()),  # null where not known
+        ("latency_seconds", pa.large_list(pa.float64())),  # null if not measured
+        ("memory_bytes", pa.int64()),  # null if unknown
         ("navigator_hash", pa.string()),
-        ("rehearsal", pa.int64()),  # which one this is; 0: the scored episode
-        ("rehearsals", pa.int64()),  # granted for it
+        ("rehearsal", pa.int64()),  # number of the rehearsal; 0: the scored episode
+        ("rehearsals", pa.int64()),  # granted before the episode
         ("rehearsal_decisions", pa.int64()),
         ("rehearsal_seconds", pa.float64()),
         ("remarks", pa.list_(pa.string())),
-        ("twist", pa.large_list(pa.bool_())),  # of every agent; null: not known
-        ("source_hash", pa.string()),  # of the navigator's code and data; null: not known
-        ("traceback", pa.string()),  # of the failure; null where nothing was raised
+        ("twist", pa.large_list(pa.bool_())),  # of every agent; null: unknown
+        ("source_hash", pa.string()),  # of the navigator's code and data; null: unknown
+        ("traceback", pa.string()),  # of the failure; null if no exception was raised
     ]
 )
 LATER = (
@@ -77,12 +77,12 @@ LATER = (
     "twist",
     "source_hash",
     "traceback",
-)  # columns that older parts lack; null there
-DICTIONARY = [*_IDENTITY, "navigator_hash", "source_hash", "failure"]  # columns whose values repeat
+)  # columns that older parts do not have; null there
+DICTIONARY = [*_IDENTITY, "navigator_hash", "source_hash", "failure"]  # with repeated values
 
 
 def to_table(episodes: Sequence[Episode]) -> pa.Table:
-    """(N rows) of `EPISODES`."""
+    """Return a table (N rows) of `EPISODES`."""
     columns: dict[str, Any] = {
         name: [getattr(e.identity, name) for e in episodes]
         for name in (*_IDENTITY, "seed", "navigator_hash", "rehearsal")
@@ -116,9 +116,9 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
 
 
 def from_table(table: pa.Table, order: Sequence[int] | None = None) -> Iterator[Episode]:
-    """The episodes of a table of `EPISODES`, in its order or another; columns of `LATER` may lack.
+    """Yield the episodes of a table of `EPISODES`; columns of `LATER` may be missing.
 
-    One is made at a time: ``order`` names rows, so that no second table is.
+    ``order`` gives row numbers. Episodes are created one at a time, so that no second table exists.
     """
     for name in LATER:
         if name not in table.column_names:
@@ -160,7 +160,7 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
     )  # fmt: skip
     world = world_from_json(scalar("world"))
     if (len(world.agents), len(world.bodies)) != (agents, bodies):
-        raise ValueError(f"its world must have {agents} agents and {bodies} bodies, and has not")
+        raise ValueError(f"its world must have {agents} agents and {bodies} bodies")
     if len({len(array) for array in contacts.values()}) > 1:
         raise ValueError("its contacts must have one value in each column")
     identity = {name: scalar(name) for name in (*_IDENTITY, "seed")}

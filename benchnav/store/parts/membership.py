@@ -1,7 +1,7 @@
-"""What every row of a part must say: the cell and the seeds that the part is of.
+"""The cell and seeds that every row of a part must have.
 
-Tables are made of rows and not of file names. So a row of another navigator, scenario or
-seed is refused where it is read, by every reader alike.
+Tables are built from rows, not from file names. Therefore every reader refuses a row of another
+navigator, scenario or seed.
 """
 
 from collections.abc import Container, Mapping
@@ -13,7 +13,7 @@ import pyarrow as pa
 from benchnav.store.runs.manifest import Manifest
 from benchnav.store.runs.navigator_hash import hash_of_entry
 
-_HASHED = 3  # schema from which on every row holds the hash of its navigator
+_HASHED = 3  # first schema in which every row holds the hash of its navigator
 _NUMBERS = ("seed", "rehearsal", "rehearsals")
 _SHOWN = 80  # characters of a value in a message
 
@@ -22,12 +22,12 @@ _SHOWN = 80  # characters of a value in a message
 class Membership:
     """The cell of a part, and the seal that the part must still have."""
 
-    cell: Mapping[str, Container[Any]]  # column → what it may hold
-    granted: int  # rehearsals of each world that the navigator asks for
+    cell: Mapping[str, Container[Any]]  # column → allowed values
+    granted: int  # rehearsals of each world that the navigator requests
     seals: Mapping[str, str] = field(default_factory=dict)  # name → sha256; empty: any seal
 
     def require_rows(self, table: pa.Table, seeds: range, *, scored: bool) -> None:
-        """Raise ValueError for the first row of a table of episodes or results that is foreign.
+        """Raise ValueError for the first foreign row of a table of episodes or results.
 
         ``scored``: the rows are of scored episodes; otherwise of rehearsals.
         """
@@ -45,9 +45,10 @@ class Membership:
 
 
 def membership(manifest: Manifest, cell: Mapping[str, Any], seals: Mapping[str, str]) -> Membership:
-    """Return what the rows of a cell must say. Raises ValueError where the manifest is not whole.
+    """Return the values that the rows of a cell must have.
 
-    ``seals`` maps the names of the seals of its parts to their sha256; empty: any may stand.
+    ``seals`` maps the names of the seals of its parts to their sha256; empty: any seal is
+    accepted. Raises ValueError if the manifest is incomplete.
     """
     label, identity = str(cell.get("navigator")), str(cell.get("scenario"))
     suite = manifest.suite
@@ -77,7 +78,7 @@ def _one(entries: Any, key: str, name: str) -> Mapping[str, Any]:
 
 
 def _require(table: pa.Table, name: str, allowed: Container[Any]) -> None:
-    missing = 0 if name in _NUMBERS else ""  # stands for null, and for columns of later versions
+    missing = 0 if name in _NUMBERS else ""  # replaces null, and columns of later versions
     if name not in table.column_names:
         if missing not in allowed:
             raise ValueError(f"must have a column {name}")
@@ -87,8 +88,8 @@ def _require(table: pa.Table, name: str, allowed: Container[Any]) -> None:
         if (missing if value is None else value) not in allowed:
             row = column.to_pylist().index(value)
             raise ValueError(
-                f"must say {name} {_shown(allowed)} in row {row}, as its part is of that cell;"
-                f" it says {str(value)[:_SHOWN]!r}"
+                f"must have {name} {_shown(allowed)} in row {row}, as its part is of that cell;"
+                f" it has {str(value)[:_SHOWN]!r}"
             )
 
 

@@ -1,8 +1,8 @@
 """A part: the episodes of one cell for a range of seeds, and the values measured on them.
 
-A part is three files, or four where there were rehearsals. The seal is written last and
-holds size and sha256 of the others; without a seal there is no part, whatever else a
-killed run left there.
+A part is three files, or four if there were rehearsals. The seal is written last and
+holds size and sha256 of the others; without a seal there is no part, even if a
+killed run left other files.
 """
 
 import hashlib
@@ -25,7 +25,7 @@ from benchnav.store.parts.membership import Membership
 from benchnav.store.parts.seal import (
     EPISODES_FILE,
     FILES,
-    MOST_SEAL,
+    MAX_SEAL,
     REHEARSALS_FILE,
     RESULTS_FILE,
     SEAL,
@@ -36,14 +36,14 @@ from benchnav.store.runs.spans import SEED_DIGITS
 from benchnav.system.plain_file import read_file
 
 __all__ = [
-    "EPISODES_FILE", "FILES", "MOST_SEEDS", "REHEARSALS_FILE", "RESULTS_FILE", "SEAL", "Part",
+    "EPISODES_FILE", "FILES", "MAX_SEEDS", "REHEARSALS_FILE", "RESULTS_FILE", "SEAL", "Part",
     "parts_of",
 ]  # fmt: skip
 
-MOST_REHEARSALS = 1_000  # of an episode
-CURE = " Delete "  # with which the advice of an error begins
+MAX_REHEARSALS = 1_000  # of an episode
+CURE = " Delete "  # the beginning of an error's advice
 _STEM = re.compile(rf"([0-9]{{6,{SEED_DIGITS}}})-([0-9]{{6,{SEED_DIGITS}}})")
-MOST_SEEDS = 256  # of a part, whatever its name says; a task has at most 64
+MAX_SEEDS = 256  # of a part; a task has at most 64
 UNDECODABLE = (
     KeyError, TypeError, ValueError, IndexError, AttributeError, OverflowError, RecursionError,
 )  # fmt: skip
@@ -60,25 +60,25 @@ class Part:
 
     @property
     def stem(self) -> str:
-        """What the names of its files start with."""
+        """The common start of its file names."""
         return f"{self.first:06d}-{self.stop:06d}"
 
     def path(self, suffix: str) -> Path:
-        """One of its files."""
+        """Return the path of one of its files."""
         return self.folder / f"{self.stem}{suffix}"
 
     @property
     def seeds(self) -> range:
-        """The seeds that it holds."""
+        """The seeds in it."""
         return range(self.first, self.stop)
 
     @property
     def sealed(self) -> bool:
-        """True once it is complete on disk."""
+        """Whether it is complete on disk."""
         return self.path(SEAL).exists()
 
     def results(self) -> pa.Table:
-        """Its measured values, sorted by seed. Raises CorruptPartError."""
+        """Return its measured values, sorted by seed. Raises CorruptPartError."""
         table = results.completed(self._table(RESULTS_FILE, results.RESULTS, results.LATER))
         try:
             results.require_possible(table)
@@ -87,24 +87,24 @@ class Part:
         return table.take(pc.sort_indices(table, _by(table)))
 
     def episodes(self) -> Iterator[Episode]:
-        """Its scored episodes, by seed. Raises CorruptPartError."""
+        """Yield its scored episodes, by seed. Raises CorruptPartError."""
         yield from self._episodes(EPISODES_FILE, len(self.seeds))
 
     def rehearsals(self) -> Iterator[Episode]:
-        """The rehearsals of its episodes, by seed; none where none were made.
+        """Yield the rehearsals of its episodes, by seed.
 
         Raises CorruptPartError.
         """
         if REHEARSALS_FILE in self._seal():
-            yield from self._episodes(REHEARSALS_FILE, len(self.seeds) * MOST_REHEARSALS)
+            yield from self._episodes(REHEARSALS_FILE, len(self.seeds) * MAX_REHEARSALS)
 
     def check(self) -> None:
-        """Raise CorruptPartError where a file is missing or has another size than was sealed."""
+        """Raise CorruptPartError if a file is missing or differs from its sealed size."""
         for suffix, sealed in self._seal().items():
             self._check_size(suffix, sealed)
 
     def check_rows(self) -> None:
-        """Raise CorruptPartError where a file is not as sealed, or a row is not of the part."""
+        """Raise CorruptPartError if a file differs from its seal, or a row is not of the part."""
         self.results()
         for suffix in (EPISODES_FILE, REHEARSALS_FILE):
             if suffix in self._seal():
@@ -121,7 +121,7 @@ class Part:
             raise self._corrupt(self.path(suffix), f"cannot be decoded ({short(error)})") from error
 
     def _table(self, suffix: str, schema: pa.Schema, later: Collection[str]) -> pa.Table:
-        """Return the table in one of its files; what is decoded are the bytes that were hashed."""
+        """Return the table in one of its files; the decoded bytes are the hashed bytes."""
         path, sealed = self.path(suffix), self._seal()[suffix]
         self._check_size(suffix, sealed)
         try:
@@ -129,7 +129,7 @@ class Part:
             found = hashlib.sha256(content).hexdigest()
             if found != sealed["sha256"]:
                 raise self._corrupt(
-                    path, f"has sha256 {found[:12]}…, sealed was {sealed['sha256'][:12]}…"
+                    path, f"has sha256 {found[:12]}…; its seal has {sealed['sha256'][:12]}…"
                 )
             table = bounded_parquet.read(content, schema, later)
         except ValueError as error:
@@ -140,7 +140,7 @@ class Part:
         return table
 
     def _refuse_foreign(self, suffix: str, table: pa.Table) -> None:
-        """Raise CorruptPartError where a row is of another cell, or of a seed that is not here."""
+        """Raise CorruptPartError if a row is of another cell, or of a seed outside this part."""
         if self.membership is None:
             return
         try:
@@ -149,17 +149,17 @@ class Part:
             raise ForeignRowError(str(self._corrupt(self.path(suffix), str(error)))) from error
 
     def _seal(self) -> dict[str, Facts]:
-        """Return size and sha256 of each of its files, as they were sealed."""
+        """Return size and sha256 of each of its files, from the seal."""
         seal = self.path(SEAL)
         try:
-            text = bounded_json.read_text(seal, MOST_SEAL)
+            text = bounded_json.read_text(seal, MAX_SEAL)
             self._refuse_another_seal(text)
             return read_seal(text, len(self.seeds))
         except (OSError, ValueError) as error:
             raise self._corrupt(seal, f"cannot be read ({short(error)})") from error
 
     def _refuse_another_seal(self, text: str) -> None:
-        """Raise ValueError where the part was exchanged since its run was pinned."""
+        """Raise ValueError if the part was replaced after its run was pinned."""
         pinned = self.membership.seals if self.membership else {}
         if pinned and pinned.get(self.path(SEAL).name) != hashlib.sha256(text.encode()).hexdigest():
             raise ValueError("it was changed while the run was read")
@@ -170,30 +170,30 @@ class Part:
             raise self._corrupt(path, "is missing")
         if path.stat().st_size != sealed["bytes"]:
             raise self._corrupt(
-                path, f"has {path.stat().st_size} bytes, sealed were {sealed['bytes']}"
+                path, f"has {path.stat().st_size} bytes; its seal has {sealed['bytes']}"
             )
 
-    def _corrupt(self, path: Path, what: str) -> CorruptPartError:
+    def _corrupt(self, path: Path, problem: str) -> CorruptPartError:
         run = self.folder.parent.parent
         return CorruptPartError(
-            f"{path} must be what was written. It {what}."
+            f"{path} is damaged. It {problem}."
             f"{CURE}{self.path(SEAL)} and run the same suite again with --out {run}"
             " to redo only this part."
         )
 
 
 def _by(table: pa.Table) -> list[tuple[str, str]]:
-    """By what the rows of a table of a part are sorted."""
+    """Return the sort keys of a part's table."""
     return [(key, "ascending") for key in ("seed", "rehearsal") if key in table.column_names]
 
 
 def parts_of(folder: Path) -> list[Part]:
-    """The sealed parts in the folder of one cell, by seed."""
+    """Return the sealed parts in the folder of one cell, by seed."""
     return named_parts(folder, (seal.name for seal in folder.glob(f"*{SEAL}")))
 
 
 def named_parts(folder: Path, seals: Iterable[str]) -> list[Part]:
-    """The parts that have these seals, by seed."""
+    """Return the parts with these seals, by seed."""
     stems = (_STEM.fullmatch(name.removesuffix(SEAL)) for name in seals)
     found = sorted(Part(folder, int(stem[1]), int(stem[2])) for stem in stems if stem)
-    return [part for part in found if 0 < len(part.seeds) <= MOST_SEEDS]
+    return [part for part in found if 0 < len(part.seeds) <= MAX_SEEDS]

@@ -1,4 +1,4 @@
-"""Writes one part: everything under temporary names, then renamed, the seal last."""
+"""Write one part: all files under temporary names, then rename them, the seal last."""
 
 import hashlib
 import os
@@ -26,7 +26,7 @@ from benchnav.store.parts.seal import (
 )
 from benchnav.store.runs import checked_json
 
-TEMPORARY = ".writing-"  # names of files that are not finished start with this
+TEMPORARY = ".writing-"  # prefix of the names of unfinished files
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class _Stream:
 class EpisodeFiles:
     """The files of a part's episodes and rehearsals, under temporary names; `seal` comes later.
 
-    Every method raises StoreError where the disk refuses (full, read-only).
+    Every method raises StoreError if the disk refuses (full, read-only).
     """
 
     def __init__(self, part: Part) -> None:
@@ -57,26 +57,26 @@ class EpisodeFiles:
                     self._open(REHEARSALS_FILE)
                 self._streams[REHEARSALS_FILE].writer.write_table(to_table(rehearsals))
         except OSError as error:
-            raise refused(self.part, error) from error
+            raise not_writable(self.part, error) from error
 
     def finish(self) -> None:
-        """Make them whole and durable."""
+        """Complete the files, and flush them to disk."""
         try:
             for stream in self._streams.values():
                 stream.writer.close()
                 _sync(stream.file)
         except OSError as error:
-            raise refused(self.part, error) from error
+            raise not_writable(self.part, error) from error
         self._finished = True
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *raised: object) -> None:
-        if self._finished and raised[1] is None:
+    def __exit__(self, *exception: object) -> None:
+        if self._finished and exception[1] is None:
             return
         for stream in self._streams.values():
-            with suppress(OSError, pa.ArrowException):  # what made it fail is already on its way up
+            with suppress(OSError, pa.ArrowException):  # the first error is being raised already
                 stream.writer.close()
             with suppress(OSError):
                 stream.file.close()
@@ -87,7 +87,7 @@ class EpisodeFiles:
             self.part.folder.mkdir(parents=True, exist_ok=True)
             file = temporary(self.part, suffix).open("wb")
         except OSError as error:
-            raise refused(self.part, error) from error
+            raise not_writable(self.part, error) from error
         writer = pq.ParquetWriter(
             file, EPISODES, compression="zstd", use_dictionary=DICTIONARY,
             write_statistics=["seed"],
@@ -96,9 +96,9 @@ class EpisodeFiles:
 
 
 class PartWriter:
-    """Collects batches of episodes of a part; nothing is visible before `seal`.
+    """Collects batches of episodes of a part; readers see no file before `seal`.
 
-    Every method raises StoreError where the disk refuses (full, read-only).
+    Every method raises StoreError if the disk refuses (full, read-only).
     """
 
     def __init__(self, part: Part) -> None:
@@ -125,8 +125,8 @@ class PartWriter:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, *raised: object) -> None:
-        self._files.__exit__(*raised)
+    def __exit__(self, *exception: object) -> None:
+        self._files.__exit__(*exception)
         if not self._sealed:
             discard(self.part)
 
@@ -134,7 +134,7 @@ class PartWriter:
 def seal(part: Part, results: pa.Table, episodes: int) -> None:
     """Make a part visible whose `EpisodeFiles` are finished, with the values measured on them.
 
-    Raises StoreError where the disk refuses.
+    Raises StoreError if the disk refuses.
     """
     try:
         with temporary(part, RESULTS_FILE).open("wb") as file:
@@ -150,25 +150,25 @@ def seal(part: Part, results: pa.Table, episodes: int) -> None:
         _sync_folder(part.folder)
     except OSError as error:
         discard(part)
-        raise refused(part, error) from error
+        raise not_writable(part, error) from error
 
 
 def discard(part: Part) -> None:
-    """Remove what was written of a part and is not sealed."""
+    """Remove the unsealed files of a part."""
     for suffix in (*FILES, SEAL):
         with suppress(OSError):
             temporary(part, suffix).unlink(missing_ok=True)
 
 
 def temporary(part: Part, suffix: str) -> Path:
-    """Where a file of a part is until it is sealed."""
+    """Return the temporary path of a part's file."""
     return part.folder / f"{TEMPORARY}{part.stem}{suffix}"
 
 
 def receive(part: Part, files: Mapping[str, bytes]) -> None:
-    """Store a part that was written elsewhere; ``files`` are its own by suffix.
+    """Store a part that was written elsewhere; ``files`` are its files by suffix.
 
-    Raises StoreError where the disk refuses, CorruptPartError where a file is not what was sealed.
+    Raises StoreError if the disk refuses, CorruptPartError if a file differs from its seal.
     """
     _refuse_unsealed(part, files)
     written = [suffix for suffix in (*FILES, SEAL) if suffix in files]  # the seal last
@@ -183,7 +183,7 @@ def receive(part: Part, files: Mapping[str, bytes]) -> None:
             path.replace(part.path(suffix))
         _sync_folder(part.folder)
     except OSError as error:
-        raise refused(part, error) from error
+        raise not_writable(part, error) from error
     finally:
         for path in temporary.values():
             with suppress(OSError):
@@ -195,22 +195,22 @@ def _refuse_unsealed(part: Part, files: Mapping[str, bytes]) -> None:
         seal = read_seal(files[SEAL].decode(), len(part.seeds))
         sealed = {suffix: facts["sha256"] for suffix, facts in seal.items()}
     except (KeyError, ValueError) as error:
-        raise CorruptPartError(f"{part.path(SEAL)} must come sealed. It cannot be read.") from error
+        raise CorruptPartError(f"{part.path(SEAL)} is damaged. It cannot be read.") from error
     found = {
         suffix: hashlib.sha256(files[suffix]).hexdigest() for suffix in files if suffix != SEAL
     }
     if sealed != found:
-        raise CorruptPartError(f"{part.path(SEAL)} must fit what it came with. It does not.")
+        raise CorruptPartError(f"{part.path(SEAL)} does not match the files that came with it.")
 
 
-def refused(part: Part, error: OSError) -> StoreError:
-    """What is said where the disk refuses."""
+def not_writable(part: Part, error: OSError) -> StoreError:
+    """Return the error for a disk that refuses."""
     run = part.folder.parent.parent
     return StoreError(
-        f"{part.folder} must be writable and have room."
-        f" The system says: {error.strerror or error}."
-        " Every part that was finished is safe; make room and run the same suite again"
-        f" with --out {run} to go on from there."
+        f"{part.folder} is not writable, or the disk is full:"
+        f" {error.strerror or error}."
+        " Every finished part is safe; free some space and run the same suite again"
+        f" with --out {run} to continue."
     )
 
 
@@ -221,7 +221,7 @@ def _sync(file: Any) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    if not hasattr(os, "O_DIRECTORY"):  # Windows opens no folders
+    if not hasattr(os, "O_DIRECTORY"):  # Windows cannot open folders
         return
     handle = os.open(folder, os.O_RDONLY)
     try:

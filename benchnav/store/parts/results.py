@@ -1,7 +1,7 @@
 """The table of measured values: one row per episode, role and metric.
 
-It is computed from the stored episodes and can be computed again at any time; it
-is kept beside them so that a leaderboard needs no second pass.
+It is computed from the stored episodes and can be recomputed at any time; it
+is stored with them so that a leaderboard needs no second pass.
 """
 
 import numpy as np
@@ -15,10 +15,10 @@ from benchnav.navigation.tracks import TRACKS
 from benchnav.store.runs.spans import SEED_END
 
 SPLITS = ("train", "validation", "test")
-MOST_ROWS = 1 << 18  # of a part: 64 seeds, two roles and 2048 metrics
+MAX_ROWS = 1 << 18  # of a part: 64 seeds, two roles and 2048 metrics
 _MOST_AGENTS = 1_000_000
-_KEYS = ("seed", "role", "metric")  # of which a part has one row
-_TEXTS = {  # column → characters that it may have
+_KEYS = ("seed", "role", "metric")  # a part has one row per combination
+_TEXTS = {  # column → allowed number of characters
     "navigator": 200, "scenario": 2_000, "scenario_hash": 64, "metric": 200, "failure": 10_000,
     "navigator_hash": 64, "missing": 10_000, "source_hash": 64, "traceback": 10_000,
     "remarks": 10_000,
@@ -44,19 +44,19 @@ RESULTS = pa.schema(
         (
             "value",
             pa.float64(),
-        ),  # mean over the agents of the role where defined; NaN where nowhere
+        ),  # mean over the agents of the role where defined; NaN if nowhere defined
         ("agents", pa.int64()),  # agents of the role
-        ("defined", pa.int64()),  # agents over which the mean was taken
+        ("defined", pa.int64()),  # agents over which the mean is taken
         ("failure", pa.string()),  # why the navigator failed in this episode; "" if it did not
         ("horizon", pa.float64()),  # [s]
         ("dt", pa.float64()),  # [s]
-        ("navigator_hash", pa.string()),  # of configuration, distributions, mode; "" in older
-        ("rehearsal", pa.int64()),  # rehearsals granted; 0 in older parts, as the next two
+        ("navigator_hash", pa.string()),  # of configuration, distributions, mode; "" in older parts
+        ("rehearsal", pa.int64()),  # rehearsals granted; 0 in older parts, like the next two
         ("rehearsal_decisions", pa.int64()),  # of agents, in the rehearsals of this world
-        ("rehearsal_seconds", pa.float64()),  # of the navigator that led
-        ("missing", pa.string()),  # how the metric failed; "" where it did not, and in older parts
-        ("source_hash", pa.string()),  # of the navigator's code and data; "" where not known
-        ("traceback", pa.string()),  # of that; null where nothing was raised, and in older parts
+        ("rehearsal_seconds", pa.float64()),  # of the leading navigator
+        ("missing", pa.string()),  # how the metric failed; "" if it did not, and in older parts
+        ("source_hash", pa.string()),  # of the navigator's code and data; "" if unknown
+        ("traceback", pa.string()),  # of the failure; null if none, and in older parts
         ("remarks", pa.list_(pa.string())),  # of the navigator on this episode; null likewise
     ]
 )
@@ -72,11 +72,11 @@ LATER = {
     "traceback": None,
     "remarks": None,
 }
-"""Columns that older parts lack, and what stands for them."""
+"""Columns that older parts do not have, and their default values."""
 
 
 def completed(table: pa.Table) -> pa.Table:
-    """The table with what older parts lack."""
+    """Return the table with the columns that older parts do not have."""
     for name, missing in LATER.items():
         if name not in table.column_names:
             field = RESULTS.field(name)
@@ -87,9 +87,9 @@ def completed(table: pa.Table) -> pa.Table:
 
 
 def require_possible(table: pa.Table) -> None:
-    """Raise ValueError where a table of `RESULTS` holds what no part can hold."""
-    if len(table) > MOST_ROWS:
-        raise ValueError(f"must have at most {MOST_ROWS} rows; it has {len(table)}")
+    """Raise ValueError if a table of `RESULTS` holds values that no part can have."""
+    if len(table) > MAX_ROWS:
+        raise ValueError(f"must have at most {MAX_ROWS} rows; it has {len(table)}")
     for name in RESULTS.names:
         column = table[name]
         if name not in _MAY_BE_NULL and column.null_count:
@@ -110,7 +110,7 @@ def require_possible(table: pa.Table) -> None:
 
 def _require_range(name: str, column: pa.ChunkedArray) -> None:
     low, high = _RANGES[name]
-    found = pc.min_max(column).as_py()  # None where there is no number; only a value may be NaN
+    found = pc.min_max(column).as_py()  # None without numbers; only a value may be NaN
     numbers = [x for x in found.values() if x is not None and (x == x or name != "value")]
     strange = [x for x in numbers if not low <= x <= high]
     if pa.types.is_floating(column.type) and name != "value" and pc.any(pc.is_nan(column)).as_py():

@@ -1,4 +1,4 @@
-"""What a worker wrote of a part and nobody sealed yet: read as what a stranger wrote."""
+"""Read the unsealed files that a worker wrote of a part, as untrusted input."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -15,36 +15,35 @@ from benchnav.store.parts.part_writer import temporary
 
 
 def staged_episodes(part: Part, expected: Sequence[Identity]) -> Iterator[Episode]:
-    """The scored episodes, in the order in which they were written.
+    """Yield the scored episodes, in the order of the file.
 
-    ``expected`` says which, in any order. Raises CorruptPartError where the file holds others,
+    ``expected`` lists them, in any order. Raises CorruptPartError if the file holds others,
     or cannot be read.
     """
     missing = set(expected)
     for episode in _episodes(part, EPISODES_FILE):
         if episode.identity not in missing:
-            raise _strange(part, f"holds an episode that is not to be there: {episode.identity}")
+            raise _corrupt(part, f"holds an unexpected episode: {episode.identity}")
         missing.discard(episode.identity)
         yield episode
     if missing:
-        raise _strange(part, f"lacks {len(missing)} of {len(expected)} episodes")
+        raise _corrupt(part, f"misses {len(missing)} of {len(expected)} episodes")
 
 
 def check_rehearsals(part: Part, expected: Sequence[Identity], most: int) -> None:
     """Raise CorruptPartError for rehearsals of other episodes, or more than ``most`` of one."""
-    seen: set[Identity] = set()
+    earlier: set[Identity] = set()
     known = set(expected)
     if not temporary(part, REHEARSALS_FILE).exists():
         return
     for episode in _episodes(part, REHEARSALS_FILE):
-        said = episode.identity
+        identity = episode.identity
         if (
-            said in seen
-            or not 0 < said.rehearsal <= most
-            or replace(said, rehearsal=0) not in known
+            identity in earlier
+            or not 0 < identity.rehearsal <= most
+            or replace(identity, rehearsal=0) not in known
         ):
-            raise _strange(part, f"holds a rehearsal that is not to be there: {said}")
-        seen.add(said)
+            raise _corrupt(part, f"holds an unexpected rehearsal: {identity}")
 
 
 def _episodes(part: Part, suffix: str) -> Iterator[Episode]:
@@ -52,8 +51,8 @@ def _episodes(part: Part, suffix: str) -> Iterator[Episode]:
         table = bounded_parquet.read(temporary(part, suffix).read_bytes(), EPISODES)
         yield from from_table(table, range(len(table)))
     except (OSError, pa.ArrowException, *UNDECODABLE) as error:
-        raise _strange(part, f"cannot be read ({error})") from error
+        raise _corrupt(part, f"cannot be read ({error})") from error
 
 
-def _strange(part: Part, what: Any) -> CorruptPartError:
-    return CorruptPartError(f"{part.stem} must be what a worker writes. It {what}.")
+def _corrupt(part: Part, problem: Any) -> CorruptPartError:
+    return CorruptPartError(f"{part.stem} is not a valid part of a worker. It {problem}.")

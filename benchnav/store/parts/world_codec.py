@@ -19,33 +19,33 @@ from benchnav.arrays import AnyArray
 from benchnav.config.document import shown
 
 _DTYPES = ("<f8", "<i8", "|i1", "|b1")
-_PLAIN = {bool: (bool,), int: (int,), float: (int, float), str: (str,)}  # JSON has these itself
-MOST_TEXT = 64 << 20  # characters of a world; one of a million triangles takes 50 MB
-_MOST_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of values
+_PLAIN = {bool: (bool,), int: (int,), float: (int, float), str: (str,)}  # types of JSON itself
+MAX_TEXT = 64 << 20  # characters of a world; one of a million triangles takes 50 MB
+_MAX_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of values
 
 
 def world_to_json(world: World) -> str:
-    """The world as one line of JSON (infinities are written as Python does: ``Infinity``)."""
+    """Return the world as one line of JSON (infinities as in Python: ``Infinity``)."""
     return json.dumps(encode(world), separators=(",", ":"))
 
 
 def world_from_json(text: str) -> World:
-    """The world that was written.
+    """Return the world in a text of `world_to_json`.
 
     Raises:
         KeyError, TypeError, ValueError: the text is not an encoded world.
     """
-    if len(text) > MOST_TEXT or text.count("[") + text.count("{") > _MOST_CONTAINERS:
-        raise ValueError(f"a world must have at most {MOST_TEXT} characters; it has {len(text)}")
+    if len(text) > MAX_TEXT or text.count("[") + text.count("{") > _MAX_CONTAINERS:
+        raise ValueError(f"a world must have at most {MAX_TEXT} characters; it has {len(text)}")
     world: World = decode(World, json.loads(text))
     agents = world.agents
     if any(len(getattr(agents, f.name)) != len(agents) for f in fields(agents)):
-        raise ValueError("a world must have as many of each array of its agents")
+        raise ValueError("the arrays of a world's agents must have equal lengths")
     return world
 
 
 def encode(value: Any) -> Any:
-    """Plain JSON values of a dataclass, array, enum, tuple or number."""
+    """Return plain JSON values of a dataclass, array, enum, tuple or number."""
     if isinstance(value, np.ndarray):
         return [value.dtype.str, list(value.shape), value.ravel().tolist()]
     if is_dataclass(value) and not isinstance(value, type):
@@ -63,8 +63,8 @@ def decode(kind: Any, value: Any) -> Any:
     """Return the value of type ``kind`` that `encode` turned into ``value``.
 
     Raises:
-        KeyError, TypeError, ValueError: ``value`` is not of this type, or no value of
-            this type can be encoded.
+        KeyError, TypeError, ValueError: ``value`` is not of this type, or this type
+            cannot be encoded.
     """
     kind = _unalias(kind)
     origin = get_origin(kind) or kind
@@ -89,9 +89,9 @@ def decode(kind: Any, value: Any) -> Any:
 
 
 def _unalias(kind: Any) -> Any:
-    """Return the type that an alias stands for: NDArray is an alias since NumPy 2.5.
+    """Return the type behind an alias: NDArray is an alias since NumPy 2.5.
 
-    Arguments of the alias are dropped: an array says its own dtype.
+    Arguments of the alias are dropped: an encoded array has its own dtype.
     """
     while (origin := get_origin(kind) or kind) and hasattr(origin, "__value__"):
         kind = origin.__value__

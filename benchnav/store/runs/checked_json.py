@@ -1,4 +1,4 @@
-"""JSON that says the sha256 of all else that it says: no flipped bit in it goes unseen."""
+"""JSON objects with the sha256 of their content, so that every flipped bit is detected."""
 
 import hashlib
 import json
@@ -10,29 +10,29 @@ from benchnav.store.bounded import bounded_json
 KEY = "sha256"
 
 
-def dump(said: Mapping[str, Any]) -> str:
-    """The text of an object, with `KEY` last."""
-    return json.dumps({**said, KEY: _sum(said)}, indent=1, ensure_ascii=False) + "\n"
+def dump(fields: Mapping[str, Any]) -> str:
+    """Return the text of an object, with `KEY` last."""
+    return json.dumps({**fields, KEY: _sum(fields)}, indent=1, ensure_ascii=False) + "\n"
 
 
 def load(text: str) -> dict[str, Any]:
-    """The object that was dumped, without `KEY`.
+    """Return the object in a dumped text, without `KEY`.
 
-    What was written before there was a `KEY` is taken as it is: the caller must know every key.
+    A text from before `KEY` existed is accepted unchecked: the caller must know every key.
 
-    Raises ValueError where the text is no such object.
+    Raises ValueError if the text is not such an object.
     """
     fields = bounded_json.load(text)
     if not isinstance(fields, dict):
-        raise ValueError("it is no JSON object")
+        raise ValueError("it is not a JSON object")
     if KEY in fields and fields.pop(KEY) != _sum(fields):
-        raise ValueError(f"it was changed: its {KEY} is another")
+        raise ValueError(f"it was changed: its {KEY} differs from the sum of its content")
     return fields
 
 
-def _sum(said: Mapping[str, Any]) -> str:
+def _sum(fields: Mapping[str, Any]) -> str:
     try:
-        text = json.dumps(said, sort_keys=True, separators=(",", ":"))
+        text = json.dumps(fields, sort_keys=True, separators=(",", ":"))
     except RecursionError:
         raise ValueError("it is nested too deep") from None
     return hashlib.sha256(text.encode()).hexdigest()

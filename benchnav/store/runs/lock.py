@@ -1,4 +1,4 @@
-"""One writer a folder."""
+"""Locks: one writer per folder."""
 
 import os
 from collections.abc import Iterator
@@ -9,11 +9,11 @@ from benchnav.errors import RunConflictError, StoreError
 
 try:
     import fcntl
-except ImportError:  # not on Windows
+except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-LOCK = ".lock"  # stays; the system forgets a lock on it with the process that held it
-MARK = ".writer"  # where there are no such locks: there while somebody writes
+LOCK = ".lock"  # is not removed; a lock on it ends with the process that holds it
+MARK = ".writer"  # for systems without locks: exists while a process writes
 LOCKS = (LOCK, MARK)
 
 
@@ -25,16 +25,16 @@ def locked(folder: Path) -> Iterator[None]:
         RunConflictError: another process holds it.
         StoreError: the folder is not writable.
     """
-    hold = _marked if fcntl is None else _flocked
+    hold = _create_mark if fcntl is None else _lock
     with hold(folder):
         yield
 
 
 @contextmanager
 def claimed(path: Path) -> Iterator[None]:
-    """Hold the file ``path`` as its only writer until it is renamed; else it is removed.
+    """Hold the file ``path`` as its only writer until it is renamed; otherwise remove it.
 
-    What a process that was killed left there is taken over.
+    A file left by a killed process is taken over.
 
     Raises:
         RunConflictError: another process writes it.
@@ -45,7 +45,7 @@ def claimed(path: Path) -> Iterator[None]:
         if not _is_ours(path, handle):
             raise RunConflictError(
                 f"{path} must have one writer. Another process writes it now."
-                " Wait for it, or give another --out."
+                " Wait for it, or choose another --out."
             )
         try:
             yield
@@ -60,7 +60,7 @@ def claimed(path: Path) -> Iterator[None]:
 
 
 def _is_ours(path: Path, handle: int) -> bool:
-    """Whether this process could lock the file, and it is still the one of that name."""
+    """Whether this process locked the file that still has this name."""
     if fcntl is None:
         return True
     try:
@@ -71,50 +71,50 @@ def _is_ours(path: Path, handle: int) -> bool:
 
 
 @contextmanager
-def _flocked(folder: Path) -> Iterator[None]:
+def _lock(folder: Path) -> Iterator[None]:
     try:
         handle = os.open(folder / LOCK, os.O_RDWR | os.O_CREAT, 0o644)
     except OSError as error:
-        raise _refused(folder, error) from error
+        raise _not_writable(folder, error) from error
     try:
         try:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             holder = os.pread(handle, 64, 0).decode(errors="replace").strip()
-            raise _taken(folder, holder, "Wait for it, or give another --out.") from None
+            raise _in_use(folder, holder, "Wait for it, or choose another --out.") from None
         os.truncate(handle, 0)
         os.pwrite(handle, str(os.getpid()).encode(), 0)
         yield
-        fcntl.flock(handle, fcntl.LOCK_UN)  # also where a child still holds a copy of it
+        fcntl.flock(handle, fcntl.LOCK_UN)  # effective even if a child process has a copy of it
     finally:
         os.close(handle)
 
 
 @contextmanager
-def _marked(folder: Path) -> Iterator[None]:
-    """By exclusive creation: a writer that was killed leaves its mark behind."""
+def _create_mark(folder: Path) -> Iterator[None]:
+    """Lock by exclusive creation of a file; a killed writer leaves it behind."""
     mark = folder / MARK
     try:
         with mark.open("x", encoding="ascii") as file:
             file.write(str(os.getpid()))
     except FileExistsError:
         holder = mark.read_text(encoding="ascii", errors="replace")
-        advice = f"Wait for it, or give another --out; delete {mark} where it was killed."
-        raise _taken(folder, holder, advice) from None
+        advice = f"Wait for it, or choose another --out; delete {mark} if that process was killed."
+        raise _in_use(folder, holder, advice) from None
     except OSError as error:
-        raise _refused(folder, error) from error
+        raise _not_writable(folder, error) from error
     try:
         yield
     finally:
         mark.unlink(missing_ok=True)
 
 
-def _taken(folder: Path, holder: str, advice: str) -> RunConflictError:
+def _in_use(folder: Path, holder: str, advice: str) -> RunConflictError:
     return RunConflictError(
         f"{folder} must have one writer. The process {holder.strip() or 'unknown'} writes it now."
         f" {advice}"
     )
 
 
-def _refused(folder: Path, error: OSError) -> StoreError:
-    return StoreError(f"{folder} must be writable. The system says: {error.strerror}.")
+def _not_writable(folder: Path, error: OSError) -> StoreError:
+    return StoreError(f"{folder} is not writable: {error.strerror}.")

@@ -1,4 +1,4 @@
-"""What a run folder says about itself."""
+"""The manifest: the description of a run in its folder."""
 
 import hashlib
 import json
@@ -21,27 +21,27 @@ from benchnav.store.runs.run_path import RunPath, run_path
 
 SCHEMA = 4  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source
 MANIFEST = "manifest.json"
-MOST_BYTES = 64 << 20  # of a manifest
+MAX_BYTES = 64 << 20  # of a manifest
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
 
-Mode = Literal["in-process", "isolated"]  # of a navigator; what a manifest says of it
-IN_PROCESS: Mode = "in-process"  # also where nothing is said
-ISOLATED: Mode = "isolated"  # in a process of its own that is told what messages say
+Mode = Literal["in-process", "isolated"]  # how a navigator runs
+IN_PROCESS: Mode = "in-process"  # also the default of manifests without a mode
+ISOLATED: Mode = "isolated"  # in a separate process that receives messages only
 
 
 @dataclass(frozen=True)
 class Manifest:
-    """The suite that a run executes, and with what."""
+    """The suite that a run executes, and its conditions."""
 
     suite: Mapping[str, Any]  # resolved: hashes of scenarios, full configurations, seeds
-    # key, scenario, track, navigator, reason it is n/a or ""; also: other tracks it stands for
+    # key, scenario, track, navigator, reason for n/a or ""; `also`: other tracks it represents
     cells: tuple[Mapping[str, Any], ...]
-    salt: str = ""  # of the randomness that navigators are handed, in hexadecimal digits
-    limits: Mapping[str, float] = field(default_factory=dict)  # beyond which an episode fails
-    shard: str = ""  # "2/4" where it executes that share alone; its cells then say their seeds
-    # label → {hash: of the code that made the episodes, places: module:attribute of its parts}
+    salt: str = ""  # of the navigators' random numbers, in hexadecimal digits
+    limits: Mapping[str, float] = field(default_factory=dict)  # an episode beyond them fails
+    shard: str = ""  # "2/4" if the run executes only this share; its cells then list their seeds
+    # label → {hash: of the code that produced the episodes, places: module:attribute of its parts}
     sources: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
-    # labels that ran in the runner's own process, where nothing guards other entries from them
+    # labels that ran in the runner's own process, where other entries are not protected from them
     unguarded: tuple[str, ...] = ()
     schema: int = SCHEMA
     versions: Mapping[str, str] = field(default_factory=lambda: versions())
@@ -50,50 +50,50 @@ class Manifest:
 
     @property
     def name(self) -> str:
-        """For people: ``quick@1 (3f2a9c01d2e4)``."""
+        """The display name: ``quick@1 (3f2a9c01d2e4)``."""
         return f"{self.suite.get('name')}@{self.suite.get('version')} ({self.suite_hash[:12]})"
 
     @property
     def suite_hash(self) -> str:
-        """sha256 of the resolved suite: runs that may share a folder share it."""
+        """The sha256 of the resolved suite; only runs with equal hashes may share a folder."""
         text = json.dumps(self.suite, sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
     @property
     def plan(self) -> dict[str, Any]:
-        """The suite without the fingerprints of files, which count as source."""
+        """The suite without file fingerprints, which count as source."""
         navigators = [_without_files(entry) for entry in self.suite.get("navigators", ())]
         return {**self.suite, "navigators": navigators}
 
     def source_of(self, label: str) -> str:
-        """Return the hash of the source of a navigator; "" where the run does not say it."""
+        """Return the source hash of a navigator; "" if the run does not have it."""
         return str(self.sources.get(label, {}).get("hash", ""))
 
     def files_of(self, label: str) -> list[str]:
-        """Return the fingerprints of what a navigator and its leader read."""
+        """Return the fingerprints of files that a navigator and its leader read."""
         entry: Mapping[str, Any] = next(
             (e for e in self.suite.get("navigators", ()) if e["label"] == label), {}
         )
         return [str(e.get("fingerprint", "")) for e in (entry, entry.get("leader", {}))]
 
     def with_sources_of(self, other: "Manifest", labels: Collection[str]) -> "Manifest":
-        """Return this with the code of ``labels`` as ``other`` says it."""
-        theirs = {e["label"]: e for e in other.suite.get("navigators", ())}
+        """Return this manifest with the sources of ``labels`` from ``other``."""
+        others = {e["label"]: e for e in other.suite.get("navigators", ())}
         entries = self.suite.get("navigators", ())
-        mine = [theirs[e["label"]] if e["label"] in labels else e for e in entries]
+        merged = [others[e["label"]] if e["label"] in labels else e for e in entries]
         sources = {k: v for k, v in other.sources.items() if k in labels}
         return replace(
-            self, suite={**self.suite, "navigators": mine}, schema=SCHEMA,
+            self, suite={**self.suite, "navigators": merged}, schema=SCHEMA,
             sources={**self.sources, **sources},
         )  # fmt: skip
 
     def dump(self) -> str:
-        """JSON for `MANIFEST`."""
+        """Return the JSON text of `MANIFEST`."""
         return checked_json.dump({**asdict(self), "suite_hash": self.suite_hash})
 
 
 def versions() -> dict[str, str]:
-    """Installed packages that have a say in the numbers, and their versions."""
+    """Return the versions of installed packages that can influence results."""
     found = {"python": platform.python_version()}
     for name in _RECORDED:
         try:
@@ -104,32 +104,30 @@ def versions() -> dict[str, str]:
 
 
 def load_manifest(run: RunPath) -> Manifest:
-    """The manifest of a run folder.
+    """Return the manifest of a run folder.
 
     Raises:
-        NoRunError: the folder is no run.
+        NoRunError: the folder is not a run.
         StoreError: a newer benchnav wrote it.
-        CorruptPartError: its manifest is damaged, or holds what no run writes.
+        CorruptPartError: its manifest is damaged, or has content that no run writes.
     """
     run = run_path(run)
     path = run / MANIFEST
     if not path.is_file():
-        what = "Got a file" if run.is_file() else "It is not there" if not run.exists() else None
+        problem = "Got a file" if run.is_file() else "It does not exist" if not run.exists() else ""
         raise NoRunError(
             f"{run} must be a run folder, with a {MANIFEST}."
-            f" {what or 'It has none'}. 'benchnav run SUITE --out {run}' makes one."
+            f" {problem or 'It has none'}. 'benchnav run SUITE --out {run}' creates one."
         )
     try:
-        text = bounded_json.read_text(path, MOST_BYTES)
+        text = bounded_json.read_text(path, MAX_BYTES)
     except (OSError, ValueError) as error:
-        raise CorruptPartError(
-            f"{path} must be what was written. It cannot be read: {short(error)}."
-        ) from error
+        raise CorruptPartError(f"{path} is damaged. It cannot be read: {short(error)}.") from error
     return parse_manifest(text, path)
 
 
 def parse_manifest(text: str, path: Path) -> Manifest:
-    """The manifest that stands in ``path`` as ``text``. Raises as `load_manifest` does."""
+    """Return the manifest in ``text`` of the file ``path``. Raises like `load_manifest`."""
     try:
         fields = checked_json.load(text)
         _refuse_newer(path, fields)
@@ -142,26 +140,24 @@ def parse_manifest(text: str, path: Path) -> Manifest:
         )  # fmt: skip
         whole = manifest.suite_hash == fields["suite_hash"]
     except (OSError, ValueError, RecursionError) as error:
-        raise CorruptPartError(
-            f"{path} must be what was written. It cannot be read: {short(error)}."
-        ) from error
+        raise CorruptPartError(f"{path} is damaged. It cannot be read: {short(error)}.") from error
     except ScenarioError as error:
         complaint = str(error).partition("\n")[0].removeprefix(f"{path}:1: ")
-        raise CorruptPartError(f"{path} must be what was written. {complaint}") from None
+        raise CorruptPartError(f"{path} is damaged. {complaint}") from None
     if not whole:
-        raise CorruptPartError(f"{path} must be what was written. Its suite was changed.")
+        raise CorruptPartError(f"{path} is damaged. Its suite was changed.")
     return manifest
 
 
 def _refuse_newer(path: Path, fields: Mapping[str, Any]) -> None:
-    """Raise StoreError where a newer benchnav wrote the manifest."""
+    """Raise StoreError if a newer benchnav wrote the manifest."""
     schema, made = fields.get("schema"), fields.get("versions")
     if type(schema) is not int or schema <= SCHEMA:
         return
     version = made.get("benchnav") if isinstance(made, dict) else None
     raise StoreError(
         f"{path}: schema must be at most {SCHEMA}. Got {shown(schema)} instead:"
-        f" benchnav {shown(version)} wrote it; install that one."
+        f" benchnav {shown(version)} wrote it; install that version."
     )
 
 

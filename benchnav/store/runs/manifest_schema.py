@@ -1,7 +1,7 @@
-"""What a manifest may hold, whoever wrote it: types, ranges and lengths of every key.
+"""The schema of a manifest: types, ranges and lengths of every key.
 
-What scenarios and navigators say of themselves is bounded by the size of the file alone, and is
-checked where it is used.
+The descriptions of scenarios and navigators are bounded by the size of the file only; they are
+checked where they are used.
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from benchnav.navigation.tracks import Track
 from benchnav.scenario.parameters import Parameter
 from benchnav.store.runs.spans import SEED_END
 
-MOST_SEEDS = 1_000_000  # of a run
+MAX_SEEDS = 1_000_000  # of a run
 MOST_CELLS = 1_000_000
 _FAR = 1e15  # [s] of training
 
@@ -33,8 +33,8 @@ class _Part(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
-class _Says(BaseModel):
-    """A scenario, as it describes itself; it is checked whole where its worlds are drawn."""
+class _ScenarioConfig(BaseModel):
+    """A scenario's own description; it is fully checked where its worlds are drawn."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
@@ -44,7 +44,7 @@ class _Says(BaseModel):
 class _Scenario(_Part):
     scenario: Identity
     hash: Short
-    says: _Says
+    says: _ScenarioConfig
     files: dict[Annotated[str, Field(max_length=500)], Hex64] = {}
 
 
@@ -53,7 +53,7 @@ class _Training(_Part):
     seconds: Annotated[float, Field(ge=0, le=_FAR)]
 
 
-class _Led(_Part):
+class _Entry(_Part):
     label: Label
     says: dict[str, Any]
     source: Text
@@ -63,9 +63,9 @@ class _Led(_Part):
     fingerprint: Short = ""
 
 
-class _Navigator(_Led):
+class _Navigator(_Entry):
     rehearsal: Annotated[int, Field(ge=0, le=1_000_000)] = 0
-    leader: _Led | None = None
+    leader: _Entry | None = None
 
 
 class _Block(_Part):
@@ -87,9 +87,9 @@ class _Suite(_Part):
     @model_validator(mode="after")
     def _check(self) -> "_Suite":
         first, stop = self.seeds
-        if not 1 <= stop - first <= MOST_SEEDS:
+        if not 1 <= stop - first <= MAX_SEEDS:
             raise FieldError(
-                ("seeds",), f"must be [first, stop] of 1 to {MOST_SEEDS} seeds; got {self.seeds}"
+                ("seeds",), f"must be [first, stop] of 1 to {MAX_SEEDS} seeds; got {self.seeds}"
             )
         product = len(self.scenarios) * len(self.tracks) * len(self.navigators)
         if product > MOST_CELLS:
@@ -131,7 +131,7 @@ class _Source(_Part):
 
 
 class ManifestSchema(_Part):
-    """A manifest of any schema so far; what older ones lack has a default here."""
+    """A manifest of any schema so far; keys missing in older ones have a default here."""
 
     suite: _Suite
     cells: Annotated[tuple[_Cell, ...], Field(max_length=MOST_CELLS)]
@@ -162,9 +162,9 @@ class ManifestSchema(_Part):
 
 
 def _require_once(path: tuple[str, ...], names: Sequence[object]) -> None:
-    """Raise FieldError where a name occurs twice."""
-    seen: set[object] = set()
+    """Raise FieldError if a name occurs twice."""
+    earlier: set[object] = set()
     for i, name in enumerate(names):
-        if name in seen:
+        if name in earlier:
             raise FieldError((*path, i), f"must not repeat {shown(name)}")
-        seen.add(name)
+        earlier.add(name)

@@ -1,4 +1,4 @@
-"""Runs that executed shares of one suite → one run, as if nobody had shared it out."""
+"""Merge runs of shares of one suite into one run, equal to a run of the whole suite."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -23,25 +23,25 @@ _SHARED = ("suite_hash", "salt", "limits", "versions", "schema")
 
 @dataclass
 class Merged:
-    """What merging did."""
+    """The result of merging."""
 
     run: RunFolder
     copied: int = 0  # episodes
-    twice: int = 0  # episodes that were there already, and are the same
+    twice: int = 0  # episodes that were there already, and are equal
     _digests: dict[str, dict[int, str]] = field(default_factory=dict)  # by cell and seed
 
 
 def merge(given: Sequence[RunPath], into: RunPath) -> Merged:
-    """Copy every part of some runs into another; what is there already must be the same.
+    """Copy every part of some runs into another run; parts that are there already must be equal.
 
     Args:
         given: runs of one suite, with one salt, one set of limits and the same versions.
-        into: a new folder, or a run of the same that more is merged into.
+        into: a new folder, or a run of the same suite.
 
     Raises:
-        UsageError: there is nothing to merge, or ``into`` is one of them.
+        UsageError: there is nothing to merge, or ``into`` is one of ``given``.
         RunConflictError: the runs do not belong together, or differ where they overlap.
-        StoreError: the disk refuses, a folder is no run, or a part is damaged.
+        StoreError: the disk refuses, a folder is not a run, or a part is damaged.
     """
     runs, out = [run_path(run) for run in given], run_path(into)
     if not runs or any(out.resolve() == run.resolve() for run in runs):
@@ -71,36 +71,36 @@ def _refuse_different(one: RunFolder, other: RunFolder) -> None:
         here, there = getattr(one.manifest, name), getattr(other.manifest, name)
         if here != there:
             raise RunConflictError(
-                f"Runs that are merged must share their {name.replace('_', ' ')}."
+                f"Runs to merge must share their {name.replace('_', ' ')}."
                 f" {one.path} has {_short(here)}, {other.path} has {_short(there)}."
             )
     _refuse_other_source(one, other)
 
 
 def _refuse_other_source(one: RunFolder, other: RunFolder) -> None:
-    """Raise RunConflictError where two runs were made with different code of a navigator."""
+    """Raise RunConflictError if two runs used different code of a navigator."""
     for label in one.manifest.sources.keys() & other.manifest.sources.keys():
         here, there = one.manifest.source_of(label), other.manifest.source_of(label)
         if here != there:
             raise RunConflictError(
-                f"Runs that are merged must share the source of {label!r}. {one.path} has {here},"
-                f" {other.path} has {there}. Run one of them again with the code of the other"
+                f"Runs to merge must share the source of {label!r}. {one.path} has {here},"
+                f" {other.path} has {there}. Repeat one of them with the code of the other"
                 " (benchnav run … --again)."
             )
 
 
-def _short(said: object) -> str:
-    text = str(said)
+def _short(value: object) -> str:
+    text = str(value)
     return text if len(text) <= 200 else text[:197] + "..."
 
 
 def _joined(manifests: Sequence[Manifest]) -> Manifest:
-    """Of the whole suite; a cell that could be run somewhere can be run."""
-    could = {cell["key"] for m in manifests for cell in m.cells if not cell["reason"]}
+    """Return the manifest of the whole suite; a cell that one run executed execute is not n/a."""
+    executed = {cell["key"] for m in manifests for cell in m.cells if not cell["reason"]}
     cells = []
     for cell in manifests[0].cells:
-        said: Mapping[str, Any] = {k: v for k, v in cell.items() if k != "seeds"}
-        cells.append({**said, "reason": ""} if cell["key"] in could else said)
+        entry: Mapping[str, Any] = {k: v for k, v in cell.items() if k != "seeds"}
+        cells.append({**entry, "reason": ""} if cell["key"] in executed else entry)
     sources = {label: source for m in manifests for label, source in m.sources.items()}
     unguarded = dict.fromkeys(label for m in manifests for label in m.unguarded)
     return replace(
@@ -115,7 +115,7 @@ def _copy_files(run: Path, out: Path) -> None:
 
 
 def _copy(part: Part, key: str, merged: Merged) -> None:
-    """Bytes, where no seed is there yet; what is new of the part otherwise."""
+    """Copy the files if no seed is there yet; otherwise only the new seeds of the part."""
     target = Part(merged.run.cell(key), part.first, part.stop)
     held = merged.run.done(key)
     new = set(part.seeds) - held
@@ -135,7 +135,7 @@ def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise StoreError(f"{path} must be readable. The system says: {error.strerror}.") from error
+        raise StoreError(f"{path} is not readable: {error.strerror}.") from error
 
 
 def _refuse_disagreement(part: Part, key: str, held: set[int], merged: Merged) -> None:
@@ -154,12 +154,12 @@ def _refuse_disagreement(part: Part, key: str, held: set[int], merged: Merged) -
 
 
 def _rewrite(part: Part, target: Part) -> None:
-    """The seeds of ``target`` out of a part that holds more."""
-    wanted = set(target.seeds)
+    """Write the seeds of ``target`` from a part that holds more."""
+    seeds = set(target.seeds)
     results = part.results()
-    chosen = results.filter(pc.is_in(results["seed"], pa.array(sorted(wanted), pa.int64())))
+    chosen = results.filter(pc.is_in(results["seed"], pa.array(sorted(seeds), pa.int64())))
     with PartWriter(target) as writer:
-        writer.add(list(_of(part.episodes(), wanted)), chosen, list(_of(part.rehearsals(), wanted)))
+        writer.add(list(_of(part.episodes(), seeds)), chosen, list(_of(part.rehearsals(), seeds)))
         writer.seal()
 
 

@@ -1,4 +1,4 @@
-"""The hash that tells configurations of one navigator apart."""
+"""The hash of a navigator's configuration."""
 
 import hashlib
 import json
@@ -15,7 +15,7 @@ def navigator_hash(
     """Return the hash of type, every parameter, distributions, files that it read, and mode.
 
     ``leader`` is the hash of the navigator that leads in its rehearsals; "" without one.
-    Code does not count: it changes without a new version and has a hash of its own.
+    Code does not count: it changes without a new version and has its own hash.
     """
     more = [part for part in (fingerprint, leader) if part]
     isolated = [] if mode == IN_PROCESS else [mode]
@@ -24,7 +24,7 @@ def navigator_hash(
 
 
 def hash_of_entry(entry: Mapping[str, Any]) -> str:
-    """Return the hash of a navigator as a manifest describes it."""
+    """Return the hash of a navigator from its manifest entry."""
     leader = hash_of_entry(entry["leader"]) if "leader" in entry else ""
     return navigator_hash(
         entry["says"], str(entry["source"]), str(entry.get("fingerprint", "")), leader,

@@ -1,8 +1,8 @@
-"""A run as it is at one moment, so that what is checked is what is later read.
+"""A run at one moment, so that checks and later reads see the same content.
 
 Nothing is copied: a pinned run holds the sha256 of every member. The manifest is read
-once. A seal is refused where it is no longer the one that was pinned, and it holds the
-sha256 of the other files of its part, which are compared with the bytes that are decoded.
+once. A seal that differs from the pinned one is refused; the seal holds the
+sha256 of the other files of its part, which are compared with the decoded bytes.
 """
 
 import hashlib
@@ -16,9 +16,9 @@ from benchnav.store.runs.scenario_files import sha256_of
 
 
 def pinned(run: RunFolder) -> RunFolder:
-    """Return the run as it is now; one that is pinned is returned as it is.
+    """Return the run in its current state; a pinned run is returned unchanged.
 
-    Raises CorruptPartError where its manifest cannot be read any more.
+    Raises CorruptPartError if its manifest cannot be read any more.
     """
     if run.sums is not None:
         return run
@@ -28,9 +28,7 @@ def pinned(run: RunFolder) -> RunFolder:
         run = replace(run, manifest=parse_manifest(content.decode("utf-8"), path))
         sums = {**_sums(run), MANIFEST: hashlib.sha256(content).hexdigest()}
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise CorruptPartError(
-            f"{path} must be what was written. It cannot be read: {error}."
-        ) from error
+        raise CorruptPartError(f"{path} is damaged. It cannot be read: {error}.") from error
     return replace(run, sums=sums)
 
 
@@ -40,7 +38,7 @@ def pinned_digest(run: RunFolder) -> str:
 
 
 def changed_since(run: RunFolder) -> list[str]:
-    """Return the names of members that are no longer what was pinned, or that are new."""
+    """Return the names of members that changed or appeared since the run was pinned."""
     before = run.sums or {}
     try:
         now = pinned(replace(run, sums=None)).sums or {}
@@ -50,7 +48,7 @@ def changed_since(run: RunFolder) -> list[str]:
 
 
 def _sums(run: RunFolder) -> dict[str, str]:
-    """The sha256 of every member; "" of one that cannot be read."""
+    """Return the sha256 of every member; "" if a member cannot be read."""
     sums = {}
     for name in members(run):
         try:

@@ -1,4 +1,4 @@
-"""What readers of runs use: episodes and measured values of whole run folders."""
+"""Read episodes and measured values of whole runs."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -18,56 +18,57 @@ _OF_A_CELL = ["scenario", "track", "navigator"]
 
 
 def read_episodes(run: RunPath) -> Iterator[Episode]:
-    """Every scored episode of a run: cell by cell, by seed.
+    """Yield every scored episode of a run: cell by cell, by seed.
 
-    Raises UsageError where ``run`` is no path, StoreError where the folder is no run,
+    Raises UsageError if ``run`` is not a path, StoreError if the folder is not a run,
     CorruptPartError for a damaged part, or one that holds rows of another cell.
     """
     return episodes_of(RunFolder.open(run))
 
 
 def episodes_of(run: RunFolder) -> Iterator[Episode]:
-    """The same, of a run that is open already."""
+    """Yield the same, for an open run."""
     return (episode for part in run.parts() for episode in part.episodes())
 
 
 def read_episodes_in_every_track(run: RunPath) -> Iterator[Episode]:
-    """The same, each once more for every other track that it stands for.
+    """Yield the same, and repeat each episode for every other track that it represents.
 
-    Raises as `read_episodes` does.
+    Raises like `read_episodes`.
     """
     return episodes_in_every_track(RunFolder.open(run))
 
 
 def episodes_in_every_track(run: RunFolder) -> Iterator[Episode]:
-    """The same, of a run that is open already."""
+    """Yield the same, for an open run."""
     cells = run.manifest.cells
     also = {(c["scenario"], c["track"], c["navigator"]): c.get("also", ()) for c in cells}
     for episode in episodes_of(run):
-        said = episode.identity
-        for track in (*also.get((said.scenario, said.track, said.navigator), ()), said.track):
-            yield replace(episode, identity=replace(said, track=track))
+        identity = episode.identity
+        key = (identity.scenario, identity.track, identity.navigator)
+        for track in (*also.get(key, ()), identity.track):
+            yield replace(episode, identity=replace(identity, track=track))
 
 
 def read_rehearsals(run: RunPath) -> Iterator[Episode]:
-    """Every stored rehearsal of a run: cell by cell, by seed, in order.
+    """Yield every stored rehearsal of a run: cell by cell, by seed, in order.
 
-    Raises as `read_episodes` does.
+    Raises like `read_episodes`.
     """
     parts = RunFolder.open(run).parts()
     return (episode for part in parts for episode in part.rehearsals())
 
 
 def read_results(run: RunPath) -> pa.Table:
-    """The table of `RESULTS` of a run, in every track that an episode stands for.
+    """Return the table of `RESULTS` of a run, in every track that an episode represents.
 
-    Raises as `read_episodes` does.
+    Raises like `read_episodes`.
     """
     return results_of(RunFolder.open(run))
 
 
 def results_of(run: RunFolder) -> pa.Table:
-    """The same, of a run that is open already."""
+    """Return the same, for an open run."""
     tables = [RESULTS.empty_table()]
     decoded = stored = 0
     for part in run.parts():
@@ -83,7 +84,7 @@ def results_of(run: RunFolder) -> pa.Table:
 
 
 def in_every_track(results: pa.Table, manifest: Manifest) -> pa.Table:
-    """The rows of `RESULTS`, and once more for each other track that their cell stands for."""
+    """Return the rows of `RESULTS`, repeated for each other track that their cell represents."""
     others = [
         (*(cell[name] for name in _OF_A_CELL), track)
         for cell in manifest.cells

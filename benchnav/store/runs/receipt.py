@@ -1,7 +1,7 @@
 """Receipts: which runs were verified on this machine, by their content.
 
-A receipt lies in the user's own folder and not in the run, because what a run says of
-itself its author may have written. It holds for exactly this content, and for this
+A receipt lies in the user's own folder and not in the run, because the author of a run could
+write a false one. It is valid for exactly this content, and for this
 state of the code.
 """
 
@@ -17,9 +17,9 @@ from benchnav.system.user_folders import user_state
 
 
 def receipts_folder() -> Path:
-    """Return where they are kept: ``$XDG_STATE_HOME/benchnav/verified``.
+    """Return the folder of receipts: ``$XDG_STATE_HOME/benchnav/verified``.
 
-    Raises OSError where this user has no folder for it.
+    Raises OSError if this user has no such folder.
     """
     state = user_state()
     if state.path is None:
@@ -28,7 +28,7 @@ def receipts_folder() -> Path:
 
 
 def any_receipts() -> bool:
-    """Whether runs were verified on this machine at all."""
+    """Whether any run was verified on this machine."""
     try:
         return receipts_folder().is_dir()
     except OSError:
@@ -36,34 +36,34 @@ def any_receipts() -> bool:
 
 
 def keep_receipt(digest: str, unknown: Iterable[str]) -> None:
-    """A run with this content is verified, but for values of ``unknown`` metrics.
+    """Record that a run with this content is verified, except for values of ``unknown`` metrics.
 
-    Raises OSError where it cannot be written.
+    Raises OSError if it cannot be written.
     """
     path = receipts_folder() / f"{digest}.json"
     path.parent.mkdir(parents=True, exist_ok=True)
-    said = {
+    receipt = {
         "content": digest, "code": _code(), "unknown": sorted(unknown),
         "when": datetime.now(UTC).isoformat(timespec="seconds"),
     }  # fmt: skip
-    path.write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
+    path.write_text(json.dumps(receipt, indent=1) + "\n", encoding="utf-8")
 
 
 def drop_receipt(digest: str) -> None:
-    """It is not, after all."""
+    """Remove the receipt of this content."""
     (receipts_folder() / f"{digest}.json").unlink(missing_ok=True)
 
 
 def has_receipt(digest: str) -> bool:
-    """True where a run with this content was verified here, by this code and these metrics."""
+    """Whether a run with this content was verified here, by this code and these metrics."""
     try:
-        said = json.loads((receipts_folder() / f"{digest}.json").read_text(encoding="utf-8"))
-        installed = set(METRICS.names()) & set(said["unknown"])
-        return bool(said["content"] == digest and said["code"] == _code() and not installed)
+        receipt = json.loads((receipts_folder() / f"{digest}.json").read_text(encoding="utf-8"))
+        installed = set(METRICS.names()) & set(receipt["unknown"])
+        return bool(receipt["content"] == digest and receipt["code"] == _code() and not installed)
     except (OSError, ValueError, KeyError, TypeError):
         return False
 
 
 def _code() -> str:
-    """Of the version, and of the kernels that re-simulate."""
+    """Return the state of the code: the version, and the kernels that re-simulate."""
     return f"{versions().get('benchnav')} {kernels_name('benchnav')}"

@@ -1,4 +1,4 @@
-"""The folder that executing a suite leaves: append-only, resumable, one writer at a time."""
+"""The folder of a run: append-only, resumable, one writer at a time."""
 
 import json
 import os
@@ -30,40 +30,40 @@ class RunFolder:
 
     path: Path
     manifest: Manifest
-    packed: Path | None = None  # the file that it was unpacked from
+    packed: Path | None = None  # the pack from which it was unpacked
     sums: Mapping[str, str] | None = None  # of a pinned run: sha256 of every member, by name
 
     @property
     def shown(self) -> Path:
-        """What people know it by."""
+        """The path to show in messages."""
         return self.packed or self.path
 
     @classmethod
     def open(cls, path: RunPath) -> "RunFolder":
-        """An existing run, for reading.
+        """Return an existing run, for reading.
 
-        Raises UsageError where this is no path, StoreError where there is no run.
+        Raises UsageError if this is not a path, StoreError if there is no run.
         """
         return cls(run_path(path), load_manifest(path))
 
     @classmethod
     def start(cls, path: RunPath, manifest: Manifest) -> "RunFolder":
-        """Return a new run in an empty or missing folder, or the same suite's run, resumed.
+        """Return a new run in an empty or missing folder, or resume the same suite's run.
 
-        The run that is found may have other seeds: `extend` adds those that are asked for.
+        An existing run may have other seeds: `extend` adds new ones.
 
         Raises:
-            RunConflictError: the folder holds another suite's run, or something else, or another
+            RunConflictError: the folder holds another suite's run, or other files, or another
                 process begins a run there.
-            StoreError: the folder cannot be made.
+            StoreError: the folder cannot be created.
         """
         path = run_path(path)
         if not (path / MANIFEST).exists():
-            _refuse_other_things(path, manifest)  # before a lock is put there
+            _refuse_other_content(path, manifest)  # before a lock is created there
             _make(path)
             with locked(path):
-                if not (path / MANIFEST).exists():  # another process began at the same time
-                    _refuse_other_things(path, manifest)
+                if not (path / MANIFEST).exists():  # another process may begin at the same time
+                    _refuse_other_content(path, manifest)
                     _write(path / MANIFEST, manifest.dump())
                     return cls(path, manifest)
         held = load_manifest(path)
@@ -72,7 +72,7 @@ class RunFolder:
             raise RunConflictError(
                 f"{path} must be empty or hold a run of {manifest.name}."
                 f" It holds a run of {held.name}, begun {held.created}."
-                f" They differ in {', '.join(differing)}. Give another --out."
+                f" They differ in {', '.join(differing)}. Choose another --out."
             )
         return cls(path, held)
 
@@ -80,16 +80,16 @@ class RunFolder:
         """Add ``seeds`` to those of the run; only the process that holds the folder may call it.
 
         Raises:
-            RunConflictError: a gap would lie between them and the seeds of the run.
+            RunConflictError: there would be a gap between them and the seeds of the run.
             StoreError: the disk refuses.
         """
-        manifest = load_manifest(self.path)  # as it is now that no other process writes it
+        manifest = load_manifest(self.path)  # reread: no other process writes it now
         first, stop = manifest.suite["seeds"]
         if seeds.start > stop or seeds.stop < first:
             raise RunConflictError(
                 f"The seeds {seeds.start}:{seeds.stop} must touch those of the run in {self.path},"
-                f" {first}:{stop}. Ask for --seeds {min(first, seeds.start)}:"
-                f"{max(stop, seeds.stop)}, or give another --out."
+                f" {first}:{stop}. Use --seeds {min(first, seeds.start)}:"
+                f"{max(stop, seeds.stop)}, or choose another --out."
             )
         both = [min(first, seeds.start), max(stop, seeds.stop)]
         if both != [first, stop]:
@@ -98,9 +98,9 @@ class RunFolder:
         return RunFolder(self.path, manifest)
 
     def amend(self, reasons: Mapping[str, str]) -> "RunFolder":
-        """Say anew which cells are n/a: why, by key; a writer may, while it holds the folder.
+        """Set the reasons of n/a cells, by key; only for the process that holds the folder.
 
-        Raises StoreError where the disk refuses.
+        Raises StoreError if the disk refuses.
         """
         cells = tuple({**c, "reason": reasons.get(c["key"], "")} for c in self.manifest.cells)
         if cells == self.manifest.cells:
@@ -108,9 +108,9 @@ class RunFolder:
         return RunFolder(self.path, replace(self.manifest, cells=cells)).kept()
 
     def unguard(self, labels: Iterable[str]) -> "RunFolder":
-        """Say that episodes of ``labels`` run where nothing is guarded; a writer may.
+        """Record that episodes of ``labels`` run unguarded; only for the folder's writer.
 
-        Raises StoreError where the disk refuses.
+        Raises StoreError if the disk refuses.
         """
         both = tuple(dict.fromkeys((*self.manifest.unguarded, *labels)))
         if both == self.manifest.unguarded:
@@ -118,12 +118,12 @@ class RunFolder:
         return RunFolder(self.path, replace(self.manifest, unguarded=both)).kept()
 
     def kept(self) -> "RunFolder":
-        """Write the manifest. Raises StoreError where the disk refuses."""
+        """Write the manifest. Raises StoreError if the disk refuses."""
         _write(self.path / MANIFEST, self.manifest.dump())
         return self
 
     def cell(self, key: str) -> Path:
-        """The folder of one cell's parts, as the code made them that the manifest names."""
+        """Return the folder of one cell's parts, for the source that the manifest names."""
         source = self.manifest.source_of(self._labels.get(key, ""))
         return self.path / "parts" / (f"{key}.{source[:_SHORT]}" if source else key)
 
@@ -136,29 +136,29 @@ class RunFolder:
         return self._labels[key]
 
     def key_of(self, folder: Path) -> str:
-        """The key of the cell whose parts, by whatever code, stand in ``folder``; "" for none."""
+        """Return the key of the cell whose parts, of any source, are in ``folder``; "" for none."""
         name = folder.name
         key = name if name in self._labels else _SUFFIX.sub("", name)
         return key if key in self._labels else ""
 
     def drop_others(self, *kept: "RunFolder") -> None:
-        """Remove what code made that neither this nor ``kept`` name; a writer may."""
+        """Remove cells of sources that neither this run nor ``kept`` names; only for the writer."""
         for folder in self.path.glob("parts/*"):
             key = self.key_of(folder)
             if key and all(run.cell(key) != folder for run in (self, *kept)):
                 shutil.rmtree(folder)
 
     def parts(self) -> Iterator[Part]:
-        """Every sealed part, in the order of the manifest's cells, then of seeds."""
+        """Yield every sealed part, in the order of the manifest's cells, then of seeds."""
         for cell in self.manifest.cells:
             if not cell["reason"]:
                 yield from self.parts_in(cell)
 
     def parts_in(self, cell: Mapping[str, Any]) -> list[Part]:
-        """The parts of one cell of the manifest, by seed, whose rows must be of that cell.
+        """Return the parts of one manifest cell, by seed; their rows must belong to that cell.
 
-        Of a pinned run those that were there then. Raises CorruptPartError where the manifest
-        does not say of what the rows must be.
+        For a pinned run, these are the pinned parts. Raises CorruptPartError if the manifest
+        does not identify the rows of the cell.
         """
         folder = self.cell(cell["key"])
         parts, seals = parts_of(folder), dict[str, str]()
@@ -173,45 +173,45 @@ class RunFolder:
             of = membership(self.manifest, cell, seals)
         except (KeyError, TypeError, ValueError, AttributeError) as error:
             raise CorruptPartError(
-                f"{self.shown / MANIFEST} must say of what a cell's rows are. It does not: {error}."
+                f"{self.shown / MANIFEST} must identify the rows of a cell. It does not: {error}."
             ) from error
         return [replace(part, membership=of) for part in parts]
 
     def done(self, key: str) -> set[int]:
-        """The seeds of a cell that are stored. Raises CorruptPartError where a part is damaged."""
+        """Return the stored seeds of a cell. Raises CorruptPartError if a part is damaged."""
         return {seed for span in self.held(key) for seed in range(*span)}
 
     def held(self, key: str) -> list[Span]:
-        """The spans of seeds of a cell that are stored, part by part.
+        """Return the stored spans of seeds of a cell, part by part.
 
-        Raises CorruptPartError where a part is damaged.
+        Raises CorruptPartError if a part is damaged.
         """
         parts = parts_of(self.cell(key))
         for part in parts:
             part.check()
         return [(part.first, part.stop) for part in parts]
 
-    def wanted(self) -> Iterator[tuple[str, list[Span]]]:
-        """(key, spans of seeds) of the cells that can be run."""
+    def planned(self) -> Iterator[tuple[str, list[Span]]]:
+        """Yield (key, spans of seeds) of the cells that can be run."""
         whole = [self.manifest.suite["seeds"]]
         for cell in self.manifest.cells:
             if not cell["reason"]:
                 yield cell["key"], [(first, stop) for first, stop in cell.get("seeds", whole)]
 
     def missing(self) -> Iterator[tuple[str, list[Span]]]:
-        """(key, spans of seeds) of the cells that can be run and are not stored whole.
+        """Yield (key, missing spans of seeds) of the cells that can be run and are incomplete.
 
-        Raises CorruptPartError where a part is damaged.
+        Raises CorruptPartError if a part is damaged.
         """
-        for key, seeds in self.wanted():
-            if lacking := without(seeds, self.held(key)):
-                yield key, lacking
+        for key, seeds in self.planned():
+            if missing := without(seeds, self.held(key)):
+                yield key, missing
 
     @contextmanager
     def writing(self) -> Iterator["RunFolder"]:
-        """Hold the folder as its only writer, and yield it with the manifest that it has then.
+        """Hold the folder as its only writer, and yield it with the current manifest.
 
-        Leftovers are removed before and after. Raises RunConflictError where another process
+        Leftovers are removed before and after. Raises RunConflictError if another process
         writes it.
         """
         with locked(self.path):
@@ -231,11 +231,11 @@ class RunFolder:
                     path.unlink()
 
 
-def _refuse_other_things(path: Path, manifest: Manifest) -> None:
+def _refuse_other_content(path: Path, manifest: Manifest) -> None:
     if path.exists() and (not path.is_dir() or not _is_free(path)):
         raise RunConflictError(
             f"{path} must be an empty folder or a run of {manifest.name}."
-            " It holds something that is not a run. Give another --out."
+            " It has other content. Choose another --out."
         )
 
 
@@ -243,12 +243,12 @@ def _make(path: Path) -> None:
     try:
         path.mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+        raise StoreError(f"{path} is not writable: {error.strerror}.") from error
 
 
 def _is_free(folder: Path) -> bool:
     names = {path.name for path in folder.iterdir()}
-    if MANIFEST in names:  # since another process has begun
+    if MANIFEST in names:  # another process began a run meanwhile
         return True
     return all(name in LOCKS or name.startswith(TEMPORARY) for name in names)
 
@@ -262,15 +262,15 @@ def _write(path: Path, text: str) -> None:
             os.fsync(file.fileno())
         temporary.replace(path)
     except OSError as error:
-        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+        raise StoreError(f"{path} is not writable: {error.strerror}.") from error
 
 
-def _differing(held: Manifest, asked: Manifest) -> list[str]:
+def _differing(held: Manifest, new: Manifest) -> list[str]:
     """Return the keys of the suite in which the two differ."""
-    left, right = held.plan, asked.plan
+    left, right = held.plan, new.plan
     keys = dict.fromkeys([*right, *left])
     return [key for key in keys if _json(left.get(key)) != _json(right.get(key))]
 
 
 def _json(value: object) -> str:
-    return json.dumps(value, sort_keys=True)  # a tuple was stored as a list
+    return json.dumps(value, sort_keys=True)  # equal for a tuple and its stored list

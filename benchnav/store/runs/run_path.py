@@ -1,4 +1,4 @@
-"""The path of a run, as callers give it."""
+"""The path of a run, as a caller gives it."""
 
 import os
 from pathlib import Path
@@ -9,7 +9,7 @@ RunPath = str | os.PathLike[str]
 
 
 def run_path(given: RunPath) -> Path:
-    """The path of a run's folder or pack. Raises UsageError for anything but text or a path."""
+    """Return the path of a run's folder or pack. Raises UsageError for other types."""
     text = os.fspath(given) if isinstance(given, str | os.PathLike) else given
     if isinstance(text, str) and text and "\0" not in text:
         return Path(text)

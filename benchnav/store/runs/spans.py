@@ -1,13 +1,13 @@
-"""Seeds in few numbers, and which there are."""
+"""Sets of seeds as spans [first, stop]."""
 
 from collections.abc import Iterable
 
-SEED_DIGITS = 15  # at most, on the command line and in the names of files
-SEED_END = 10**SEED_DIGITS - 1  # the last number that a range of seeds may end before
+SEED_DIGITS = 15  # at most, on the command line and in file names
+SEED_END = 10**SEED_DIGITS - 1  # largest end of a range of seeds
 
 
 def spans(seeds: Iterable[int]) -> list[list[int]]:
-    """[first, stop] of every run of consecutive seeds, sorted."""
+    """Return [first, stop] of every run of consecutive seeds, sorted."""
     found: list[list[int]] = []
     for seed in sorted(seeds):
         if found and found[-1][1] == seed:
@@ -23,12 +23,12 @@ Spans = Iterable[Span]
 """Sorted by first."""
 
 
-def without(wanted: Spans, held: Spans) -> list[Span]:
-    """Return the spans of what is in ``wanted`` and not in ``held``, whose spans may overlap."""
+def without(whole: Spans, held: Spans) -> list[Span]:
+    """Return the spans of ``whole`` that are not in ``held``, whose spans may overlap."""
     left: list[Span] = []
     taken = iter(held)
     first_held, stop_held = next(taken, (SEED_END, SEED_END))
-    for first, stop in wanted:
+    for first, stop in whole:
         while first < stop:
             if stop_held <= first:
                 first_held, stop_held = next(taken, (SEED_END, SEED_END))
@@ -43,7 +43,7 @@ def without(wanted: Spans, held: Spans) -> list[Span]:
 
 
 def union(held: Spans) -> list[Span]:
-    """Return the spans of what is in any of ``held``, none of which touch."""
+    """Return the union of ``held`` as separate spans."""
     found: list[Span] = []
     for first, stop in held:
         if found and first <= found[-1][1]:
@@ -54,7 +54,7 @@ def union(held: Spans) -> list[Span]:
 
 
 def twice(held: Spans) -> list[Span]:
-    """Return the spans of what is in more than one of ``held``."""
+    """Return the spans that are in more than one span of ``held``."""
     overlaps: list[Span] = []
     end = -1
     for first, stop in held:
@@ -65,5 +65,5 @@ def twice(held: Spans) -> list[Span]:
 
 
 def count(of: Spans) -> int:
-    """Return how many seeds there are in spans that do not overlap."""
+    """Return the number of seeds in spans that do not overlap."""
     return sum(stop - first for first, stop in of)

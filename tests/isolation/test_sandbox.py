@@ -103,7 +103,7 @@ def test_a_program_that_cannot_be_started_ends_with_its_cause():
 def test_root_without_a_fence_is_refused(monkeypatch):
     monkeypatch.setattr(sandbox, "prefix", lambda: ())
     with pytest.raises(UsageError, match=r"Here they could .*Run as an ordinary user"):
-        sandbox.require_fence.__wrapped__()
+        sandbox.require_sandbox.__wrapped__()
     monkeypatch.setattr(sandbox, "prefix", lambda: sandbox._NAMESPACES)
     with pytest.raises(UsageError, match=r"Here they could write settings of the machine"):
-        sandbox.require_fence.__wrapped__()
+        sandbox.require_sandbox.__wrapped__()

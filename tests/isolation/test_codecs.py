@@ -7,9 +7,13 @@ import pytest
 
 from benchnav.arena.mesh import Mesh
 from benchnav.arena.solid import Kind
-from benchnav.isolation.briefing_codec import briefings_of, told
+from benchnav.isolation.briefing_codec import decode_briefings, encode_briefings
 from benchnav.isolation.frame import HEAD, decode, encode, head
-from benchnav.isolation.observation_codec import maps_changed, observation_of, seen
+from benchnav.isolation.observation_codec import (
+    decode_changed_maps,
+    decode_observation,
+    encode_observation,
+)
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.randomness.agent_streams import agent_streams
@@ -87,18 +91,22 @@ def briefings():
 
 def test_briefings_come_back():
     rows = np.array([3, 0, 7, 1])
-    got = through(told(briefings(), rows))
+    got = through(encode_briefings(briefings(), rows))
     assert got["rows"].tolist() == rows.tolist()
-    same(tuple(briefings()), tuple(briefings_of(got)), "briefings")
+    same(tuple(briefings()), tuple(decode_briefings(got)), "briefings")
 
 
 def test_briefings_without_rehearsals_or_maps_come_back():
     plain = [replace(b, map=None, rehearsals=()) for b in briefings()]
-    same(tuple(plain), tuple(briefings_of(through(told(plain, np.arange(4))))), "briefings")
+    same(
+        tuple(plain),
+        tuple(decode_briefings(through(encode_briefings(plain, np.arange(4))))),
+        "briefings",
+    )
 
 
 def test_maps_are_read_only_there_too():
-    got = briefings_of(through(told(briefings(), np.arange(4))))
+    got = decode_briefings(through(encode_briefings(briefings(), np.arange(4))))
     with pytest.raises(ValueError, match="read-only"):
         got[2].map.solids[0].loops[0][0, 0] = 5.0
     with pytest.raises(ValueError, match="read-only"):
@@ -106,7 +114,10 @@ def test_maps_are_read_only_there_too():
 
 
 def test_generators_draw_and_spawn_alike():
-    here, there = briefings()[1], briefings_of(through(told(briefings(), np.arange(4))))[1]
+    here, there = (
+        briefings()[1],
+        decode_briefings(through(encode_briefings(briefings(), np.arange(4))))[1],
+    )
     assert here.rng.normal(size=5).tolist() == there.rng.normal(size=5).tolist()
     children = zip(agent_streams(here), agent_streams(there), strict=True)
     assert all(a.random() == b.random() for a, b in children)
@@ -129,13 +140,13 @@ def test_observations_come_back(needs):
     for observation in observations_of(worlds, needs):
         shown = replace(observation, maps=tuple(maps()[:3]))
         held = dict(zip(shown.rows.tolist(), shown.maps, strict=True))
-        same(shown, observation_of(through(seen(shown, ())), held), "observation")
+        same(shown, decode_observation(through(encode_observation(shown, ())), held), "observation")
 
 
 def test_maps_are_sent_where_they_changed_alone():
     observation = next(iter(observations_of((scene(1, 3), scene(2, 5)), frozenset())))
     shown = replace(observation, maps=tuple(maps()[2:]))
-    assert maps_changed(through(seen(shown, ()))) == {}
-    got = maps_changed(through(seen(shown, [1])))
+    assert decode_changed_maps(through(encode_observation(shown, ()))) == {}
+    got = decode_changed_maps(through(encode_observation(shown, [1])))
     assert list(got) == [int(shown.rows[1])]
     same(shown.maps[1], got[int(shown.rows[1])], "map")
