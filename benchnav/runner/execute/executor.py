@@ -1,8 +1,8 @@
-"""Executes tasks in local processes, and survives what evaluated code does there.
+"""The execution of tasks in local worker processes, which may crash or hang.
 
-Each core has a `Desk`: a worker, which plays the tasks of one entry and is replaced for the
-next, and a measurer, in which no evaluated code runs. Who fails is charged only once a task of
-one seed failed in a process of its own.
+A pool has one `WorkerSlot` per core: a worker, which runs the tasks of one navigator and is
+replaced for the next one, and a measurer, which never runs code of a navigator. A navigator is
+charged with a failure only after a task of a single seed failed in a process of its own.
 """
 
 import os
@@ -17,35 +17,37 @@ from typing import Any
 from benchnav.plugins import Registration, registrations
 from benchnav.processes.fork_server import fork_server
 from benchnav.processes.process_tree import wait_for_end
-from benchnav.runner.execute.desk import Desk, Fault
 from benchnav.runner.execute.progress import Progress
+from benchnav.runner.execute.task_failure import TaskFailure
+from benchnav.runner.execute.worker_slot import WorkerSlot
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.task import Outcome, Task, work
 from benchnav.store.parts.part import Part
 from benchnav.store.parts.part_writer import discard
 
 Finished = tuple[Task, Outcome]
-_ROOM = 16 << 20  # bytes: more than the episodes of most tasks
-GOODBYE = 2.0  # [s] for killed processes to let go of their files
-LOOK = 0.1  # [s] between two looks at the workers' calls and memory
+_MIN_FREE_BYTES = 16 << 20  # more than the episodes of most tasks
+EXIT_TIMEOUT = 2.0  # [s] for killed processes to close their files
+CHECK_INTERVAL = 0.1  # [s] between two checks of the workers' calls and memory
 
 
 def execute(
     tasks: Sequence[Task], workers: int, progress: Progress, limits: Limits
 ) -> Generator[Finished, None, None]:
-    """Run every task; yields each as it is stored, in no promised order.
+    """Run tasks, and yield each one after it is stored. The order is not defined.
 
     Args:
-        tasks: in the order in which they are begun, but that a worker stays with an entry.
-        workers: processes; 0 runs in this one, where nothing survives what a navigator does
-            to its process, and no limit holds.
-        progress: is told of every finished episode.
-        limits: what a navigator may take.
+        tasks: in the order in which they start, except that a worker prefers tasks of the
+            navigator that it already runs.
+        workers: the number of processes; 0 runs the tasks in this process, without limits and
+            without protection against crashes.
+        progress: is updated after every finished episode.
+        limits: of time and memory.
 
     Raises:
-        BenchnavError: what a task raised. Everything that was yielded is stored.
+        BenchnavError: a task raised it. Every task that was yielded is stored.
 
-    Close it to dismiss the workers where it is not exhausted.
+    Close the generator to stop the workers early.
     """
     if workers == 0:
         for task in tasks:
@@ -54,128 +56,129 @@ def execute(
             progress.finish(0)
             yield task, outcome
         return
-    crew = Crew(min(workers, len(tasks)), progress, limits)
+    pool = WorkerPool(min(workers, len(tasks)), progress, limits)
     try:
-        yield from crew.run(tasks)
+        yield from pool.run(tasks)
     finally:
-        crew.dismiss()
+        pool.close()
 
 
 @dataclass
-class Crew:
-    """Desks that stay for one batch of tasks after the other."""
+class WorkerPool:
+    """Worker slots, which are kept between batches of tasks."""
 
     size: int
     progress: Progress
     limits: Limits
-    known: Iterable[Registration] | None = None  # None: what was registered in this process
+    registrations: Iterable[Registration] | None = None  # None: those of this process
     pending: deque[Task] = field(default_factory=deque)
-    suspects: deque[Task] = field(default_factory=deque)
-    """Tasks during which a process was killed by who knows whom: they run while no other does."""
-    desks: list[Desk] = field(default_factory=list)
-    looked: float = 0.0
+    exclusive_tasks: deque[Task] = field(default_factory=deque)
+    """Tasks whose process was killed from outside, and which now run while no other task does."""
+    slots: list[WorkerSlot] = field(default_factory=list)
+    checked_at: float = 0.0
 
     def run(self, tasks: Sequence[Task]) -> Iterator[Finished]:
-        """Every task, as `execute`."""
+        """Run tasks, as `execute` does."""
         self.pending.extend(tasks)
-        self.looked = monotonic()
-        known = tuple(registrations() if self.known is None else self.known)
-        while len(self.desks) < self.size:
-            self.desks.append(Desk(self.limits, known))
-        while self.pending or self.suspects or self._busy():
+        self.checked_at = monotonic()
+        known = registrations() if self.registrations is None else self.registrations
+        while len(self.slots) < self.size:
+            self.slots.append(WorkerSlot(self.limits, tuple(known)))
+        while self.pending or self.exclusive_tasks or self._busy():
             self._assign()
-            files = {file: desk for desk in self.desks for file in desk.files()}
+            files = {file: slot for slot in self.slots for file in slot.files()}
             fork_server().look()
-            ready, _, _ = select([*files, fork_server().fileno()], [], [], LOOK)
-            for desk in dict.fromkeys(files[file] for file in ready if file in files):
-                for message in desk.hear():
-                    yield from self._heed(desk, message)
-            self._look()
+            ready, _, _ = select([*files, fork_server().fileno()], [], [], CHECK_INTERVAL)
+            for slot in dict.fromkeys(files[file] for file in ready if file in files):
+                for message in slot.messages():
+                    yield from self._handle(slot, message)
+            self._check_limits()
 
-    def dismiss(self) -> None:
-        """Stop everybody at once; unfinished parts are thrown away."""
-        ending = [pid for desk in self.desks for pid in desk.processes()]
-        for desk in self.desks:
-            if desk.task is not None:
-                discard(_part(desk.task))
-            desk.close()
-        self.desks.clear()
-        wait_for_end(ending, GOODBYE)
+    def close(self) -> None:
+        """Stop all processes at once, and discard unfinished parts."""
+        ending = [pid for slot in self.slots for pid in slot.processes()]
+        for slot in self.slots:
+            if slot.task is not None:
+                discard(_part(slot.task))
+            slot.close()
+        self.slots.clear()
+        wait_for_end(ending, EXIT_TIMEOUT)
 
-    def _busy(self) -> list[Desk]:
-        return [desk for desk in self.desks if desk.task is not None]
+    def _busy(self) -> list[WorkerSlot]:
+        return [slot for slot in self.slots if slot.task is not None]
 
     def _assign(self) -> None:
-        """Give tasks to who has none; a suspect is at work alone."""
-        if self.suspects:
+        """Start tasks in free slots; an exclusive task waits until all slots are free."""
+        if self.exclusive_tasks:
             if not self._busy():
-                self._begin(self.desks[0], self.suspects.popleft())
+                self._start(self.slots[0], self.exclusive_tasks.popleft())
             return
-        for desk in self.desks:
-            if desk.task is None and self.pending:
-                self._begin(desk, self._chosen(desk))
+        for slot in self.slots:
+            if slot.task is None and self.pending:
+                self._start(slot, self._next_task(slot))
 
-    def _chosen(self, desk: Desk) -> Task:
-        """Of who is there already; else of whom nobody works at; else the next."""
-        others = {other.company for other in self.desks if other.task is not None}
-        ranks = ((desk.company != t.company, t.company in others) for t in self.pending)
+    def _next_task(self, slot: WorkerSlot) -> Task:
+        """Prefer a task of the same navigator, then of one that no other slot runs."""
+        others = {other.process_key for other in self.slots if other.task is not None}
+        ranks = ((slot.process_key != t.process_key, t.process_key in others) for t in self.pending)
         place = min(enumerate(ranks), key=lambda one: one[1])[0]
         task = self.pending[place]
         del self.pending[place]
         return task
 
-    def _begin(self, desk: Desk, task: Task) -> None:
-        self.progress.start(id(desk), task.load)
-        desk.play(task)
+    def _start(self, slot: WorkerSlot, task: Task) -> None:
+        self.progress.start(id(slot), task.load)
+        slot.start(task)
 
-    def _heed(self, desk: Desk, message: Any) -> Iterator[Finished]:
-        if isinstance(message, Fault):
-            self._fail(desk, message)
+    def _handle(self, slot: WorkerSlot, message: Any) -> Iterator[Finished]:
+        if isinstance(message, TaskFailure):
+            self._fail(slot, message)
         elif isinstance(message, int):
             self.progress.advance(message)
         else:
-            task = desk.done()
-            self.progress.finish(id(desk))
+            task = slot.finish()
+            self.progress.finish(id(slot))
             yield task, message
 
-    def _look(self) -> None:
-        """Stop who is beyond a limit."""
+    def _check_limits(self) -> None:
+        """Stop every process that exceeds a limit."""
         now = monotonic()
-        elapsed = now - self.looked
-        if elapsed < LOOK:
+        elapsed = now - self.checked_at
+        if elapsed < CHECK_INTERVAL:
             return
-        self.looked = now
-        for desk in self.desks:
-            fault = desk.look(elapsed)
-            if fault is not None:
-                self._fail(desk, fault)
+        self.checked_at = now
+        for slot in self.slots:
+            failure = slot.check_limits(elapsed)
+            if failure is not None:
+                self._fail(slot, failure)
 
-    def _fail(self, desk: Desk, fault: Fault) -> None:
-        """A task failed: find the one seed for which it does, and charge only that."""
-        task = desk.drop()
+    def _fail(self, slot: WorkerSlot, failure: TaskFailure) -> None:
+        """Repeat a failed task seed by seed, and charge the navigator with single seeds only."""
+        task = slot.abort()
         discard(_part(task))
-        self.progress.advance(-desk.counted)
-        self.progress.drop(id(desk))
-        if fault.own or task.charge:  # no code of a navigator can have done it
-            raise fault.error()
-        if fault.name == "StoreError" and not _has_room(task):
-            raise fault.error()
-        queue = self.suspects if fault.sudden else self.pending
+        self.progress.advance(-slot.reported)
+        self.progress.drop(id(slot))
+        if failure.internal or task.forced_failure:  # no navigator can have caused it
+            raise failure.error()
+        if failure.error_name == "StoreError" and not _has_space(task):
+            raise failure.error()
+        queue = self.exclusive_tasks if failure.killed_externally else self.pending
         if len(task.seeds) > 1:
-            alone = [replace(each, suspect=fault.sudden) for each in task.alone()]
-            queue.extendleft(reversed(alone))
-        elif not fault.fresh or (fault.sudden and not task.suspect):
-            queue.appendleft(replace(task, fresh=True, suspect=fault.sudden))
+            exclusive = failure.killed_externally
+            singles = [replace(each, exclusive=exclusive) for each in task.one_by_one()]
+            queue.extendleft(reversed(singles))
+        elif not failure.new_process or (failure.killed_externally and not task.exclusive):
+            queue.appendleft(replace(task, new_process=True, exclusive=failure.killed_externally))
         else:
-            charge = f"the navigator's process {fault.cause}"
-            self.pending.appendleft(replace(task, charge=charge))
+            reason = f"the navigator's process {failure.cause}"
+            self.pending.appendleft(replace(task, forced_failure=reason))
 
 
-def _has_room(task: Task) -> bool:
-    """Whether this process can write where a worker could not."""
+def _has_space(task: Task) -> bool:
+    """Whether this process can write to the folder in which a worker could not."""
     try:
         with TemporaryFile(dir=task.folder) as file:
-            file.write(bytes(_ROOM))
+            file.write(bytes(_MIN_FREE_BYTES))
             file.flush()
             os.fsync(file.fileno())
     except OSError:

@@ -1,4 +1,4 @@
-"""Tasks that this process alone can run: their plugins were registered in it, in a notebook say."""
+"""Cells that only this process can run, because it registered their plugins (as notebooks do)."""
 
 from collections.abc import Iterable
 from contextlib import suppress
@@ -14,39 +14,39 @@ from benchnav.source.parts import live_object, places_of
 
 
 def bound_here(cells: Iterable[Cell], elsewhere: bool) -> list[Cell]:
-    """Return the cells that no worker process can run; ``elsewhere``: on other machines."""
+    """Return the cells that worker processes cannot run; ``elsewhere``: on other machines."""
     return [cell for cell in cells if any(_is_bound(p, elsewhere) for p in _places(cell))]
 
 
 def refuse_limits_here(cells: Iterable[Cell], limited: bool) -> None:
-    """Raise UsageError where a limit is asked for and a cell runs in this process."""
+    """Raise UsageError if there is a limit and a cell runs in this process."""
     labels = dict.fromkeys(cell.entry.label for cell in cells)
     if labels and limited:
         raise UsageError(
-            "A limit must have a worker process to hold in. Got one with"
-            f" {', '.join(map(repr, labels))}, known in this process alone: leave the limit out,"
-            " or move the class into a module."
+            f"A limit cannot be enforced for {', '.join(map(repr, labels))}: the class is known"
+            " only in this process, and limits hold in worker processes. Leave the limit out, or move"
+            " the class into a module."
         )
 
 
 def refuse_edited(cells: Iterable[Cell]) -> None:
-    """Raise UsageError where this process would run code that is no longer what the files hold."""
+    """Raise UsageError if this process would run code that differs from its source files."""
     for cell in {cell.entry.label: cell for cell in cells}.values():
         for place in cell.entry.places:
-            with suppress(Exception, SystemExit):  # making it says why
+            with suppress(Exception, SystemExit):  # the construction reports the reason
                 load_by_module(place)
         edited = cell.entry.edited or source_of(cell.entry).edited
         if edited:
             module = edited[0]
             raise UsageError(
-                f"What runs in this process must be what its files hold. {module} was edited after"
-                f" this process had imported it, and {cell.entry.label!r} would run as it was."
-                f" Restart Python, or call importlib.reload({module}) and load the suite again."
+                f"{module} was edited after this process imported it, so {cell.entry.label!r} would"
+                " run old code. Restart Python, or call"
+                f" importlib.reload({module}) and load the suite again."
             )
 
 
 def _places(cell: Cell) -> tuple[str, ...]:
-    """Of the evaluated navigator, and of those that drive the scenario's other teams."""
+    """Return the places of the evaluated navigator and of the scenario's drivers."""
     others = (place for spec in cell.scenario.driver_specs for place in places_of(_full(spec)))
     return (*cell.entry.places, *others)
 

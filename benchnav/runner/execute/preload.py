@@ -1,4 +1,4 @@
-"""What a fork server loads before it forks: the modules of a run, and the kernels."""
+"""Loads the modules and kernels of a run in a fork server, before it forks."""
 
 import numpy as np
 
@@ -19,8 +19,8 @@ _DECISIONS = 3
 _SCENARIO = """
 name: warm/crowd
 version: 1
-title: Everything that a run needs, once
-description: Few agents among what stands and what moves
+title: Uses every kernel of a run once
+description: Few agents among static and dynamic obstacles
 bounds: [-10, -10, 10, 10]
 static:
   - {shape: {type: box, width: 1}, count: 2, region: {type: anywhere, margin: 1}}
@@ -30,7 +30,7 @@ dynamic:
     region: {type: anywhere, margin: 1}
     law: {type: back-and-forth, length: 3, speed: 1}
 teams:
-  - name: few
+  - name: agents
     role: leader
     count: 3
     radius: 0.5
@@ -62,5 +62,5 @@ def _episode(world: World) -> Episode:
         executed = simulation.step(command, np.zeros(simulation.present.shape, np.bool_))
         recorder.record_commands(command, executed, 0.0)
         recorder.record_state()
-    assignment = Assignment("warm/crowd@1", "", "train", "known", "nobody", "nobody")
+    assignment = Assignment("warm/crowd@1", "", "train", "known", "none", "none")
     return recorder.episodes([assignment.identity(0)], 0.0, "", True, [()])[0]

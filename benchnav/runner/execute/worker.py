@@ -1,7 +1,7 @@
-"""A worker process: plays tasks of one entry, and leaves their episodes to be measured.
+"""A worker process: runs tasks of one navigator, and writes episodes that are measured elsewhere.
 
-Messages to the parent: {"kind": "played", …}, {"kind": "refused", "name", "text"} of a
-BenchnavError, {"kind": "crashed", "text"}.
+Messages to the parent: {"kind": "played", …}, {"kind": "refused", "name", "text"} for a
+BenchnavError, {"kind": "crashed", "text"} for any other exception.
 """
 
 import pickle
@@ -26,24 +26,24 @@ from benchnav.system.streams import message_stream, prepare_streams
 
 
 def serve(channel: Channel, notes: Notes) -> None:
-    """Work until the channel closes. The first message is what was registered elsewhere.
+    """Run tasks until the channel closes. The first message holds the registrations of the parent.
 
-    ``notes`` are shared with the parent, who reads from them which call lasts.
+    ``notes`` are shared with the parent, which measures the calls of navigators with them.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the parent's to handle
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
     prepare_streams()
     sys.stdout = message_stream(sys.stdout)  # what a navigator prints goes to stderr
-    _go_first()
+    _prefer_to_be_killed()
     write_to(notes, getpid())
     check = SourceCheck()
-    registrations = pickle.loads(channel.receive_bytes())  # noqa: S301 - of who started this
+    registrations = pickle.loads(channel.receive_bytes())  # noqa: S301 - from the parent
     while True:
         try:
             task: Task = pickle.loads(channel.receive_bytes())  # noqa: S301
         except EOFError:
             return
         channel.send(_answer(task, check, registrations))
-        registrations = registrations if task.charge else ()
+        registrations = registrations if task.forced_failure else ()
         sys.stdout.flush()
 
 
@@ -52,7 +52,7 @@ def _answer(
 ) -> dict[str, Any]:
     beat()
     try:
-        if not task.charge:
+        if not task.forced_failure:
             check.require_same(task.cell.entry)
             if registrations:
                 with calling("__init__"):
@@ -61,12 +61,12 @@ def _answer(
     except BenchnavError as error:
         return {"kind": "refused", "name": type(error).__name__, "text": plain(error)}
     except Exception as error:
-        # of benchnav's own code: what a navigator raises is caught where it is called
+        # raised by benchnav: exceptions of a navigator are caught at its call
         text = bounded(traceback.format_exc())
         return {"kind": "crashed", "name": type(error).__name__, "text": text}
 
 
-def _go_first() -> None:
-    """Where memory ends, Linux shall end a worker and not its parent."""
+def _prefer_to_be_killed() -> None:
+    """Make Linux end this worker, and not its parent, if memory runs out."""
     with suppress(OSError):
         Path("/proc/self/oom_score_adj").write_text("1000")

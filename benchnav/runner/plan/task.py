@@ -38,11 +38,11 @@ class Task:
     folder: Path  # of the cell
     first: int
     stop: int
-    charge: str = ""  # a reason for which every episode fails without running
+    forced_failure: str = ""  # a reason for which every episode fails without running
     salt: str = ""  # of the run
     probe: int = -1  # seed in whose world latency is taken; one for each cell
-    fresh: bool = False  # whether it must have a process of its own
-    suspect: bool = False  # whether it must run while no other does
+    new_process: bool = False  # whether it must have a process of its own
+    exclusive: bool = False  # whether it must run while no other does
 
     @property
     def assignment(self) -> Assignment:
@@ -55,7 +55,7 @@ class Task:
         return range(self.first, self.stop)
 
     @property
-    def company(self) -> str:
+    def process_key(self) -> str:
         """Who may share a process: the code of one entry, and of those that drive beside it."""
         entry = self.cell.entry
         return repr((entry.label, entry.hash, entry.source_hash, self.cell.scenario.driver_specs))
@@ -66,14 +66,14 @@ class Task:
         return Load(self.cell.entry.label, self.cell.effort * len(self.seeds))
 
     @property
-    def most_calls(self) -> int:
+    def max_calls(self) -> int:
         """How often navigators may be called for it, whoever fails, and worlds be built."""
         cell, seeds = self.cell, len(self.seeds)
         drivers = 1 + len(cell.scenario.driver_specs)
         passes = (1 + cell.entry.rehearsal) * seeds * (seeds.bit_length() + 2) + 1
         return drivers * passes * (cell.scenario.clock.steps + 10) + 10 * seeds + 100
 
-    def alone(self) -> list["Task"]:
+    def one_by_one(self) -> list["Task"]:
         """The same, seed by seed."""
         return [replace(self, first=seed, stop=seed + 1) for seed in self.seeds]
 
@@ -159,7 +159,7 @@ def _play(task: Task) -> Played:
     worlds = [(seed, _built(cell, seed)) for seed in task.seeds]
     unled: list[tuple[int, str]] = []
     with EpisodeFiles(Part(task.folder, task.first, task.stop)) as files:
-        for batch in perform(task.assignment, worlds, task.charge):
+        for batch in perform(task.assignment, worlds, task.forced_failure):
             beat()
             rehearsals = [e for performance in batch for e in performance.rehearsed.episodes]
             files.add(_timed(task, batch), rehearsals)

@@ -1,8 +1,7 @@
-"""Executes tasks on a Ray cluster: the same parts as the local executor, and the same bits.
+"""The execution of tasks on a Ray cluster: bit-equal parts to those of the local executor.
 
-Each core of the cluster has a `Foreman`. Parts travel back through Ray's object store, so
-that no folder is shared. A machine that dies takes its foremen with it; what they were
-at work on is given to others.
+Each core of the cluster runs a `RayWorker` actor. Parts return through Ray's object store, so no
+shared folder is needed. If a machine fails, the tasks of its actors are given to other actors.
 """
 
 import os
@@ -21,15 +20,15 @@ from benchnav.runner.execute.executor import Finished
 from benchnav.runner.execute.progress import Progress
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.task import Task
-from benchnav.runner.ray.ray_worker import Delivery, Foreman, Refusal
+from benchnav.runner.ray.ray_worker import Delivery, RayWorker, Refusal
 from benchnav.store.parts.part import Part
 from benchnav.store.parts.part_writer import receive
 from benchnav.store.runs.manifest import versions
 from benchnav.threads import core_count
 
-LOSSES = 5  # machines that may die over one task
-GOODBYE = 5.0  # [s] for foremen to leave
-PATIENCE = 600.0  # [s] without any foreman
+MAX_LOSSES = 5  # machines that may fail during one task
+EXIT_TIMEOUT = 5.0  # [s] for actors to end
+START_TIMEOUT = 600.0  # [s] without any usable actor
 
 
 def execute_on_ray(
@@ -39,97 +38,97 @@ def execute_on_ray(
     limits: Limits,
     address: str = "",
 ) -> Generator[Finished, None, None]:
-    """As `benchnav.runner.execute.executor.execute`, on a Ray cluster.
+    """Run tasks like `benchnav.runner.execute.executor.execute`, on a Ray cluster.
 
     Args:
-        tasks: in the order in which they are begun.
-        workers: foremen; None: one for each core of the cluster.
-        progress: is told of every stored task.
-        limits: what a navigator may take of its worker.
+        tasks: in the order in which they start.
+        workers: the number of actors; None: one for each core of the cluster.
+        progress: is updated after every stored task.
+        limits: of time and memory, for each worker process.
         address: of the cluster, as Ray writes them (``auto``, ``host:6379``, ``ray://host:10001``);
-            "": one that is started on this machine, and ends with the run.
+            "": a cluster that is started on this machine and ends with the run.
 
     Raises:
         MissingExtraError: Ray is not installed.
-        BenchnavError: no cluster at that address; a machine has other versions; what a task
-            raised. Everything that was yielded is stored.
+        BenchnavError: there is no cluster at that address, a machine has other versions, or a
+            task raised it. Every task that was yielded is stored.
     """
     with _cluster(address, workers) as ray:
         cores = int(ray.cluster_resources().get("CPU", 0))
-        site = _Site(ray, progress, limits, deque(tasks))
+        jobs = _RayJobs(ray, progress, limits, deque(tasks))
         try:
-            yield from site.run(min(workers or max(cores, 1), len(tasks)))
+            yield from jobs.run(min(workers or max(cores, 1), len(tasks)))
         finally:
-            site.dismiss()
+            jobs.close()
 
 
 @dataclass
-class _Site:
+class _RayJobs:
     ray: Any
     progress: Progress
     limits: Limits
     pending: deque[Task]
     waiting: dict[Any, tuple[Any, Task | None]] = field(default_factory=dict)
-    """What is to come → (foreman, what it works on; None: it introduces itself)."""
+    """Pending results → (actor, its task; None while it reports its versions)."""
     idle: list[Any] = field(default_factory=list)
     losses: Counter[tuple[str, int]] = field(default_factory=Counter)
     files: dict[str, Any] = field(default_factory=dict)  # of scenarios, by hash
 
-    def run(self, foremen: int) -> Iterator[Finished]:
-        for _ in range(foremen):
-            self._hire()
-        heard = monotonic()
+    def run(self, actors: int) -> Iterator[Finished]:
+        for _ in range(actors):
+            self._start_actor()
+        active = monotonic()
         while self.pending or any(task for _, task in self.waiting.values()):
             ready, _ = self.ray.wait(list(self.waiting), num_returns=1, timeout=5.0)
             busy = any(task for _, task in self.waiting.values())
-            heard = monotonic() if ready or busy else heard
-            if monotonic() - heard > PATIENCE:
+            active = monotonic() if ready or busy else active
+            if monotonic() - active > START_TIMEOUT:
                 raise BenchnavError(
-                    f"A Ray cluster must have a machine that works. None came in {PATIENCE:g} s;"
-                    " what is stored is safe, and the same --out goes on from there."
+                    f"No usable Ray worker appeared within {START_TIMEOUT:g} s. All stored episodes"
+                    " are kept; the same command with the same --out continues."
                 )
-            for promise in ready:
-                yield from self._heed(promise)
+            for result in ready:
+                yield from self._receive(result)
 
-    def dismiss(self) -> None:
-        """Stop everybody; unfinished parts are thrown away."""
-        leaving = [foreman.leave.remote() for foreman in self.idle]
-        if leaving:
-            self.ray.wait(leaving, num_returns=len(leaving), timeout=GOODBYE)
-        for foreman in [*self.idle, *(foreman for foreman, _ in self.waiting.values())]:
-            self.ray.kill(foreman)
+    def close(self) -> None:
+        """Stop all actors, and discard unfinished parts."""
+        ending = [actor.close.remote() for actor in self.idle]
+        if ending:
+            self.ray.wait(ending, num_returns=len(ending), timeout=EXIT_TIMEOUT)
+        for actor in [*self.idle, *(actor for actor, _ in self.waiting.values())]:
+            self.ray.kill(actor)
 
-    def _hire(self) -> None:
-        path = [*sys.path, str(current_folder())]  # a navigator may lie there: module:Class
-        foreman = self.ray.remote(num_cpus=1)(Foreman).remote(self.limits, path, registrations())
-        self.waiting[foreman.introduce.remote()] = foreman, None
+    def _start_actor(self) -> None:
+        path = [*sys.path, str(current_folder())]  # it may hold a navigator: module:Class
+        actor = self.ray.remote(num_cpus=1)(RayWorker).remote(self.limits, path, registrations())
+        self.waiting[actor.versions.remote()] = actor, None
 
-    def _heed(self, promise: Any) -> Iterator[Finished]:
-        foreman, task = self.waiting.pop(promise)
+    def _receive(self, result: Any) -> Iterator[Finished]:
+        actor, task = self.waiting.pop(result)
         try:
-            answer = self.ray.get(promise)
+            answer = self.ray.get(result)
         except self.ray.exceptions.RayTaskError as error:
-            raise RuntimeError(f"A foreman crashed:\n{error}") from error
+            raise RuntimeError(f"A Ray actor crashed:\n{error}") from error
         except self.ray.exceptions.RayError as error:
-            self._lose(foreman, task, error)
+            self._replace(actor, task, error)
             return
         if task is None:
             _refuse_other_versions(answer)
         elif isinstance(answer, Refusal):
             raise named(answer.name, answer.text)
         else:
-            self.progress.finish(id(foreman))
+            self.progress.finish(id(actor))
             yield from map(self._store, answer)
         if self.pending:
-            self._assign(foreman)
+            self._assign(actor)
         else:
-            self.idle.append(foreman)
+            self.idle.append(actor)
 
-    def _assign(self, foreman: Any) -> None:
+    def _assign(self, actor: Any) -> None:
         task = self.pending.popleft()
-        self.progress.start(id(foreman), task.load)
-        promise = foreman.work.remote(task, self._files(task))
-        self.waiting[promise] = foreman, task
+        self.progress.start(id(actor), task.load)
+        result = actor.work.remote(task, self._files(task))
+        self.waiting[result] = actor, task
 
     def _store(self, delivery: Delivery) -> Finished:
         task = delivery.task
@@ -138,26 +137,26 @@ class _Site:
         self.progress.advance(delivery.outcome.episodes)
         return task, delivery.outcome
 
-    def _lose(self, foreman: Any, task: Task | None, error: Exception) -> None:
-        """Its machine is gone, or cannot be reached: nobody is charged."""
-        self.ray.kill(foreman)
+    def _replace(self, actor: Any, task: Task | None, error: Exception) -> None:
+        """Give the task to another actor: the machine of this one failed or cannot be reached."""
+        self.ray.kill(actor)
         if task is not None:
-            self.progress.drop(id(foreman))
+            self.progress.drop(id(actor))
             key = task.cell.key, task.first
             self.losses[key] += 1
-            if self.losses[key] > LOSSES:
+            if self.losses[key] > MAX_LOSSES:
                 raise BenchnavError(
-                    f"A machine must live as long as a task lasts. {LOSSES + 1} died over seeds"
-                    f" {task.first} to {task.stop - 1} of {task.cell.key}. Ray says: {error}"
+                    f"{MAX_LOSSES + 1} machines failed while they ran seeds {task.first} to"
+                    f" {task.stop - 1} of {task.cell.key}. Message of Ray: {error}"
                 )
             self.pending.appendleft(task)
-        if self.pending and self.idle:  # a new one may have no core to begin on
+        if self.pending and self.idle:  # a new actor may not get a core
             self._assign(self.idle.pop())
         else:
-            self._hire()
+            self._start_actor()
 
     def _files(self, task: Task) -> Any:
-        """Of its scenario, by name; each goes to a machine once."""
+        """Return the files of its scenario, by name; each is sent to a machine once."""
         scenario = task.cell.scenario
         if scenario.hash not in self.files:
             found = {name: path.read_bytes() for name, path in scenario.named_files().items()}
@@ -169,15 +168,15 @@ def _refuse_other_versions(there: Mapping[str, str]) -> None:
     here = versions()
     names = sorted(n for n in {*here, *there} if here.get(n) != there.get(n))
     if names:
-        told = ", ".join(f"{n} {there.get(n, 'none')} for {here.get(n, 'none')}" for n in names)
+        found = ", ".join(f"{n} {there.get(n, 'none')} for {here.get(n, 'none')}" for n in names)
         raise BenchnavError(
-            f"All machines of a cluster must have the versions of this one. One has {told}."
+            f"All machines of a cluster must have the versions of this one. One has {found}."
         )
 
 
 @contextmanager
 def _cluster(address: str, workers: int | None) -> Iterator[Any]:
-    """Ray, connected; one that was connected before stays so."""
+    """Yield a connected Ray; a connection that existed before stays open."""
     os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")
     os.environ.setdefault("RAY_ACCEL_ENV_VAR_OVERRIDE_ON_ZERO", "0")
     try:
@@ -187,14 +186,16 @@ def _cluster(address: str, workers: int | None) -> Iterator[Any]:
     if ray.is_initialized():
         yield ray
         return
-    told: dict[str, Any] = {"log_to_driver": False, "logging_level": "ERROR"}
+    options: dict[str, Any] = {"log_to_driver": False, "logging_level": "ERROR"}
     if not address:
-        told |= {"num_cpus": workers or core_count(), "include_dashboard": False}
+        options |= {"num_cpus": workers or core_count(), "include_dashboard": False}
     try:
-        ray.init(address or "local", **told)
+        ray.init(address or "local", **options)
     except (ConnectionError, RuntimeError, ValueError, TimeoutError) as error:
         where = repr(address) if address else "this machine"
-        raise BenchnavError(f"A Ray cluster must be at {where}. Ray says: {error}") from error
+        raise BenchnavError(
+            f"There is no Ray cluster at {where}. Message of Ray: {error}"
+        ) from error
     try:
         yield ray
     finally:

@@ -1,4 +1,4 @@
-"""Runs tasks on another machine, in a worker of its own, and hands over what it wrote."""
+"""Runs tasks on another machine, in a worker process, and returns the files of their parts."""
 
 import sys
 from collections.abc import Mapping, Sequence
@@ -9,7 +9,7 @@ from tempfile import mkdtemp
 
 from benchnav.errors import BenchnavError
 from benchnav.plugins import Registration
-from benchnav.runner.execute.executor import Crew
+from benchnav.runner.execute.executor import WorkerPool
 from benchnav.runner.execute.progress import Progress
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.task import Outcome, Task
@@ -21,54 +21,54 @@ from benchnav.system.temporary_folder import TemporaryFolder
 
 @dataclass(frozen=True)
 class Delivery:
-    """A task, or the piece of one, that is done."""
+    """A finished task, or a finished piece of one."""
 
     task: Task
     outcome: Outcome
-    files: Mapping[str, bytes]  # of its part, by suffix; none where nothing was stored
+    files: Mapping[str, bytes]  # of its part, by suffix; empty if nothing was stored
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """What a task raised: a BenchnavError."""
+    """A BenchnavError that a task raised."""
 
     name: str
     text: str
 
 
-class Foreman:
-    """Has one worker, and does with it what the local executor does.
+class RayWorker:
+    """Runs tasks in one worker process, as the local executor does.
 
-    Navigators run in the worker: whatever they do, the foreman survives and charges them.
-    If it dies itself, its machine did, and nobody is to blame.
+    Navigators run in the worker process, so this actor survives their crashes and charges them.
+    If the actor itself dies, its machine failed, and no navigator is charged.
     """
 
     def __init__(
         self, limits: Limits, path: Sequence[str], registrations: Sequence[Registration] = ()
     ) -> None:
         sys.path += [folder for folder in path if folder not in sys.path]
-        main = sys.modules["__main__"]  # of who started this process: no worker is to run it
+        main = sys.modules["__main__"]  # the script that started Ray: no worker must run it
         main.__spec__, main.__file__ = None, None
         self._home = TemporaryFolder("ray")
         self._folders: dict[str, Path] = {}  # of scenarios' files, by hash
-        self._crew = Crew(1, Progress(), limits, registrations)
+        self._pool = WorkerPool(1, Progress(), limits, registrations)
 
-    def introduce(self) -> dict[str, str]:
-        """The versions here of what has a say in the numbers."""
+    def versions(self) -> dict[str, str]:
+        """Return the versions of the packages that affect results, on this machine."""
         return versions()
 
     def work(self, task: Task, files: Mapping[str, bytes]) -> list[Delivery] | Refusal:
-        """Run a task. ``files`` are those that its scenario names, for where they lack."""
+        """Run a task. ``files`` are those of its scenario, for machines that do not have them."""
         try:
             here = replace(task, folder=self._home.path / "parts" / task.cell.key)
-            finished = self._crew.run([self._staged(here, files)])
+            finished = self._pool.run([self._staged(here, files)])
             return [self._delivery(task, piece, outcome) for piece, outcome in finished]
         except BenchnavError as error:
             return Refusal(type(error).__name__, str(error))
 
-    def leave(self) -> None:
-        """Dismiss the worker, and leave nothing behind."""
-        self._crew.dismiss()
+    def close(self) -> None:
+        """Stop the worker process, and remove all files."""
+        self._pool.close()
         self._home.remove()
 
     def _delivery(self, asked: Task, piece: Task, outcome: Outcome) -> Delivery:
@@ -81,7 +81,7 @@ class Foreman:
         return Delivery(done, outcome, files)
 
     def _staged(self, task: Task, files: Mapping[str, bytes]) -> Task:
-        """The task, its scenario's files found here."""
+        """Return the task with a scenario whose files exist on this machine."""
         scenario = task.cell.scenario
         if all((scenario.folder / name).is_file() for name in files):
             return task

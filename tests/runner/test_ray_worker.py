@@ -1,4 +1,4 @@
-"""A foreman works with what it is sent, and hands over what was sealed."""
+"""A Ray worker runs tasks with the files that it is sent, and returns sealed parts."""
 
 import shutil
 import sys
@@ -11,7 +11,7 @@ from benchnav.errors import CorruptPartError
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.plan.task import Task
-from benchnav.runner.ray.ray_worker import Foreman, Refusal
+from benchnav.runner.ray.ray_worker import RayWorker, Refusal
 from benchnav.runner.run import run_suite
 from benchnav.store.parts.part import SEAL, Part
 from benchnav.store.parts.part_writer import receive
@@ -35,12 +35,12 @@ clock: {dt: 0.2, substeps: 2, horizon: 4}
 
 
 @pytest.fixture
-def foreman(monkeypatch):
+def ray_worker(monkeypatch):
     monkeypatch.setitem(sys.modules, "__main__", types.ModuleType("__main__"))
-    foreman = Foreman(Limits(timeout=60.0), sys.path)
-    yield foreman
-    foreman.leave()
-    assert not foreman._home.path.exists()
+    ray_worker = RayWorker(Limits(timeout=60.0), sys.path)
+    yield ray_worker
+    ray_worker.close()
+    assert not ray_worker._home.path.exists()
 
 
 def task_of(suite, tmp_path, **changes):
@@ -50,7 +50,7 @@ def task_of(suite, tmp_path, **changes):
 
 
 def test_the_guilty_seed_is_found_and_charged_where_it_ran(
-    foreman, tmp_path, scenario_file, troubled
+    ray_worker, tmp_path, scenario_file, troubled
 ):
     path = tmp_path / "suite.yaml"
     path.write_text(
@@ -58,15 +58,15 @@ def test_the_guilty_seed_is_found_and_charged_where_it_ran(
         "navigators: ['troubled_navigators:Dies']\n"
     )
     suite = load_suite(str(path))
-    pieces = foreman.work(task_of(suite, tmp_path, first=3, stop=5), {})
+    pieces = ray_worker.work(task_of(suite, tmp_path, first=3, stop=5), {})
     found = {p.task.first: [why for _, why in p.outcome.failures] for p in pieces}
     assert found == {3: ["the navigator's process ended with exit status 7"], 4: []}
     for piece in pieces:
         part = Part(piece.task.folder, piece.task.first, piece.task.stop)
         assert str(part.folder).startswith(str(tmp_path))
-        with pytest.raises(CorruptPartError, match="must fit what it came with"):
+        with pytest.raises(CorruptPartError, match="does not match the files"):
             receive(part, {s: c if s == SEAL else c[:-1] for s, c in piece.files.items()})
-        with pytest.raises(CorruptPartError, match="must come sealed"):
+        with pytest.raises(CorruptPartError, match="is damaged. It cannot be read"):
             receive(part, {s: c for s, c in piece.files.items() if s != SEAL})
         assert not part.sealed
         receive(part, piece.files)
@@ -74,7 +74,7 @@ def test_the_guilty_seed_is_found_and_charged_where_it_ran(
         assert not list(part.folder.glob(".writing*"))
 
 
-def test_files_of_a_scenario_need_not_be_there(foreman, tmp_path):
+def test_files_of_a_scenario_need_not_be_there(ray_worker, tmp_path):
     home = tmp_path / "home"
     (home / "maps").mkdir(parents=True)
     rows = ["........"] * 3 + ["..@@@@.."] + ["........"] * 4
@@ -91,11 +91,11 @@ def test_files_of_a_scenario_need_not_be_there(foreman, tmp_path):
     files = {n: p.read_bytes() for n, p in task.cell.scenario.named_files().items()}
     assert list(files) == ["maps/wall.map"]
     shutil.rmtree(home)
-    refusal = foreman.work(task, {"/leads/out": b""})
+    refusal = ray_worker.work(task, {"/leads/out": b""})
     assert isinstance(refusal, Refusal)
     assert refusal.name == "CorruptPartError"
     for _ in range(2):  # staged once
-        (piece,) = foreman.work(task, files)
+        (piece,) = ray_worker.work(task, files)
     part = Part(piece.task.folder, 0, 2)
     receive(part, piece.files)
     assert [e.digest for e in part.episodes()] == [

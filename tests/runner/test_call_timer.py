@@ -2,14 +2,14 @@
 
 import pytest
 
-from benchnav.runner.execute.call_timer import SIZE, Watch, calling, write_to
+from benchnav.runner.execute.call_timer import SIZE, CallTimer, calling, write_to
 
 
 @pytest.fixture
 def watch():
     notes = [0.0] * SIZE
     write_to(notes)
-    yield Watch(notes)
+    yield CallTimer(notes)
     write_to([0.0] * SIZE)
 
 
