@@ -24,8 +24,8 @@ def refuse_limits_here(cells: Iterable[Cell], limited: bool) -> None:
     if labels and limited:
         raise UsageError(
             f"A limit cannot be enforced for {', '.join(map(repr, labels))}: the class is known"
-            " only in this process, and limits hold in worker processes. Leave the limit out, or move"
-            " the class into a module."
+            " only in this process, and limits hold in worker processes. Leave the limit out, or"
+            " move the class into a module."
         )
 
 
