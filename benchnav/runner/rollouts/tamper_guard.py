@@ -16,7 +16,9 @@ from typing import Any
 
 import numpy as np
 
-_WATCHED = ("arena", "episode", "kernels", "navigation", "runner", "sensors", "threads", "world")
+_WATCHED = (
+    "arena", "episode", "generation", "kernels", "navigation", "runner", "sensors", "threads", "world",
+)  # fmt: skip
 _ELSEWHERE = ("benchnav.", "pydantic")  # what is not there while an episode runs
 _code = attrgetter("__code__")
 _Space = tuple[Any, Mapping[str, Any], str]  # a module or class, what it holds, its name
