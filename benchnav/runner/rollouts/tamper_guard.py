@@ -17,7 +17,8 @@ from typing import Any
 import numpy as np
 
 _WATCHED = (
-    "arena", "episode", "generation", "kernels", "navigation", "runner", "sensors", "threads", "world",
+    "arena", "episode", "generation", "kernels", "navigation", "runner", "sensors", "threads",
+    "world",
 )  # fmt: skip
 _ELSEWHERE = ("benchnav.", "pydantic")  # what is not there while an episode runs
 _code = attrgetter("__code__")
