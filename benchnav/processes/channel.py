@@ -15,6 +15,10 @@ class ChannelError(Exception):
     """The other side sent something that is not a message, or accepts none."""
 
 
+class ChannelClosedError(ChannelError):
+    """The other side has ended or closed its end, so it accepts no message."""
+
+
 class Channel:
     """One end of a socket pair.
 
@@ -44,6 +48,8 @@ class Channel:
         try:
             self._end.settimeout(PATIENCE)
             self._end.sendall(_HEAD.pack(len(data)) + data)
+        except BrokenPipeError as error:
+            raise ChannelClosedError(f"the other side has closed its end ({error})") from None
         except OSError as error:
             raise ChannelError(f"the other side accepts no message ({error})") from None
 

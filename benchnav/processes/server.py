@@ -17,7 +17,7 @@ from select import select
 from typing import Any, NoReturn
 
 from benchnav.errors import BenchnavError
-from benchnav.processes.channel import Channel, ChannelError
+from benchnav.processes.channel import Channel, ChannelClosedError, ChannelError
 from benchnav.processes.process_tree import kill
 
 LIGHT = (
@@ -138,6 +138,8 @@ class _Server:
             code = 0
         except SystemExit as error:
             code = error.code if isinstance(error.code, int) else 1
+        except ChannelClosedError:
+            pass  # the parent was killed: no process reads a report
         except BaseException:
             traceback.print_exc()
         finally:
