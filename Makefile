@@ -8,7 +8,7 @@ PEERS := .venv-peers
 STEP := $(PYTHON) .ci/step.py
 PIP := $(BIN)/python -m pip install -c constraints.txt
 
-.PHONY: setup run test test-all soak wheels check lint types layers bench clean
+.PHONY: setup run test test-all soak wheels check lint types layers docs bench clean
 
 setup: $(READY)  ## .venv with everything, at the versions of constraints.txt
 
@@ -46,6 +46,13 @@ soak: $(READY)  ## the same attacks and faults as in CI, with many more cases
 
 wheels: $(READY)  ## the built wheel, on every Python that is found
 	$(BIN)/python .ci/try_wheels.py
+
+docs: $(VENV)/.docs-ready  ## the documentation site, in build/site; warnings are errors
+	$(BIN)/python -m sphinx -W --keep-going -q -d build/doctrees docs build/site
+
+$(VENV)/.docs-ready: $(READY)
+	@$(STEP) 'Installing the site generator' $(PIP) --group docs
+	@touch $@
 
 bench: $(READY) $(PEERS)/.ready  ## speed against peers and limits; writes docs/benchmarks.md
 	$(BIN)/python -m benchmarks --peers $(PEERS)/bin/python --out docs/benchmarks.md

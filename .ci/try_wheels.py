@@ -5,7 +5,9 @@ installed without constraints, except the version of torch that constraints.txt
 names. In an empty folder a suite is run, verified, tabled and read; where torch
 is, a policy is trained too.
 
-    python .ci/try_wheels.py
+    python .ci/try_wheels.py                      several Pythons, as .ci/run does
+    python .ci/try_wheels.py newest plan,view     this Python alone, with these extras
+    python .ci/try_wheels.py lowest
 """
 
 import os
@@ -73,8 +75,10 @@ class FailedError(Exception):
     """A command failed; the text holds the command and what it printed."""
 
 
-def main() -> None:
+def main(*words: str) -> None:
     """Try every Python; exit with 1 where a trial fails or fewer than two Pythons are found."""
+    if words:
+        sys.exit(not alone(*words))
     found = {trial: interpreter(trial.python) for trial in TRIALS}
     for trial in (trial for trial, python in found.items() if python is None):
         print(f"{trial}: not tried, no such Python was found")
@@ -89,6 +93,15 @@ def main() -> None:
         ]
         failures = sum(not done.result() for done in tries)
     sys.exit(failures > 0)
+
+
+def alone(dependencies: str, extras: str = "") -> bool:
+    """Try the wheel on this Python; return whether that went well."""
+    version = ".".join(map(str, sys.version_info[:2]))
+    trial = Trial(version, dependencies == "lowest", f"[{extras}]" if extras else "")
+    with tempfile.TemporaryDirectory() as folder:
+        wheel = build(Path(folder) / "dist")
+        return attempt(trial, Path(sys.executable), wheel, Path(folder) / "0")
 
 
 def interpreter(version: str) -> Path | None:
@@ -149,7 +162,8 @@ def install(trial: Trial, python: Path, wheel: Path, folder: Path) -> Path:
     constraints.write_text("".join(f"{name}=={pin}\n" for name, pin in pins.items()))
     pip = (str(folder / "bin" / "python"), "-m", "pip", "install", "--quiet")
     command(ROOT, *pip, "--upgrade", "pip")
-    command(ROOT, *pip, "-c", str(constraints), f"{wheel}{trial.extras}")
+    prebuilt = () if trial.lowest else ("--only-binary", ":all:")  # users need no compiler
+    command(ROOT, *pip, *prebuilt, "-c", str(constraints), f"{wheel}{trial.extras}")
     return folder / "bin"
 
 
@@ -164,9 +178,10 @@ def floors(wheel: Path) -> dict[str, str]:
 
 
 def torch_pin() -> str:
-    """Return the version of torch that constraints.txt names: a CPU build, without CUDA."""
+    """Return the version of torch that constraints.txt names: on Linux a build without CUDA."""
     text = (ROOT / "constraints.txt").read_text(encoding="utf-8")
-    return re.findall(r"^torch==(.+)$", text, re.MULTILINE)[0]
+    pin: str = re.findall(r"^torch==(.+)$", text, re.MULTILINE)[0]
+    return pin if sys.platform == "linux" else pin.partition("+")[0]
 
 
 def use(trial: Trial, programs: Path, folder: Path) -> str:
@@ -209,4 +224,4 @@ def command(folder: Path, *words: str) -> str:
 
 
 if __name__ == "__main__":
-    main()
+    main(*sys.argv[1:])

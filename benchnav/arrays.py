@@ -18,5 +18,7 @@ IntArray = npt.NDArray[np.int64]
 ByteArray = npt.NDArray[np.int8]
 BoolArray = npt.NDArray[np.bool_]
 AnyArray = npt.NDArray[Any]
+Extent = tuple[float, float, float, float]
+"""xmin, ymin, xmax, ymax [m]"""
 
 LARGEST = 1e100  # largest measured value: sums of squares of such values stay finite

@@ -1,7 +1,8 @@
 """One registry over entry points: lazy, collision-safe, and honest about what is broken.
 
-Names are read from installed distributions without importing anything. What ships
-with benchnav is registered through the same entry points as anybody's plugin. A
+Names are read from installed distributions without importing code of plugins. What ships
+with benchnav is registered through the same entry points as anybody's plugin; its metrics
+by module, each of which is imported for the names of those that it holds. A
 script or notebook registers with a decorator, and ``module:attribute`` is accepted
 wherever a name is. A kind may name its contract, by which plugins of the wrong type are
 found: it is a function of a higher layer, loaded by its name as plugins are.
@@ -37,6 +38,12 @@ class Source:
     distribution: str  # "benchnav 0.1.0", or "registered in this process"
     value: str  # "package.module:attribute"
 
+    @property
+    def is_own(self) -> bool:
+        """Whether it is part of benchnav itself, and no code of a plugin."""
+        ours = self.distribution.partition(" ")[0] == "benchnav"
+        return ours and self.value.startswith("benchnav.")
+
 
 @dataclass
 class Registry:
@@ -45,8 +52,9 @@ class Registry:
     group: str  # entry-point group, "benchnav.navigators"
     kind: str  # "navigator", for messages
     contract: str = ""  # "module:function": (name, plugin) -> what it must be; "" if it is that
+    members: str = ""  # "module:function": (module) -> {name: attribute} of what a module holds
     _local: dict[str, tuple[Any, str]] = field(default_factory=dict)
-    _found: dict[str, list[EntryPoint]] | None = None
+    _found: dict[str, list[Source]] | None = None
     _path: list[str] = field(default_factory=list)  # in which they were found
 
     def register(self, name: str) -> Callable[[T], T]:
@@ -68,14 +76,22 @@ class Registry:
             if taken is not None and taken[1] != value:
                 raise self._conflict(name, [taken[1], value])
             if name in self._entries():
-                raise self._conflict(name, [str(_source(self._entries()[name][0])), value])
+                raise self._conflict(name, [str(self._entries()[name][0]), value])
             self._local[name] = (thing, value)
             return thing
 
         return decorate
 
+    def replace(self, name: str, thing: Any) -> None:
+        """Register ``thing`` in this process, in place of what this process registered before.
+
+        Raises PluginConflictError where an installed plugin has the name.
+        """
+        self._local.pop(name, None)
+        self.register(name)(thing)
+
     def names(self) -> list[str]:
-        """Every name, sorted, without importing anything."""
+        """Every name, sorted, without importing any plugin."""
         return sorted({*self._entries(), *self._local})
 
     def __contains__(self, name: str) -> bool:
@@ -98,13 +114,17 @@ class Registry:
         with suppress(BrokenPluginError):
             self._local[name] = (self._load_by_module(value), value)
 
+    def sources(self) -> list[Source]:
+        """Every entry point of the group, without importing anything."""
+        return [source for claims in self._entries().values() for source in claims]
+
     def source(self, name: str) -> Source:
         """Where ``name`` comes from."""
         if name in self._local:
             return Source(name, "registered in this process", self._local[name][1])
         if ":" in name and name not in self._entries():
             return Source(name, "named by module", name)
-        return _source(self._entry(name))
+        return self._entry(name)
 
     def load(self, name: str) -> Any:
         """What ``name`` stands for.
@@ -120,13 +140,13 @@ class Registry:
             return self._load_by_module(name)
         entry = self._entry(name)
         try:
-            thing = entry.load()
+            thing = EntryPoint(name, entry.value, self.group).load()
         except (Exception, SystemExit) as error:
             raise BrokenPluginError(
                 f"The {self.kind} {name!r} cannot be used: {_said(error)}"
-                f" (while importing {entry.value}, from {_source(entry).distribution})."
+                f" (while importing {entry.value}, from {entry.distribution})."
             ) from error
-        self._require_contract(name, thing, f"{entry.value}, from {_source(entry).distribution}")
+        self._require_contract(name, thing, f"{entry.value}, from {entry.distribution}")
         return thing
 
     def broken(self) -> Iterator[tuple[str, str]]:
@@ -137,16 +157,34 @@ class Registry:
             except (BrokenPluginError, PluginConflictError) as error:
                 yield name, str(error)
 
-    def _entries(self) -> dict[str, list[EntryPoint]]:
+    def _entries(self) -> dict[str, list[Source]]:
         if self._found is None or self._path != sys.path:
             self._found, self._path = {}, [*sys.path]
             for entry in entry_points(group=self.group):
-                claims = self._found.setdefault(entry.name, [])
-                if all(_source(entry) != _source(other) for other in claims):
-                    claims.append(entry)
+                for source in self._sources(entry):
+                    claims = self._found.setdefault(source.name, [])
+                    if source not in claims:
+                        claims.append(source)
         return self._found
 
-    def _entry(self, name: str) -> EntryPoint:
+    def _sources(self, entry: EntryPoint) -> list[Source]:
+        """What an entry point stands for; a whole module, of benchnav itself, for all it holds.
+
+        A module of a plugin is not imported for its names: it must name its plugins one by one.
+        """
+        source = _source(entry)
+        if entry.attr or not (self.members and source.is_own):
+            return [source]
+        try:
+            held = _function(self.members)(import_module(entry.module))
+        except Exception:
+            return [source]  # loading it tells why
+        return [
+            Source(name, source.distribution, f"{entry.module}:{attribute}")
+            for name, attribute in held.items()
+        ]
+
+    def _entry(self, name: str) -> Source:
         entries = self._entries()
         if name not in entries:
             raise UnknownPluginError(
@@ -155,7 +193,7 @@ class Registry:
             )
         if len(entries[name]) > 1:
             raise self._conflict(
-                name, [f"{_source(e).distribution} ({e.value})" for e in entries[name]]
+                name, [f"{source.distribution} ({source.value})" for source in entries[name]]
             )
         return entries[name][0]
 
@@ -171,8 +209,7 @@ class Registry:
     def _require_contract(self, name: str, thing: Any, origin: str) -> None:
         if not self.contract:
             return
-        module, _, function = self.contract.partition(":")
-        rule = getattr(import_module(module), function)(name, thing)
+        rule = _function(self.contract)(name, thing)
         if rule:
             raise BrokenPluginError(
                 f"The {self.kind} {name!r} must {rule}. Got {_kind_of(thing)} ({origin})."
@@ -191,10 +228,16 @@ def _value(thing: Any) -> str:
     return f"{getattr(named, '__module__', '?')}:{getattr(named, '__qualname__', named)}"
 
 
+def _function(place: str) -> Any:
+    """The function ``module:function`` of a higher layer."""
+    module, _, function = place.partition(":")
+    return getattr(import_module(module), function)
+
+
 def _kind_of(thing: Any) -> str:
     if isinstance(thing, type):
         return f"the class {thing.__qualname__}"
-    called = getattr(thing, "__qualname__", "")
+    called = getattr(thing, "__qualname__", "") or getattr(thing, "__name__", "")
     return f"the {type(thing).__name__} {called}" if called else f"a {type(thing).__name__}"
 
 
@@ -221,8 +264,12 @@ _CLASSES = "benchnav.navigation.plugin.contract"
 NAVIGATORS = Registry("benchnav.navigators", "navigator", f"{_CLASSES}:navigator_rule")
 PLANNERS = Registry("benchnav.planners", "planner", f"{_CLASSES}:planner_rule")
 CONTROLLERS = Registry("benchnav.controllers", "controller", f"{_CLASSES}:controller_rule")
-METRICS = Registry("benchnav.metrics", "metric", "benchnav.metrics.contract:metric_rule")
-SCENARIOS = Registry("benchnav.scenarios", "scenario")
+METRICS = Registry(
+    "benchnav.metrics", "metric", "benchnav.metrics.contract:metric_rule",
+    "benchnav.metrics.metric:metrics_in",
+)  # fmt: skip
+SCENARIOS = Registry("benchnav.scenarios", "scenario")  # packages of YAML files, as are suites
+SUITES = Registry("benchnav.suites", "suite")
 TRAINERS = Registry("benchnav.trainers", "trainer", "benchnav.envs.trainer:trainer_rule")
 
 Registration = tuple[str, str, str]

@@ -22,7 +22,8 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
-from benchnav.cli.tables import board
+from benchnav.api.messages import message
+from benchnav.leaderboard.from_runs import stored_values
 from benchnav.runner.execute.progress import progress
 from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
@@ -103,7 +104,7 @@ def _rows(run: RunFolder, suffix: str) -> int:
 
 def records(run: RunFolder) -> tuple[str, list[dict[str, str]]]:
     """The leaderboard as CSV, and row by row."""
-    text = board.table([run], "csv", METRICS, recompute=False)
+    text = stored_values([run], notify=message).text("csv", METRICS)
     return text, list(csv.DictReader(io.StringIO(text)))
 
 
@@ -169,7 +170,7 @@ def _how(name: str, said: dict[str, Any]) -> Iterator[str]:
 
 def _overall(run: RunFolder) -> Iterator[str]:
     """The sections over all scenarios of the whole leaderboard."""
-    text = board.table([run], "markdown", METRICS, recompute=False)
+    text = stored_values([run], notify=message).text("markdown", METRICS)
     for chapter in text.split("\n## "):
         head, *sections = chapter.removeprefix("## ").split("\n### ")
         kept = [s for s in sections if s.startswith("all scenarios")]

@@ -14,6 +14,7 @@ from zipfile import ZipFile
 import pytest
 
 import benchnav
+from benchnav.metrics.metric import metrics_in
 
 ROOT = Path(benchnav.__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -54,11 +55,14 @@ def test_every_folder_with_code_is_a_package():
 
 @pytest.mark.parametrize(
     "value",
-    sorted(v for group in PROJECT["project"]["entry-points"].values() for v in group.values()),
+    sorted({v for group in PROJECT["project"]["entry-points"].values() for v in group.values()}),
 )
 def test_entry_points_lead_somewhere(value):
     module, _, name = value.partition(":")
     package, _, rest = module.partition(".")
+    if not name:  # a package of YAML files
+        assert list((ROOT / FOLDERS[package]).glob("*/*.yaml"))
+        return
     folder = ROOT / FOLDERS[package] / Path(*rest.split("."))
     source = (
         folder.with_suffix(".py") if folder.with_suffix(".py").exists() else folder / "__init__.py"
@@ -68,7 +72,10 @@ def test_entry_points_lead_somewhere(value):
         for node in ast.parse(source.read_text(encoding="utf-8")).body
         if isinstance(node, ast.ClassDef | ast.FunctionDef | ast.Assign)
     }
-    assert name in names or hasattr(import_module(module), name)
+    if name:
+        assert name in names or hasattr(import_module(module), name)
+    else:  # a module stands for all metrics that it defines
+        assert metrics_in(import_module(module))
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +143,7 @@ def test_modules_import_downwards_only(source):
     for name in imports(source):
         root, _, rest = name.partition(".")
         assert root not in ("benchnav_baselines", "benchnav_scenarios")
-        if root != "benchnav" or own == "__init__" or not rest:
+        if root != "benchnav" or own in ("__init__", "__main__") or not rest:
             continue
         other = rest.partition(".")[0]
         assert other == own or HEIGHT[other] < HEIGHT[own], f"{source.name} imports {name}"

@@ -2,29 +2,42 @@
 
 import subprocess
 import sys
+from types import FunctionType
+
+import pytest
 
 import benchnav
-from benchnav import leaderboard
+from benchnav import leaderboard, navigation
 
 HEAVY = ("torch", "ompl", "gymnasium", "matplotlib", "ray", "trimesh", "fcl", "pandas", "pedpy",
          "pyarrow", "scipy", "shapely", "numba", "numpy")  # fmt: skip
 
 
+AUTHORS = {"Navigator", "AgentNavigator", "Controller", "Planner", "Briefing", "Observation",
+           "Need", "PluginConfig"}  # fmt: skip
+
+
 def test_public_names():
-    assert benchnav.__all__ == [
-        "BenchnavError",
-        "register_controller",
-        "register_metric",
-        "register_navigator",
-        "register_planner",
-    ]
+    assert set(benchnav.__all__) >= {
+        "run", "open_run", "simulate", "load_scenario", "make_env", "merge", "available",
+        "Run", "Leaderboard", "Scenario", "World", "Episode", "BenchnavError",
+        "register_controller", "register_metric", "register_navigator", "register_planner",
+    }  # fmt: skip
+    assert set(navigation.__all__) >= AUTHORS
+    assert set(benchnav.__all__) <= set(dir(benchnav))
+
+
+def test_an_unknown_name_is_an_attribute_error():
+    with pytest.raises(AttributeError, match="module 'benchnav' has no attribute 'rnu'"):
+        _ = benchnav.rnu
 
 
 def test_public_names_exist_and_are_documented():
-    for module in (benchnav, leaderboard):
-        assert module.__all__ == sorted(module.__all__)
+    for module in (benchnav, leaderboard, navigation):
+        assert len(module.__all__) == len(set(module.__all__))
         for name in module.__all__:
-            assert getattr(module, name).__doc__, name
+            thing = getattr(module, name)
+            assert thing.__doc__ or not isinstance(thing, type | FunctionType), name
 
 
 def imported_by(statement):
@@ -35,6 +48,11 @@ def imported_by(statement):
 
 def test_importing_benchnav_imports_nothing_heavy():
     assert not imported_by("import benchnav") & set(HEAVY)
+
+
+def test_the_modules_of_the_layer_below_the_commands_are_not_imported_either():
+    loaded = imported_by("import benchnav; dir(benchnav)")
+    assert not loaded & {*HEAVY, "pydantic", "yaml", "rich", "typer"}
 
 
 def test_help_imports_nothing_heavy():

@@ -106,7 +106,7 @@ def test_a_folder_that_was_planted_among_the_temporary_files_is_not_used(
     private.symlink_to(tmp_path / "elsewhere")
     found = user_cache()
     assert found.path is None
-    assert "must be a folder and no link" in found.reason
+    assert "must be a folder, not a link" in found.reason
     private.unlink()
     if USER == 0:
         private.mkdir()

@@ -1,4 +1,4 @@
-"""The velocity that leads straight to a point without passing it."""
+"""The velocity towards a point that does not pass it."""
 
 import numpy as np
 
@@ -8,9 +8,9 @@ from benchnav.arrays import FloatArray
 def approach(
     position: FloatArray, target: FloatArray, speed: FloatArray, dt: FloatArray
 ) -> FloatArray:
-    """(…, 2) velocity [m/s] from ``position`` (…, 2) towards ``target`` (…, 2) [m].
+    """Return the velocity (…, 2) [m/s] from ``position`` (…, 2) towards ``target`` (…, 2) [m].
 
-    Its length is ``speed`` (…) [m/s], or less where the target is less than one
+    Its length is ``speed`` (…) [m/s], or less if the target is less than one
     step ``dt`` (…) [s] away; zero at the target.
     """
     offset = target - position

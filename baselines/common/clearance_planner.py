@@ -1,4 +1,4 @@
-"""What planners for a disc share: how much clearance is tried, and where a blocked goal ends."""
+"""The common part of planners for a disc: choice of clearance, and blocked goals."""
 
 import math
 from abc import abstractmethod
@@ -9,10 +9,8 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray
-from benchnav.geometry.rotation import cos_sin
-from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import PluginConfig
-from benchnav.navigation.planner import Planner
+from benchnav.geometry import cos_sin
+from benchnav.navigation import Map, Planner, PluginConfig
 
 from .validity_checker import Checker
 
@@ -26,10 +24,10 @@ class ClearanceConfig(PluginConfig):
 
 
 class ClearancePlanner(Planner):
-    """Plans for the disc enlarged by a clearance, by less of it where that finds nothing.
+    """Plans for the disc enlarged by a clearance, which is reduced if no path is found.
 
-    The clearance is ½ or ¼ of what is wanted where start or goal are nearer to an
-    obstacle. Where nothing is found with it, ⅛ is tried and then 0.
+    The clearance is ½ or ¼ of the configured value if start or goal are closer to an
+    obstacle. If no path is found with it, ⅛ is tried and then 0.
     """
 
     class Config(ClearanceConfig):
@@ -41,10 +39,10 @@ class ClearancePlanner(Planner):
 
     @abstractmethod
     def new_checker(self, map: Map, reach: float) -> Checker:
-        """Of a disc of radius ``reach`` [m]."""
+        """Return the checker of a disc of radius ``reach`` [m]."""
 
     def checker(self, map: Map, reach: float) -> Checker:
-        """The one of a map and a radius [m]."""
+        """Return the checker of a map and a radius [m], from a cache."""
         known = self._checkers.setdefault(map, {})
         if reach not in known:
             known[reach] = self.new_checker(map, reach)
@@ -53,14 +51,16 @@ class ClearancePlanner(Planner):
     def clearances(
         self, map: Map, start: FloatArray, goal: FloatArray, radius: float
     ) -> Iterator[float]:
-        """The largest clearance that both ends allow, then ⅛ of what is wanted, then 0.
+        """Yield the largest clearance that both ends allow, then ⅛ of the configured value, then 0.
 
-        Where both ends do not even allow ¼, ⅛ is tried only if one stands in a narrow place. None
-        where the start is blocked.
+        If an end does not even allow ¼, ⅛ is tried only if one is in a narrow place. No value
+        is yielded if the start is blocked.
         """
-        wanted = self.config.clearance
-        least, ends = 0.125 * wanted, (start, goal)
-        shares = (extra for extra in (wanted, 0.5 * wanted, 0.25 * wanted) if extra > 0.0)
+        configured = self.config.clearance
+        least, ends = 0.125 * configured, (start, goal)
+        shares = (
+            extra for extra in (configured, 0.5 * configured, 0.25 * configured) if extra > 0.0
+        )
         first = next((e for e in shares if self._are_free(map, ends, radius + e)), 0.0)
         if first:
             yield first
@@ -73,10 +73,10 @@ class ClearancePlanner(Planner):
     def left(
         self, map: Map, start: FloatArray, goal: FloatArray, radius: float, extra: float
     ) -> float:
-        """[m] What a path that was found with the clearance ``extra`` leaves, as `Plan.clearance`.
+        """Return the clearance [m] of a path found with ``extra``, for `Plan.clearance`.
 
-        It passes a narrow place where nothing was found with what its ends allow, or where an end
-        stands in one.
+        The path passes a narrow place if no path was found with the clearance that its ends allow,
+        or if an end is in a narrow place.
         """
         allowed = next(self.clearances(map, start, goal, radius), 0.0)
         narrow = extra < allowed or self._is_narrow(map, (start, goal), radius)
@@ -87,27 +87,28 @@ class ClearancePlanner(Planner):
         return all(checker.point_is_free(*place.tolist()) for place in places)
 
     def _is_narrow(self, map: Map, places: Sequence[FloatArray], radius: float) -> bool:
-        """Whether one has no room beside it, in which the clearance that is wanted is kept.
+        """Whether a place has no free space beside it that keeps the configured clearance.
 
-        Places that are blocked themselves do not count: there a path ends before them.
+        Blocked places do not count: there a path ends before them.
         """
-        wanted = self.config.clearance
-        wide = self.checker(map, radius + wanted)
+        configured = self.config.clearance
+        wide = self.checker(map, radius + configured)
         return any(
-            self._are_free(map, (place,), radius) and free_goal(wide, place, 2.0 * wanted) is None
+            self._are_free(map, (place,), radius)
+            and free_goal(wide, place, 2.0 * configured) is None
             for place in places
         )
 
 
 def problem(start: FloatArray, goal: FloatArray, radius: float, tolerance: float) -> str:
-    """What is wrong with a question; "" if nothing is."""
+    """Return the problem with a query; "" if there is none."""
     if np.isfinite([*start, *goal, radius, tolerance]).all() and radius >= 0.0:
         return ""
     return "start, goal, radius or tolerance is not finite"
 
 
 def free_goal(checker: Checker, goal: FloatArray, tolerance: float) -> FloatArray | None:
-    """The goal (2,), or where it is blocked a free place within the tolerance, near ones first."""
+    """Return the goal (2,), or if it is blocked, the nearest free place within the tolerance."""
     if checker.point_is_free(*goal.tolist()):
         return goal
     for share in (0.25, 0.5, 0.75, 0.99):

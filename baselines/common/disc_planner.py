@@ -1,46 +1,44 @@
-"""What planners without randomness share: the straight way, then a search; and reasons."""
+"""The common part of deterministic planners: the straight motion, then a search; and reasons."""
 
 from abc import abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
 
-from benchnav.arrays import FloatArray
-from benchnav.navigation.map import Map
-from benchnav.navigation.planner import UNSOLVED, Plan
+from benchnav.arrays import Extent, FloatArray
+from benchnav.navigation import UNSOLVED, Map, Plan
 
 from .clearance_planner import ClearancePlanner, free_goal, problem
 from .validity_checker import SKIN, Checker, PlanarChecker
 
-Frame = tuple[float, float, float, float]  # xmin, ymin, xmax, ymax [m]
-WITHIN = 0.99  # of the tolerance: how far from a blocked goal a path may end
-_LEAST = 1e-6  # [m] a point is planned for as a disc of this radius
+WITHIN = 0.99  # share of the tolerance, in which a path to a blocked goal ends
+_MIN_RADIUS = 1e-6  # [m] a point is planned for as a disc of this radius
 
 
 @dataclass(frozen=True, eq=False)
 class Query:
-    """From where to where, for which disc."""
+    """Start, goal and disc of a plan."""
 
     map: Map
     start: FloatArray  # (2,) [m], free for the disc
     goal: FloatArray  # (2,) [m]
     reach: float  # [m] radius of the disc and the clearance
-    tolerance: float  # [m] a path may end so far from the goal
+    tolerance: float  # [m] largest distance from the goal to the path's end
     checker: Checker
 
     @property
     def inflation(self) -> float:
-        """[m] by which obstacles grow: the reach, less what contact may overlap by rounding."""
-        return max(self.reach - SKIN, _LEAST)
+        """The growth [m] of obstacles: the reach, minus the overlap of contacts by rounding."""
+        return max(self.reach - SKIN, _MIN_RADIUS)
 
     @property
     def slack(self) -> float:
-        """[m] from the goal within which a path that cannot reach it ends."""
+        """The distance [m] from the goal within which a path to an unreachable goal ends."""
         return WITHIN * max(self.tolerance, 0.0)
 
 
 class DiscPlanner(ClearancePlanner):
-    """Plans without drawing anything. A motion that is free straight is the path."""
+    """Plans without random numbers. If the straight motion is free, it is the path."""
 
     def new_checker(self, map: Map, reach: float) -> Checker:
         return PlanarChecker(map, reach)
@@ -54,9 +52,9 @@ class DiscPlanner(ClearancePlanner):
         tolerance: float,
         rng: np.random.Generator,
     ) -> Plan:
-        """As `Planner.plan`; ``rng`` is not used.
+        """Plan like `Planner.plan`; ``rng`` is not used.
 
-        Where the goal cannot be reached, the path ends within the tolerance of it.
+        If the goal cannot be reached, the path ends within the tolerance of it.
         """
         if wrong := problem(start, goal, radius, tolerance):
             return Plan(UNSOLVED, False, 0, wrong)
@@ -77,12 +75,12 @@ class DiscPlanner(ClearancePlanner):
         return Plan(UNSOLVED, False, checks, reason)
 
     def nothing(self, map: Map, start: FloatArray, goal: FloatArray, radius: float) -> str:
-        """Why there is no path between free places."""
+        """Return why there is no path between free places."""
         return "no path leads to the goal"
 
     @abstractmethod
     def search(self, query: Query) -> tuple[FloatArray, int]:
-        """(path (W, 2), motions checked); (0, 2) where there is no path."""
+        """Return (path (W, 2), motions checked); (0, 2) if there is no path."""
 
     def _straight_or_found(self, query: Query) -> tuple[FloatArray, int]:
         ends, free = (query.start, query.goal), query.checker
@@ -94,11 +92,11 @@ class DiscPlanner(ClearancePlanner):
         return path, checks + 1
 
 
-def frame_of(query: Query, margin: float) -> Frame:
-    """A box around all that stands and the map's bounds, with room to pass around it.
+def frame_of(query: Query, margin: float) -> Extent:
+    """Return a box around all obstacles and the map's bounds, with space to pass around it.
 
-    It is the same for all queries of a map and a radius that lie within it, and
-    grows by its own size for those that do not.
+    It is equal for all queries of a map and a radius that lie within it, and
+    grows by its own size for others.
     """
     c = query.map.capsules
     grown = c[:, 4:] + query.inflation + margin

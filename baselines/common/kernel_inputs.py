@@ -1,12 +1,11 @@
-"""What kernels that steer agent by agent take from a batch: rows N are (world, agent) pairs."""
+"""Inputs of kernels that steer agent by agent: rows N are (world, agent) pairs."""
 
 from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from benchnav.arrays import AnyArray, FloatArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.observation import Observation
+from benchnav.navigation import Briefing, Observation
 
 from ..controllers.orca.avoidance import no_edges, no_neighbours
 
@@ -14,7 +13,7 @@ BODY = 6  # radius [m], top and preferred speed [m/s], turn rate [rad/s], step [
 
 
 def bodies_of(briefing: Briefing) -> FloatArray:
-    """(A, 6) see `BODY`."""
+    """Return the bodies (A, 6), see `BODY`."""
     body = np.empty((len(briefing), BODY))
     body[:, 0] = briefing.radius
     body[:, 1] = briefing.max_speed
@@ -26,20 +25,21 @@ def bodies_of(briefing: Briefing) -> FloatArray:
 
 
 def flat(rows: int, arrays: Iterable[AnyArray]) -> Iterator[AnyArray]:
-    """Each (B, A, …) as contiguous (rows, …)."""
+    """Yield each array (B, A, …) as contiguous (rows, …)."""
     for array in arrays:
         yield np.ascontiguousarray(array).reshape(rows, *array.shape[2:])
 
 
 def sensed(observation: Observation) -> tuple[AnyArray, ...]:
-    """Neighbours' position, velocity, radius, kind, count; edges' start, end, before, after, count.
+    """Return the readings of neighbours and edges as kernel arguments.
 
-    Each is (B, A, …); what is not sensed has no entries.
+    Neighbours: position, velocity, radius, kind, count; edges: start, end, before, after, count.
+    Each is (B, A, …); a missing sensor has no entries.
     """
     shape = observation.active.shape
-    seen = observation.neighbours or no_neighbours(*shape)
+    near = observation.neighbours or no_neighbours(*shape)
     sides = observation.edges or no_edges(*shape)
     return (
-        seen.position, seen.velocity, seen.radius, seen.kind, seen.count,
+        near.position, near.velocity, near.radius, near.kind, near.count,
         sides.start, sides.end, sides.before, sides.after, sides.count,
     )  # fmt: skip

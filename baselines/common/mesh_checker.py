@@ -1,12 +1,12 @@
-"""Validity in three dimensions: the agent as an upright cylinder among meshes, by FCL.
+"""Collision checks in three dimensions: the agent as an upright cylinder among meshes, by FCL.
 
-The cylinder spans the agents' height band. What it sweeps on a straight motion is
+The cylinder spans the agents' height band. The volume that it sweeps on a straight motion is
 exactly the union of the cylinder at either end and of the upright box between them:
 three discrete queries of the Flexible Collision Library (Pan, Chitta & Manocha 2012)
 are a continuous test, up to the 1e-6 m to which FCL's own solver converges.
 
-Solids that were not cut from a mesh are extruded. A place inside a closed mesh
-touches none of its triangles, so places are also asked for the mesh's winding number.
+Solids that are not cut from a mesh are extruded. A place inside a closed mesh
+touches none of its triangles, so the mesh's winding number is checked as well.
 """
 
 import math
@@ -15,24 +15,23 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from benchnav.arena.mesh import Mesh
-from benchnav.arena.solid import Solid
+from benchnav.arena import Mesh, Solid
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.errors import MissingExtraError
-from benchnav.geometry.sweep import inside_solid, solid_index
-from benchnav.navigation.map import Map
+from benchnav.geometry import inside_solid, solid_index
+from benchnav.navigation import Map
 from benchnav.scenario.files.mesh_section import SIMPLIFY, THIN, section
 
-SKIN = 1e-6  # [m] taken off the radius, as the planar checker does
-_END = 1e-4  # [m] taken off the cylinder's ends: a floor at the band's edge is no obstacle
+SKIN = 1e-6  # [m] subtracted from the radius, as in the planar checker
+_END = 1e-4  # [m] subtracted from the cylinder's ends: a floor at the band's edge is no obstacle
 _FLAT = (0.0, 1.0)  # [m] band of a map without meshes
-_SAME = SIMPLIFY + THIN  # [m] within which a solid is taken for the outline of a mesh
+_SAME = SIMPLIFY + THIN  # [m] tolerance for a solid to be the outline of a mesh
 
 
 class MeshChecker:
-    """A `Checker` of one map for one radius, through python-fcl.
+    """A `Checker` of one map for one radius, by python-fcl.
 
-    Raises MissingExtraError where python-fcl is not installed.
+    Raises MissingExtraError if python-fcl is not installed.
     """
 
     def __init__(self, map: Map, radius: float) -> None:
@@ -72,7 +71,7 @@ class _Layer:
         self._fcl = _load()
         self.band = band
         self._manager = self._fcl.DynamicAABBTreeCollisionManager()
-        self._kept: list[Any] = []  # the manager does not own what it manages
+        self._kept: list[Any] = []  # the manager does not own its objects
 
     def add(self, vertices: FloatArray, faces: IntArray) -> None:
         model = self._fcl.BVHModel()
@@ -121,7 +120,7 @@ class _Obstacles:
         self._first, self._outside = solid_index(solids)
 
     def hold(self, x: float, y: float) -> bool:
-        """True where the point lies inside a solid or a closed mesh."""
+        """Whether the point lies inside a solid or a closed mesh."""
         if inside_solid(x, y, self._capsules, self._first, self._outside):
             return True
         for mesh in self._meshes:
@@ -141,7 +140,7 @@ def _obstacles_of(map: Map) -> _Obstacles:
 
 
 def extruded(solid: Solid, band: tuple[float, float]) -> tuple[FloatArray, IntArray]:
-    """Vertices (4 E, 3) and faces (2 E, 3) of upright rectangles over the E edges of a solid."""
+    """Return vertices (4 E, 3) and faces (2 E, 3) of upright rectangles over a solid's E edges."""
     edges = solid.capsules[:, :4].reshape(-1, 2, 2)
     count = len(edges)
     vertices = np.empty((count, 4, 3))
@@ -154,7 +153,7 @@ def extruded(solid: Solid, band: tuple[float, float]) -> tuple[FloatArray, IntAr
 
 
 def winding_number(point: FloatArray, triangles: FloatArray) -> float:
-    """How often closed triangles (F, 3, 3) enclose a point (3,) (van Oosterom & Strackee 1983)."""
+    """Return the winding number of closed triangles (F, 3, 3) (van Oosterom & Strackee 1983)."""
     a, b, c = np.moveaxis(triangles - point, 1, 0)
     la, lb, lc = (np.sqrt((v * v).sum(axis=1)) for v in (a, b, c))
     volume = (a * np.cross(b, c)).sum(axis=1)
@@ -170,7 +169,7 @@ def _in_band(mesh: Mesh) -> BoolArray:
 
 
 def _is_outline(solid: Solid, region: Any) -> bool:
-    """True where the boundary of a solid runs along that of a mesh's section."""
+    """Whether the boundary of a solid runs along that of a mesh's section."""
     import shapely
 
     if solid.is_disc or region.is_empty:

@@ -1,39 +1,45 @@
-"""What was learned, at work in many rows: as a navigator, or as a controller on a path."""
+"""A learned policy that drives many rows: as a navigator, or as a controller on a path."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import ClassVar
 
-from benchnav.arena.sensing import Sensing
+from benchnav.arena import Sensing
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.controller import Controller, Guide
-from benchnav.navigation.navigator import CommandKind, Navigator, Need, Training
-from benchnav.navigation.observation import Observation
+from benchnav.navigation import (
+    Briefing,
+    CommandKind,
+    Controller,
+    Guide,
+    Navigator,
+    Need,
+    Observation,
+    Training,
+)
 
 from .waypoint import towards
 
 
 class Pilot(ABC):
-    """Drives agents to the goals of what it is shown, which may be waypoints."""
+    """Drives agents to the goals in its observation, which may be waypoints."""
 
     @property
     @abstractmethod
     def needs(self) -> frozenset[Need]:
-        """The sensors that it reads."""
+        """The sensors that it needs."""
 
     @property
     @abstractmethod
     def training(self) -> Training:
-        """What it cost to learn."""
+        """The cost of its training."""
 
     @property
     @abstractmethod
     def fingerprint(self) -> str:
-        """Of the file that holds what was learned."""
+        """The digest of the file with the learned parameters."""
 
     def unfit(self, sensing: Sensing) -> str:
-        """Why it cannot drive agents that sense so; "" where it can."""
+        """Return why it cannot drive agents with these sensors; "" if it can."""
         return ""
 
     @abstractmethod
@@ -41,21 +47,21 @@ class Pilot(ABC):
         """Start the worlds ``rows`` (N,)."""
 
     @abstractmethod
-    def tolerance(self, seen: Observation) -> FloatArray:
-        """(B, A) [m] of the goals of the agents in sight."""
+    def tolerance(self, observation: Observation) -> FloatArray:
+        """Return the goal tolerance (B, A) [m] of the agents in the observation."""
 
     @abstractmethod
-    def twists(self, seen: Observation, tolerance: FloatArray) -> FloatArray:
-        """(B, A, 2) forward speed [m/s] and turn rate [rad/s] towards the goals.
+    def twists(self, observation: Observation, tolerance: FloatArray) -> FloatArray:
+        """Return forward speed [m/s] and turn rate [rad/s] (B, A, 2) towards the goals.
 
         Args:
-            seen: one decision's view.
-            tolerance: (B, A) [m] from a goal within which nothing behind it matters.
+            observation: of one decision.
+            tolerance: (B, A) [m] from a goal within which obstacles behind it do not matter.
         """
 
 
 class _Piloted:
-    """What a piloted navigator and a piloted controller answer alike."""
+    """The common part of a navigator and a controller with a pilot."""
 
     command: ClassVar[CommandKind] = "twist"
     pilot: Pilot
@@ -80,7 +86,7 @@ class _Piloted:
 
 
 class PilotedNavigator(_Piloted, Navigator):
-    """A pilot on its way to the goals."""
+    """A pilot that drives to the goals."""
 
     @property
     def uses_map(self) -> bool:
@@ -91,7 +97,7 @@ class PilotedNavigator(_Piloted, Navigator):
 
 
 class PilotedController(_Piloted, Controller):
-    """A pilot that is shown the guide's targets as its goals (`.waypoint`)."""
+    """A pilot with the guide's targets as its goals (`.waypoint`)."""
 
     lookahead: ClassVar[float] = 3.0
 

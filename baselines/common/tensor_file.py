@@ -1,4 +1,4 @@
-"""Arrays that were learned, on disk: safetensors and plain text about them, never pickle."""
+"""Learned arrays on disk: safetensors with plain text about them, never pickle."""
 
 import hashlib
 import json
@@ -13,13 +13,13 @@ from benchnav.arrays import AnyArray
 from benchnav.errors import PluginError
 from benchnav.system.plain_file import read_file
 
-MOST_BYTES = 1 << 30
+MAX_BYTES = 1 << 30
 _KEY = "about"
 
 
 @dataclass(frozen=True, eq=False)
 class TensorFile:
-    """What a file holds."""
+    """The content of a file."""
 
     tensors: Mapping[str, AnyArray]
     about: Mapping[str, Any]  # plain data
@@ -27,9 +27,9 @@ class TensorFile:
 
 
 def write_tensors(path: Path, tensors: Mapping[str, AnyArray], about: Mapping[str, Any]) -> None:
-    """Atomically: a reader sees the old file or the new one.
+    """Write atomically: a reader sees the old file or the new one.
 
-    One key holds all of ``about``: the library writes several in an order that changes.
+    One key holds all of ``about``, because the library writes several keys in a varying order.
     """
     part = path.with_name(path.name + ".part")
     part.write_bytes(save(dict(tensors), {_KEY: json.dumps(about, sort_keys=True)}))
@@ -37,20 +37,20 @@ def write_tensors(path: Path, tensors: Mapping[str, AnyArray], about: Mapping[st
 
 
 def read_tensors(path: Path) -> TensorFile:
-    """Raises PluginError where the file is missing, cut short, or something else."""
+    """Read a file. Raises PluginError if it is missing, truncated, or something else."""
     try:
-        data = read_file(path, MOST_BYTES)
+        data = read_file(path, MAX_BYTES)
     except OSError as error:
         raise PluginError(f"{path}: cannot be read: {error.strerror}.") from None
-    if len(data) > MOST_BYTES:
-        raise PluginError(f"{path}: must have at most {MOST_BYTES} bytes; it is larger.")
+    if len(data) > MAX_BYTES:
+        raise PluginError(f"{path}: must have at most {MAX_BYTES} bytes; it is larger.")
     try:
         tensors = load(data)
         header = json.loads(data[8 : 8 + int.from_bytes(data[:8], "little")])
         about = json.loads(header.get("__metadata__", {}).get(_KEY, "{}"))
     except Exception as error:
         raise PluginError(
-            f"{path}: must be a whole safetensors file. It is cut short or something else:"
+            f"{path}: must be a complete safetensors file. It is truncated or something else:"
             f" {str(error)[:200]}."
         ) from None
     if not isinstance(about, dict):

@@ -1,26 +1,26 @@
-"""What says whether a disc may be somewhere, or go somewhere straight."""
+"""Collision checkers: whether a disc may be at a place, or move straight to another."""
 
 from typing import Literal, Protocol
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.geometry.capsule_grid import CapsuleGrid, capsule_grid, is_clear
-from benchnav.geometry.sweep import inside_solid, solid_index
+from benchnav.geometry import CapsuleGrid, inside_solid, is_clear, solid_index
+from benchnav.geometry.capsule_grid import capsule_grid
 from benchnav.kernels import kernel
-from benchnav.navigation.map import Map
+from benchnav.navigation import Map
 
-SKIN = 1e-6  # [m] taken off the radius: an agent may stand in contact, give or take rounding
+SKIN = 1e-6  # [m] subtracted from the radius: an agent may be in contact, up to rounding
 
 CheckerName = Literal["planar", "mesh"]
 
 
 class Checker(Protocol):
-    """Validity for one map and one radius."""
+    """Collision checks for one map and one radius."""
 
     def point_is_free(self, x: float, y: float) -> bool:
-        """True where the disc may stand at (x, y) [m]: it overlaps nothing and is in no solid."""
+        """Whether the disc may be at (x, y) [m]: it overlaps no obstacle and is in no solid."""
 
     def motion_is_free(self, px: float, py: float, qx: float, qy: float) -> bool:
-        """True where the disc may go straight from p, where it may stand, to q."""
+        """Whether the disc may move straight from p, a free place, to q."""
 
 
 class PlanarChecker:
@@ -38,8 +38,8 @@ class PlanarChecker:
         return _motion_is_free(self._grid, px, py, qx, qy)
 
 
-# A plain tuple crosses from Python into a kernel in a third of the time of a named one,
-# and crossing is most of what a check costs.
+# Passing a plain tuple from Python to a kernel takes a third of the time of a named tuple,
+# and this is most of the cost of a check.
 _Grid = tuple[FloatArray, FloatArray, IntArray, IntArray, float, float, float, int, int]
 _Solids = tuple[FloatArray, IntArray, IntArray]
 
@@ -59,7 +59,7 @@ def _motion_is_free(g: _Grid, px: float, py: float, qx: float, qy: float) -> boo
 
 
 class CountingChecker:
-    """Another checker, and how many motions it was asked about."""
+    """Another checker, with a count of the motions that it checked."""
 
     def __init__(self, checker: Checker) -> None:
         self._checker = checker
@@ -72,7 +72,7 @@ class CountingChecker:
 
 
 def checker_for(name: CheckerName, map: Map, radius: float) -> Checker:
-    """The named checker of a map, for a disc of ``radius`` [m]."""
+    """Return the named checker of a map, for a disc of ``radius`` [m]."""
     if name == "planar":
         return PlanarChecker(map, radius)
     from .mesh_checker import MeshChecker

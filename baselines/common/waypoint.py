@@ -1,33 +1,32 @@
-"""The view of an agent whose goal is a waypoint: how a policy that knows goals follows paths."""
+"""Observations with a waypoint as goal: how a policy that knows goals follows paths."""
 
 from dataclasses import replace
 
 import numpy as np
 
 from benchnav.arrays import FloatArray
-from benchnav.navigation.controller import Guide
-from benchnav.navigation.observation import Observation
+from benchnav.navigation import Guide, Observation
 
 
 def towards(
-    seen: Observation, guide: Guide, tolerance: FloatArray
+    observation: Observation, guide: Guide, tolerance: FloatArray
 ) -> tuple[Observation, FloatArray]:
-    """(what is seen with waypoints for goals, (B, A) [m] tolerance of these).
+    """Return (observation with waypoints as goals, their tolerance (B, A) [m]).
 
-    A target within the tolerance of the goal is the goal; what is behind any other
-    matters, unlike what is behind a goal, so its tolerance is 0. Rays go on seeing the
-    real goal and no waypoint: a goal that a ray meets hides the obstacle behind it, which a
-    policy passes by as soon as it turns to the next waypoint (`recurrent-ppo`
+    A target within the tolerance of the goal is the goal. Obstacles behind any other target
+    matter, unlike obstacles behind a goal, so its tolerance is 0. Rays still report the
+    real goal and no waypoint: a goal that a ray hits hides the obstacle behind it, which a
+    policy passes as soon as it turns to the next waypoint (`recurrent-ppo`
     succeeded with 82 % of agents in `leaders/static` with waypoints on the rays' layer
-    of the goal, 99 % with nothing there, and 100 % with the real goal; 40 validation
+    of the goal, 99 % with an empty layer, and 100 % with the real goal; 40 validation
     worlds, waypoints up to 3 m ahead on paths of `ompl.rrt-connect`).
 
     Args:
-        seen: one decision's view.
-        guide: where the paths say to go.
+        observation: of one decision.
+        guide: the targets of the paths.
         tolerance: (B, A) [m] of the goal.
     """
-    offset = guide.target - seen.goal
+    offset = guide.target - observation.goal
     arriving = np.sum(offset * offset, axis=-1) <= tolerance * tolerance
-    goal = np.where(arriving[..., None], seen.goal, guide.target)
-    return replace(seen, goal=goal), np.where(arriving, tolerance, 0.0)
+    goal = np.where(arriving[..., None], observation.goal, guide.target)
+    return replace(observation, goal=goal), np.where(arriving, tolerance, 0.0)

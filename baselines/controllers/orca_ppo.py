@@ -1,4 +1,4 @@
-"""Two controllers in one: ORCA where what it assumes holds, a learned policy where it does not."""
+"""Two controllers in one: ORCA where its assumptions hold, otherwise a learned policy."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,15 +7,18 @@ from typing import ClassVar
 import numpy as np
 from pydantic import Field
 
-from benchnav.arena.agents import Dynamics
-from benchnav.arena.sensing import Sensing
-from benchnav.arena.solid import Kind
+from benchnav.arena import Dynamics, Kind, Sensing
 from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.controller import Controller, Guide
-from benchnav.navigation.navigator import Need, PluginConfig, Training
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.row_table import RowTable
+from benchnav.navigation import (
+    Briefing,
+    Controller,
+    Guide,
+    Need,
+    Observation,
+    PluginConfig,
+    RowTable,
+    Training,
+)
 
 from ..common.twist_conversion import as_velocity
 from ..learned.recurrent_ppo.controller import RecurrentPPOPlusController
@@ -45,14 +48,14 @@ class OrcaPpoConfig(PluginConfig):
 
 
 class OrcaPpo(Controller):
-    """Decides for each agent and anew at each step who drives.
+    """Decides at each step which controller drives each agent.
 
-    ORCA assumes that a body can do what it is told, and that others avoid it too. So the
+    ORCA assumes that a body can execute its commands, and that others avoid it too. Therefore the
     policy of `recurrent-ppo-plus`, which learned on unicycles among obstacles that
-    never yield, drives unicycles, and everybody who has just sensed a dynamic
+    never yield, drives unicycles, and every agent that has just sensed a dynamic
     obstacle; ORCA drives all others. The policy knows goals better than waypoints
-    (`.waypoint`), and passes by what stands on its way: unless the path is a detour, it is
-    shown the goal.
+    (`.waypoint`), and passes obstacles on its way: unless the path is a detour, it
+    gets the goal.
     """
 
     Config = OrcaPpoConfig
@@ -82,12 +85,12 @@ class OrcaPpo(Controller):
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         self._orca.reset(briefings, rows)
         self._policy.reset(briefings, rows)
-        for row, told in zip(rows.tolist(), briefings, strict=True):
+        for row, briefing in zip(rows.tolist(), briefings, strict=True):
             self._kept.put(
                 row,
-                unicycle=told.dynamics == Dynamics.UNICYCLE,
-                dt=np.full(len(told), told.dt),
-                wary=np.full(len(told), -np.inf),  # [s] until when
+                unicycle=briefing.dynamics == Dynamics.UNICYCLE,
+                dt=np.full(len(briefing), briefing.dt),
+                wary=np.full(len(briefing), -np.inf),  # [s] end of wariness
             )
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
@@ -104,11 +107,11 @@ class OrcaPpo(Controller):
             as_velocity(learned, unicycle, observation.heading, dt, twist, velocity)
         return velocity
 
-    def _wary(self, seen: Observation) -> BoolArray:
-        """(B, A) who has just sensed a dynamic obstacle."""
-        rows, agents = seen.rows, seen.active.shape[1]
-        time = seen.time[:, None]
-        near = seen.neighbours
+    def _wary(self, observation: Observation) -> BoolArray:
+        """Whether each agent has just sensed a dynamic obstacle, (B, A)."""
+        rows, agents = observation.rows, observation.active.shape[1]
+        time = observation.time[:, None]
+        near = observation.neighbours
         assert near is not None  # noqa: S101 - both parts declare them
         listed = np.arange(near.kind.shape[2]) < near.count[..., None]
         mover = np.any(listed & (near.kind == Kind.DYNAMIC), axis=-1)
@@ -118,9 +121,9 @@ class OrcaPpo(Controller):
         wary: BoolArray = time <= until
         return wary
 
-    def _goals_if_direct(self, seen: Observation, guide: Guide) -> Guide:
-        """The guide with goals for targets, but for detours."""
-        way = seen.goal - seen.position
+    def _goals_if_direct(self, observation: Observation, guide: Guide) -> Guide:
+        """Return the guide with goals as targets, except on detours."""
+        way = observation.goal - observation.position
         straight = np.sqrt(np.sum(way * way, axis=-1))
         direct = guide.remaining - straight <= self.config.detour
-        return replace(guide, target=np.where(direct[..., None], seen.goal, guide.target))
+        return replace(guide, target=np.where(direct[..., None], observation.goal, guide.target))

@@ -1,8 +1,8 @@
-"""A hybrid for those who have no map: they make one, and two controllers share the driving."""
+"""A hybrid for agents without a map: they build one, and two controllers share the driving."""
 
 from pydantic import Field
 
-from benchnav.navigation.hierarchy.hierarchical import Hierarchical
+from benchnav.navigation import Hierarchical
 from benchnav.navigation.hierarchy.hierarchical_config import GuidedConfig, PartSpec
 from benchnav.navigation.hierarchy.mapping import MappingConfig
 
@@ -10,7 +10,7 @@ from ..controllers.orca_ppo import OrcaPpoConfig
 
 
 class MapOrcaPpo(Hierarchical):
-    """``mapping+visibility+orca-ppo``, whose agents give way where they are stuck."""
+    """``mapping+visibility+orca-ppo``, whose agents give way if they are stuck."""
 
     class Config(GuidedConfig):
         """Parameters."""

@@ -6,18 +6,15 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.geometry.rotation import cos_sin
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.navigator import Navigator, PluginConfig
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.randomness.agent_streams import canonical_order
+from benchnav.geometry import cos_sin
+from benchnav.navigation import Briefing, Navigator, Observation, PluginConfig, canonical_order
 
 
 class RandomWalk(Navigator):
-    """Drives at preferred speed in a direction that does a random walk of its own.
+    """Drives at preferred speed in a direction that does a random walk.
 
     The direction turns by the Cayley map of a uniform variate, which needs no
-    libm and so is the same on every machine.
+    libm and so is equal on every machine.
     """
 
     class Config(PluginConfig):

@@ -1,13 +1,12 @@
-"""The shortest path of a disc, exact to rounding, by tangents and arcs."""
+"""The shortest path of a disc, exact except for rounding, by tangents and arcs."""
 
 from weakref import WeakKeyDictionary
 
 from pydantic import Field
 
 from benchnav.arrays import FloatArray
-from benchnav.geometry.geodesic import FreeSpace
-from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import PluginConfig
+from benchnav.geometry import FreeSpace
+from benchnav.navigation import Map, PluginConfig
 
 from ..common.clearance_planner import ClearanceConfig
 from ..common.disc_planner import DiscPlanner, Query
@@ -17,7 +16,7 @@ class Visibility(DiscPlanner):
     """The generalised visibility graph (Latombe 1991, chapter 4): `benchnav.geometry.geodesic`.
 
     It is the path whose length is the metric `geodesic_length`, for the disc enlarged
-    by the clearance. Around corners it is a polyline outside the arc, longer than that
+    by the clearance. Around corners it is a polyline outside the arc, longer than the arc
     by a share of bend² / 12.
     """
 

@@ -1,1 +1,60 @@
-"""The parts of a drawn world: solids, bodies, agents, clock and rules."""
+"""What a drawn world is made of. A name is loaded when it is first used."""
+
+from typing import TYPE_CHECKING
+
+from benchnav.lazy_names import lazy_names
+
+if TYPE_CHECKING:
+    from benchnav.arena.agents import Agents, Dynamics, Role
+    from benchnav.arena.body import Body, Law, LawKind
+    from benchnav.arena.mesh import Mesh
+    from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
+    from benchnav.arena.solid import Kind, Solid
+    from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
+else:
+    __getattr__ = lazy_names(
+        __name__,
+        {
+            "Afterwards": "benchnav.arena.world",
+            "Agents": "benchnav.arena.agents",
+            "Body": "benchnav.arena.body",
+            "Charge": "benchnav.arena.world",
+            "Clock": "benchnav.arena.world",
+            "ContactRule": "benchnav.arena.world",
+            "Dynamics": "benchnav.arena.agents",
+            "EdgeSensor": "benchnav.arena.sensing",
+            "Kind": "benchnav.arena.solid",
+            "Law": "benchnav.arena.body",
+            "LawKind": "benchnav.arena.body",
+            "Mesh": "benchnav.arena.mesh",
+            "NeighbourSensor": "benchnav.arena.sensing",
+            "RaySensor": "benchnav.arena.sensing",
+            "Role": "benchnav.arena.agents",
+            "Rules": "benchnav.arena.world",
+            "Sensing": "benchnav.arena.sensing",
+            "Solid": "benchnav.arena.solid",
+            "World": "benchnav.arena.world",
+        },
+    )
+
+__all__ = [
+    "Afterwards",
+    "Agents",
+    "Body",
+    "Charge",
+    "Clock",
+    "ContactRule",
+    "Dynamics",
+    "EdgeSensor",
+    "Kind",
+    "Law",
+    "LawKind",
+    "Mesh",
+    "NeighbourSensor",
+    "RaySensor",
+    "Role",
+    "Rules",
+    "Sensing",
+    "Solid",
+    "World",
+]

@@ -12,7 +12,7 @@ from benchnav.arena.body import Body
 from benchnav.arena.mesh import Mesh
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import BoolArray
+from benchnav.arrays import BoolArray, Extent
 
 
 class ContactRule(IntEnum):
@@ -24,7 +24,7 @@ class ContactRule(IntEnum):
 
 
 class Afterwards(IntEnum):
-    """What happens to an agent's body after it arrived or its attempt ended."""
+    """The effect of arrival, or of the end of an attempt, on an agent's body."""
 
     VANISH = 0
     STAY = 1
@@ -67,7 +67,7 @@ class Rules:
 class World:
     """The complete input of the simulator for one episode."""
 
-    bounds: tuple[float, float, float, float]  # xmin, ymin, xmax, ymax [m]
+    bounds: Extent  # xmin, ymin, xmax, ymax [m]
     solids: tuple[Solid, ...]  # immobile within the episode; walls first
     bodies: tuple[Body, ...]  # dynamic obstacles, then static ones that are relocated within it
     agents: Agents
@@ -79,9 +79,7 @@ class World:
     stale_solids: tuple[Solid, ...] | None = (
         None  # the solids before they were moved; None: they were not moved
     )
-    measurement_area: tuple[float, float, float, float] | None = (
-        None  # the area of density measurements [m]
-    )
+    measurement_area: Extent | None = None  # the area of density measurements [m]
     meshes: tuple[Mesh, ...] = ()  # the meshes whose cross-sections are among the solids
     redraws: int = 0  # unsolvable draws that were rejected
 

@@ -1,35 +1,29 @@
 """Where words go: results to stdout, talk to stderr."""
 
 import sys
-from collections.abc import Sequence
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
+from benchnav.api.messages import message as say
+from benchnav.api.text_table import written
 from benchnav.errors import StoreError, UsageError, did_you_mean
-from benchnav.system.plain_file import require_writable
 from benchnav.system.streams import drop
 from benchnav.text.visible import visible_lines
 
-if TYPE_CHECKING:
-    from benchnav.store.runs.spans import Span
+__all__ = ["deliver", "one_of", "put", "say"]
 
 E = TypeVar("E", bound=StrEnum)
 
 
-def say(text: str) -> None:
-    """Talk; what controls a terminal is marked."""
-    sys.stderr.write(visible_lines(text) + "\n")
-    sys.stderr.flush()
-
-
-def put(text: str) -> None:
-    """A result; what controls a terminal is marked. Raises StoreError where it cannot be written.
+def put(text: str, safe: bool = False) -> None:
+    """Print a result. Characters that control a terminal are marked, unless ``safe`` says that
+    all of them are our own. Raises StoreError where it cannot be written.
 
     A reader that leaves early has seen enough: the rest is dropped, and the work goes on.
     """
     try:
-        sys.stdout.write(visible_lines(text) + "\n")
+        sys.stdout.write((text if safe else visible_lines(text)) + "\n")
         sys.stdout.flush()
     except OSError as error:
         drop(sys.stdout)
@@ -40,39 +34,12 @@ def put(text: str) -> None:
             ) from error
 
 
-def columns(rows: Sequence[Sequence[str]]) -> str:
-    """Rows as columns of equal width, two spaces apart."""
-    if not rows:
-        return ""
-    widths = [max(len(row[c]) for row in rows) for c in range(len(rows[0]))]
-    return "\n".join(
-        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
-        for row in rows
-    )
-
-
-def spans(seeds: Sequence["Span"]) -> str:
-    """Spans of seeds in few words: ``seeds 0–4, 7``."""
-    shown = ", ".join("–".join(map(str, sorted({a, b - 1}))) for a, b in seeds[:4])
-    several = len(seeds) > 1 or seeds[0][1] - seeds[0][0] > 1
-    return f"seed{'s' if several else ''} {shown}{', …' if len(seeds) > 4 else ''}"
-
-
-def write(path: Path, text: str) -> None:
-    """Write a result to a file. Raises StoreError where that cannot be done."""
-    try:
-        require_writable(path)
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
-
-
 def deliver(text: str, out: Path | None) -> None:
     """A result to stdout, or to a file where one is named."""
     if out is None:
         put(text.rstrip("\n"))
     else:
-        write(out, text)
+        written(text, out)
         say(f"{out} is written")
 
 

@@ -50,7 +50,6 @@ app = typer.Typer(
         " 129 by SIGHUP)."
     ),
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
@@ -73,8 +72,18 @@ app.command("doctor")(stoppable(doctor))
 
 def _version(asked: bool) -> None:
     if asked:
-        put(benchnav.__version__)
+        put(f"{benchnav.__version__}\n{_made_of()}")
         raise typer.Exit
+
+
+def _made_of() -> str:
+    """Return the commit, where there is one, and the machine that a manifest would name."""
+    from benchnav.store.runs.provenance import commit, processor
+
+    code = commit()
+    dirty = ", with changes that are not committed" if code["dirty"] else ""
+    lines = [f"commit     {code['commit']}{dirty}"] if code["commit"] else []
+    return "\n".join([*lines, f"processor  {processor()}", f"python     {sys.version.split()[0]}"])
 
 
 @app.callback()
@@ -101,8 +110,8 @@ def status(arguments: Sequence[str]) -> int:
         return tell(stopped)
     except typer.Abort as aborted:
         return tell(aborted.__cause__)
-    except SystemExit as left:  # typer's, where the reader of a help leaves early
-        return 0 if isinstance(left.__context__, BrokenPipeError) else 1
+    except SystemExit as left:  # typer's: after completion, or where a reader of the help left
+        return 0 if left.code in (0, None) or isinstance(left.__context__, BrokenPipeError) else 1
     except (OSError, MemoryError, ImportError, RuntimeError) as error:
         if not (sentence := machine_fault(error)):
             raise

@@ -1,4 +1,4 @@
-"""A YAML file as plain data that still knows on which line everything stands."""
+"""A YAML file as plain data, with the line of every node."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ PathKey = str | int
 
 @dataclass
 class Place:
-    """Line of one node, and the places of what it holds."""
+    """The line of a node, and the places of its children."""
 
     line: int
     children: dict[PathKey, "Place"] = field(default_factory=dict)
@@ -17,14 +17,14 @@ class Place:
 
 @dataclass(frozen=True, eq=False)
 class Document:
-    """Plain Python data (dict, list, str, int, float, bool, None) and where it stands."""
+    """Plain Python data (dict, list, str, int, float, bool, None) and its places in the file."""
 
-    name: str  # file name, as messages print it
+    name: str  # file name, as in messages
     data: Any
     place: Place
 
     def line(self, path: Sequence[PathKey]) -> int:
-        """Line (from 1) of the node at ``path``, or of its nearest ancestor that exists."""
+        """Return the line (from 1) of the node at ``path``, or of its nearest existing ancestor."""
         place = self.place
         for key in path:
             child = place.children.get(key)
@@ -34,14 +34,14 @@ class Document:
         return place.line
 
     def where(self, path: Sequence[PathKey] = ()) -> str:
-        """``file:line: a.b[0].c`` (without the path where it is empty)."""
+        """Return ``file:line: a.b[0].c`` (no path if it is empty)."""
         text = dotted(path)
         at = f"{self.name}:{self.line(path)}:"
         return f"{at} {text}" if text else at
 
 
 def dotted(path: Sequence[PathKey]) -> str:
-    """``('teams', 0, 'radius')`` → ``teams[0].radius``."""
+    """Return a path as text: ``('teams', 0, 'radius')`` → ``teams[0].radius``."""
     text = ""
     for key in path:
         if isinstance(key, int):
@@ -52,7 +52,7 @@ def dotted(path: Sequence[PathKey]) -> str:
 
 
 def shown(value: object, limit: int = 60) -> str:
-    """A value as messages print it: short, on one line, text without its quotes."""
+    """Return a value as in messages: short, on one line, strings without quotes."""
     text = value if isinstance(value, str) else repr(value)
     text = "".join(c if c.isprintable() else "?" for c in text[: limit + 1])
     return text if len(text) <= limit else text[:limit] + "…"

@@ -1,4 +1,4 @@
-"""Checks a document against a pydantic model; every complaint names file, line and key."""
+"""Check a document against a pydantic model; every error names file, line and key."""
 
 import json
 from collections.abc import Sequence
@@ -36,15 +36,15 @@ _BOUND = {
     "string_pattern_mismatch": "must match {pattern}",
     "union_tag_invalid": "must have one of the types {expected_tags}",
 }  # fmt: skip
-_OF_TYPE = {  # the value is of another kind than belongs there
+_OF_TYPE = {  # the value has the wrong type
     "float_type", "int_type", "bool_type", "string_type", "dict_type", "model_type", "list_type",
     "tuple_type", "path_type", "model_attributes_type", "literal_error", "enum", "sampler",
 }  # fmt: skip
-_LOOK_AHEAD = 4  # times as many complaints as are shown are looked at, to merge them
+_LOOK_AHEAD = 4  # ratio of the errors examined for merging to the errors shown
 
 
 class FieldError(ValueError):
-    """A complaint of a model's own check about the key at ``path`` inside that model."""
+    """An error of a model's own check about the key at ``path`` inside that model."""
 
     def __init__(self, path: Sequence[PathKey], message: str) -> None:
         super().__init__(message)
@@ -52,38 +52,38 @@ class FieldError(ValueError):
 
 
 def validate(model: type[M], document: Document) -> M:
-    """The document as ``model``; numbers are never read out of text, lists serve as tuples.
+    """Return the document as ``model``; text is never read as a number, lists serve as tuples.
 
     Raises:
-        ScenarioError: one line per complaint, at most ten.
+        ScenarioError: one line per error, at most ten.
     """
     if not isinstance(document.data, dict):
         raise ScenarioError(
-            f"{document.where()} the file must be a mapping; got {_seen(document.data)}."
+            f"{document.where()} the file must be a mapping; got {_described(document.data)}."
         )
     try:
         return model.model_validate_json(json.dumps(document.data), strict=True)
     except ValidationError as error:
-        raise ScenarioError(_explained(model, document, error)) from None
+        raise ScenarioError(_error_text(model, document, error)) from None
 
 
-def _explained(model: type[BaseModel], document: Document, error: ValidationError) -> str:
-    """A line for each mistake, up to `MAX_ERRORS` of them, and how many more there are."""
+def _error_text(model: type[BaseModel], document: Document, error: ValidationError) -> str:
+    """Return a line for each error, up to `MAX_ERRORS`, and the number of further errors."""
     details = [
         detail
         for detail in error.errors(include_url=False, include_input=False)
         if not _is_long_enough(document.data, detail)
     ]
-    found = [_complaint(model, document, detail) for detail in details[: _LOOK_AHEAD * MAX_ERRORS]]
-    merged = _merged(found)
+    found = [_error(model, document, detail) for detail in details[: _LOOK_AHEAD * MAX_ERRORS]]
+    merged = _merge(found)
     shown = merged[:MAX_ERRORS]
-    lines = [complaint.text for complaint in shown]
+    lines = [error_line.text for error_line in shown]
     more = len(merged) - len(shown) + len(details) - len(found)
     return "\n".join([*lines, f"… and {more} more."] if more else lines)
 
 
 def _is_long_enough(data: Any, detail: ErrorDetails) -> bool:
-    """Whether a list is called too short because an entry of it is wrong, which is told anyway."""
+    """Whether a list is reported as too short only because one of its entries is wrong."""
     if detail["type"] != "too_short":
         return False
     got = _value(data, _real(data, detail["loc"], "too_short"))
@@ -91,31 +91,31 @@ def _is_long_enough(data: Any, detail: ErrorDetails) -> bool:
 
 
 @dataclass(frozen=True)
-class _Complaint:
-    """What is wrong at a path; where ``must`` is not empty, the text is made of it."""
+class _Error:
+    """An error at a path; if ``must`` is not empty, the text is built from it."""
 
     at: str
     path: tuple[PathKey, ...]
-    said: str = ""
+    message: str = ""
     must: str = ""
     got: str = ""
     hint: str = ""
-    of_type: bool = False  # says that another type of value belongs there
+    of_type: bool = False  # the error is about the type of the value
 
     @property
     def text(self) -> str:
-        """One line."""
-        said = f"{self.must}; got {self.got}.{self.hint}" if self.must else self.said
-        return f"{self.at} {said}"
+        """The error in one line."""
+        message = f"{self.must}; got {self.got}.{self.hint}" if self.must else self.message
+        return f"{self.at} {message}"
 
 
-def _merged(found: Sequence[_Complaint]) -> list[_Complaint]:
-    """The same, with one complaint for all the alternatives of a union that one value missed.
+def _merge(found: Sequence[_Error]) -> list[_Error]:
+    """Merge the errors of all alternatives of a union that one value missed.
 
-    Where a deeper complaint shows that an alternative took the value, the others say nothing.
+    If an error further inside shows which alternative fits, the others are dropped.
     """
     deeper = {c.path[:k] for c in found for k in range(len(c.path))}
-    merged: dict[object, _Complaint] = {}
+    merged: dict[object, _Error] = {}
     for k, c in enumerate(found):
         if c.of_type and c.path in deeper:
             continue
@@ -129,7 +129,7 @@ def _merged(found: Sequence[_Complaint]) -> list[_Complaint]:
     return list(merged.values())
 
 
-def _complaint(model: type[BaseModel], document: Document, detail: ErrorDetails) -> _Complaint:
+def _error(model: type[BaseModel], document: Document, detail: ErrorDetails) -> _Error:
     context = detail.get("ctx", {})
     own = context.get("error")
     loc: tuple[PathKey, ...] = detail["loc"]
@@ -141,11 +141,11 @@ def _complaint(model: type[BaseModel], document: Document, detail: ErrorDetails)
     kind = detail["type"]
     if kind == "extra_forbidden":
         known = _keys(model, document.data, path[:-1])
-        return _Complaint(at, path, f"is not a known key.{_hint(str(path[-1]), known)}")
+        return _Error(at, path, f"is not a known key.{_hint(str(path[-1]), known)}")
     if kind == "missing":
-        return _Complaint(at, path, "must be given.")
+        return _Error(at, path, "must be given.")
     if own is not None:
-        return _Complaint(at, path, f"{own}{'' if str(own).endswith(('.', '?')) else '.'}")
+        return _Error(at, path, f"{own}{'' if str(own).endswith(('.', '?')) else '.'}")
     must = _must_be(kind, context, detail["msg"])
     hint, of_type = "", kind in _OF_TYPE
     if kind in {"literal_error", "union_tag_invalid", "enum"} and got is not _ABSENT:
@@ -153,7 +153,7 @@ def _complaint(model: type[BaseModel], document: Document, detail: ErrorDetails)
         tag = got.get("type") if isinstance(got, dict) and kind == "union_tag_invalid" else got
         hint = did_you_mean(str(tag)[:100], [e for e in expected.split("'") if e.strip(", or")])
         got = tag
-    return _Complaint(at, path, must=must, got=_seen(got), hint=hint, of_type=of_type)
+    return _Error(at, path, must=must, got=_described(got), hint=hint, of_type=of_type)
 
 
 def _must_be(kind: str, context: dict[str, Any], message: str) -> str:
@@ -168,7 +168,7 @@ def _must_be(kind: str, context: dict[str, Any], message: str) -> str:
 _ABSENT = object()
 
 
-def _seen(value: object) -> str:
+def _described(value: object) -> str:
     if value is _ABSENT or value is None:
         return "nothing"
     if isinstance(value, dict):
@@ -195,12 +195,12 @@ def _value(data: Any, path: Sequence[PathKey]) -> Any:
 
 
 def _real(data: Any, loc: Sequence[PathKey], kind: str) -> tuple[PathKey, ...]:
-    """The location without the union tags that pydantic puts into it."""
+    """Return the location without the union tags that pydantic inserts."""
     path: list[PathKey] = []
     tag = _tag(data)
     for index, key in enumerate(loc):
         if key == tag:
-            tag = None  # a union's tag comes first and may be the name of a key as well
+            tag = None  # a union's tag comes first and may also be the name of a key
         elif _holds(data, key):
             data = data[key]
             tag = _tag(data)
@@ -221,7 +221,7 @@ def _schema(model: type[BaseModel]) -> Schema:
 
 
 def _keys(model: type[BaseModel], data: Any, path: Sequence[PathKey]) -> list[str]:
-    """Keys that the schema knows for the mapping at ``path``."""
+    """Return the keys that the schema allows for the mapping at ``path``."""
     root = _schema(model)
     nodes = _branches(root, root, data)
     for key in path:
@@ -246,7 +246,7 @@ def _step(node: Schema, key: PathKey) -> Schema | None:
 
 
 def _branches(root: Schema, node: Schema, data: Any) -> list[Schema]:
-    """What a schema node may be, references and unions resolved, narrowed by `type` if it can."""
+    """Return the alternatives of a schema node, with references resolved, narrowed by `type`."""
     if "$ref" in node:
         name = node["$ref"].rsplit("/", 1)[-1]
         return _branches(root, root["$defs"][name], data)

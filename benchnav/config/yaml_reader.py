@@ -1,8 +1,8 @@
-"""Reads YAML that may be malformed, enormous, recursive or hostile.
+"""Read YAML that may be malformed, enormous, recursive or hostile.
 
 The file is read as a stream of events by an iterative loop, never recursively,
-and nothing is constructed but plain data. Scalars follow YAML 1.2's core schema,
-less octal and hexadecimal numbers: ``yes``, ``no``, ``012`` and ``0x1F`` are text.
+and only plain data is constructed. Scalars follow YAML 1.2's core schema,
+without octal and hexadecimal numbers: ``yes``, ``no``, ``012`` and ``0x1F`` are text.
 Keys are always text.
 """
 
@@ -39,7 +39,7 @@ __all__ = ["MAX_BYTES", "MAX_DEPTH", "MAX_NODES", "read_yaml", "read_yaml_text",
 
 
 def read_yaml(path: Path | str) -> Document:
-    """The one document in the file ``path``.
+    """Return the one document in the file ``path``.
 
     Raises:
         ScenarioError: the file is missing, too large, not UTF-8, or not the YAML described above.
@@ -63,7 +63,7 @@ def read_yaml(path: Path | str) -> Document:
 
 
 def read_yaml_text(text: str, name: str) -> Document:
-    """The one document in ``text``; ``name`` stands for the file in messages.
+    """Return the one document in ``text``; messages use ``name`` as the file name.
 
     Raises:
         ScenarioError: it is too large, or not the YAML that this module reads.
@@ -77,7 +77,7 @@ def read_yaml_text(text: str, name: str) -> Document:
             builder.take(event)
     except UnicodeEncodeError as error:
         line = text.count("\n", 0, error.start) + 1
-        raise ScenarioError(f"{name}:{line}: the text holds half a surrogate pair.") from None
+        raise ScenarioError(f"{name}:{line}: the text contains half a surrogate pair.") from None
     except yaml.YAMLError as error:
         raise ScenarioError(f"{name}:{_line_of(error, text)}: {_problem(error)}.") from None
     return Document(name, builder.data, builder.place)
@@ -138,12 +138,12 @@ class _Builder:
             case _:
                 pass
 
-    def _fail(self, line: int, what: str) -> None:
-        raise ScenarioError(f"{self.name}:{line}: {what}.")
+    def _fail(self, line: int, problem: str) -> None:
+        raise ScenarioError(f"{self.name}:{line}: {problem}.")
 
-    def _demand(self, holds: bool, line: int, what: str) -> None:
+    def _demand(self, holds: bool, line: int, problem: str) -> None:
         if not holds:
-            self._fail(line, what)
+            self._fail(line, problem)
 
     def _node(self, event: Any, line: int) -> None:
         self._nodes += 1
@@ -172,7 +172,7 @@ class _Builder:
             self._demand(len(key) <= MAX_KEY, line, f"a key has at most {MAX_KEY} characters")
             if key in self._open[-1][0]:
                 first = self._open[-1][1].children[key].line
-                self._fail(line, f"the key {shown(key)!r} stands twice; first in line {first}")
+                self._fail(line, f"the key {shown(key)!r} is repeated; first in line {first}")
             self._key[-1] = key
             return
         plain = event.style is None or event.style == ""
@@ -201,7 +201,7 @@ class _Builder:
 
 
 def _plain(text: str) -> Any:
-    """An unquoted scalar; ValueError for a number of absurd length."""
+    """Return the value of an unquoted scalar; ValueError for a number of absurd length."""
     if text in _WORDS:
         return _WORDS[text]
     if _INT.fullmatch(text):

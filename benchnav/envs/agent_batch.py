@@ -22,8 +22,8 @@ from benchnav.episode.episode import Status
 from benchnav.errors import UsageError
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.observation import Observation
+from benchnav.navigation.observe import observe
 from benchnav.navigation.plugin.configure import Spec
-from benchnav.sensors.sense import sense
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +96,7 @@ class AgentBatch:
         ]
         self._limits = s.agents  # (B, A) records: max_speed, max_turn_rate, radius
         self.active = np.zeros((s.B, s.A), np.bool_)
+        self._slots = np.tile(np.arange(s.A), (s.B, 1))  # (B, A) all agents
 
     @property
     def rows(self) -> int:
@@ -196,15 +197,9 @@ class AgentBatch:
         taken, self._queue = self._queue[:count], self._queue[count:]
         return taken
 
-    def _observe(self, who: BoolArray) -> Observation:
+    def _observe(self, active: BoolArray) -> Observation:
         s = self.simulation
-        chosen = np.where(who, np.arange(s.A), -1)
-        rays, neighbours, edges = sense(s, chosen, self._needs)
-        time = s.steps_done * s.records["dt"]
-        return Observation(
-            np.arange(s.B), time, who, s.position, s.heading, s.velocity, s.goal,
-            (None,) * s.B, rays, neighbours, edges,
-        )  # fmt: skip
+        return observe(s, self._slots, active, self._needs, (None,) * s.B)
 
     @property
     def _bodies(self) -> Bodies:

@@ -10,13 +10,11 @@ from benchnav.envs.autoreset import Relay
 from benchnav.errors import NavigatorError
 from benchnav.navigation.briefing import brief
 from benchnav.navigation.command_check import CallFailed, checked
-from benchnav.navigation.map import Map
+from benchnav.navigation.held_maps import HeldMaps
 from benchnav.navigation.navigator import Navigator
-from benchnav.navigation.observation import Observation
+from benchnav.navigation.observe import observe
 from benchnav.navigation.plugin.configure import Spec, make, split
-from benchnav.navigation.tracks import granted_map
 from benchnav.plugins import NAVIGATORS
-from benchnav.sensors.sense import sense
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +44,7 @@ class Others:
         self._needs = frozenset(map(str, self._navigator.required))
         self._simulation = simulation
         self._mine: IntArray = np.full((simulation.B, at_most), -1)  # agents, -1: padding
-        self._maps: list[Map | None] = [None] * simulation.B
+        self._maps = HeldMaps(simulation, "known")
 
     def start(
         self, rows: IntArray, mine: Sequence[IntArray], streams: Sequence[np.random.Generator]
@@ -57,12 +55,12 @@ class Others:
             world = self._simulation.worlds[row]
             self._mine[row] = -1
             self._mine[row, : len(agents)] = agents
-            self._maps[row] = granted_map(world, "known")
             briefings.append(
                 brief(
                     world.agents, agents, dt=world.clock.dt, horizon=world.clock.horizon,
                     goal_tolerance=world.rules.goal_tolerance,
-                    decision_budget=world.clock.decision_budget, map=self._maps[row], rng=rng,
+                    decision_budget=world.clock.decision_budget, map=self._maps.begin(row),
+                    rng=rng,
                 )
             )  # fmt: skip
         if self._mine.shape[1]:
@@ -79,31 +77,12 @@ class Others:
         who = np.zeros_like(acting)
         if active.any():
             try:
-                answer = checked(self._navigator.act(self._observe(active)), active)
+                maps = self._maps.now()
+                seen = observe(self._simulation, self._mine, active, self._needs, maps)
+                answer = checked(self._navigator.act(seen), active)
             except CallFailed as failed:
                 raise NavigatorError(f"{self._blame}: {failed.reason}.") from None
             world, slot = np.nonzero(active)
             command[world, self._mine[world, slot]] = answer[world, slot]
             who[world, self._mine[world, slot]] = True
         return Instead(who, command, self._navigator.command == "twist")
-
-    def _observe(self, active: BoolArray) -> Observation:
-        s, row = self._simulation, np.arange(len(active))[:, None]
-        rays, neighbours, edges = sense(s, np.where(active, self._mine, -1), self._needs)
-        self._renew_maps()
-
-        def own(array: FloatArray) -> FloatArray:
-            return array[row, self._mine]
-
-        return Observation(
-            row[:, 0], s.steps_done * s.records["dt"], active, own(s.position), own(s.heading),
-            own(s.velocity), own(s.goal), tuple(self._maps), rays, neighbours, edges,
-        )  # fmt: skip
-
-    def _renew_maps(self) -> None:
-        s = self._simulation
-        for row, held in enumerate(self._maps):
-            revision = int(s.revision[row])
-            if held is not None and held.revision != revision:
-                position = s.body_position[row].copy()
-                self._maps[row] = granted_map(s.worlds[row], "known", position, revision)

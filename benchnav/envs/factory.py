@@ -22,7 +22,7 @@ class NoRenderingError(UsageError, TypeError):
 
 
 Reward = RewardWeights | Mapping[str, Any] | None
-SPLITS = ("train", "validation")
+LEARNING_SPLITS = ("train", "validation")
 
 
 def make_worlds(scenario: str, split: str, count: int) -> list[World]:
@@ -32,10 +32,11 @@ def make_worlds(scenario: str, split: str, count: int) -> list[World]:
         UsageError: no such split, or no worlds.
         UnknownPluginError: no such scenario.
     """
-    if split not in SPLITS:
+    if split not in LEARNING_SPLITS:
         raise UsageError(
-            f"The split of an environment must be {' or '.join(SPLITS)}: worlds of the split test"
-            f" are for `benchnav run`. Got {split!r} instead.{did_you_mean(split, SPLITS)}"
+            f"The split of an environment must be {' or '.join(LEARNING_SPLITS)}: worlds of the"
+            f" split test are for `benchnav run`. Got {split!r} instead."
+            f"{did_you_mean(split, LEARNING_SPLITS)}"
         )
     if count < 1:
         raise UsageError(f"An environment must have at least 1 world. Got {count} instead.")
@@ -57,9 +58,10 @@ def weights_of(reward: Reward) -> RewardWeights:
 
 
 def make_batch(
-    scenario: str, encoder: str, split: str, worlds: int, reward: Reward, slots: int | None = None
-) -> AgentBatch:
-    """As many rows as have ``slots`` learning agents, or one, over a pool of ``worlds`` worlds.
+    scenario: str, encoder: str, split: str, worlds: int, reward: Reward, slots: int | None = None,
+    *, rows: int = 1,
+) -> AgentBatch:  # fmt: skip
+    """As many rows as have ``slots`` learning agents, or ``rows``, over a pool of worlds.
 
     The order of worlds is random until `AgentBatch.reseed` decides it. Raises UsageError where
     ``slots`` is no multiple of a world's learning agents, and what `make_worlds`, `weights_of`
@@ -67,7 +69,9 @@ def make_batch(
     """
     chosen, weights = encoder_called(encoder), weights_of(reward)
     pool, drivers = make_worlds(scenario, split, worlds), find(scenario).driver_specs
-    rows, L = 1, max(int(world.agents.evaluated.sum()) for world in pool)
+    L = max(int(world.agents.evaluated.sum()) for world in pool)
+    if rows < 1:
+        raise UsageError(f"An environment must step at least 1 world at once. Got {rows} instead.")
     if slots is not None:
         rows = max(slots // max(L, 1), 1)
         if slots != rows * L:

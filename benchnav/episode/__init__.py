@@ -1,1 +1,27 @@
-"""The record of one run of one navigator in one world."""
+"""The record of one run of one navigator in one world. A name is loaded when it is first used."""
+
+from typing import TYPE_CHECKING
+
+from benchnav.lazy_names import lazy_names
+
+if TYPE_CHECKING:
+    from benchnav.episode.episode import Contacts, Episode, Identity, Status, Timings
+else:
+    __getattr__ = lazy_names(
+        __name__,
+        {
+            "Contacts": "benchnav.episode.episode",
+            "Episode": "benchnav.episode.episode",
+            "Identity": "benchnav.episode.episode",
+            "Status": "benchnav.episode.episode",
+            "Timings": "benchnav.episode.episode",
+        },
+    )
+
+__all__ = [
+    "Contacts",
+    "Episode",
+    "Identity",
+    "Status",
+    "Timings",
+]

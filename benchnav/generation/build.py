@@ -24,9 +24,9 @@ from benchnav.scenario.sampling.packing import most_that_fit
 from benchnav.scenario.sampling.sampler import sample, support
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.team import RegionStart, Team
+from benchnav.scenario.terms import SPLITS
 from benchnav.text.plural import counted
 
-SPLITS = ("train", "validation", "test")
 MAX_ATTEMPTS = 100
 _LAYOUT, _STATIC, _ELSEWHERE, _DYNAMIC, _TEAM, _BODY = range(6)  # streams of one draw
 

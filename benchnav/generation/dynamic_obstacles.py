@@ -6,7 +6,7 @@ import numpy as np
 
 from benchnav.arena.body import Body, Law
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import BoolArray, Extent, FloatArray
 from benchnav.generation.clearance import Barrier, clear, shifted
 from benchnav.generation.motion_law import draw_law, moved_law, recorded_laws, swept
 from benchnav.generation.placement import FEW, NoPlaceError, draw_points, find_place
@@ -16,8 +16,7 @@ from benchnav.scenario.obstacle import DynamicGroup
 from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import sample
 
-Bounds = tuple[float, float, float, float]
-_LAWS = 16  # laws tried for one obstacle
+_LAWS = 16  # laws that are tried for one obstacle
 
 
 def is_fixed(group: DynamicGroup) -> bool:
@@ -45,7 +44,7 @@ def check_clear(bodies: list[Body], group: DynamicGroup, name: str, standing: Ba
 
 
 def placed_bodies(
-    group: DynamicGroup, name: str, bounds: Bounds, standing: Barrier, rng: np.random.Generator
+    group: DynamicGroup, name: str, bounds: Extent, standing: Barrier, rng: np.random.Generator
 ) -> list[Body]:
     """Draw the obstacles of a group with random places.
 
@@ -64,7 +63,7 @@ def placed_bodies(
 def _place(
     group: DynamicGroup,
     solid: Solid,
-    bounds: Bounds,
+    bounds: Extent,
     standing: Barrier,
     subject: str,
     rng: np.random.Generator,

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arrays import FloatArray, IntArray
+from benchnav.arrays import Extent, FloatArray, IntArray
 from benchnav.generation.clearance import Barrier, clear, point_shapes
 
-Bounds = tuple[float, float, float, float]
 _QUADRANT = 8  # segments in a quarter of a grown outline
 _GROWTH = 1.0 / math.cos(math.pi / (4 * _QUADRANT))  # the polygon then contains the circle
 _TOUCH = 1e-6  # [m] extra distance that every place keeps
@@ -44,7 +43,7 @@ class PartedSpace(Space):
     it decides which.
     """
 
-    def __init__(self, wall: Barrier, bounds: Bounds, walled: bool, radius: float) -> None:
+    def __init__(self, wall: Barrier, bounds: Extent, walled: bool, radius: float) -> None:
         import shapely
 
         reach = radius + _TOUCH

@@ -3,15 +3,14 @@
 import numpy as np
 
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import BoolArray
+from benchnav.arrays import BoolArray, Extent
 from benchnav.generation.solids import polygon_solids
 from benchnav.scenario.wall import Layout, Maze
 
-Bounds = tuple[float, float, float, float]
 Span = tuple[float, float]
 
 
-def draw_layout(layout: Layout, bounds: Bounds, rng: np.random.Generator) -> list[Solid]:
+def draw_layout(layout: Layout, bounds: Extent, rng: np.random.Generator) -> list[Solid]:
     """Return the walls, merged where they meet, so that no edge lies inside another wall."""
     import shapely
 

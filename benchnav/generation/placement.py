@@ -6,11 +6,10 @@ from typing import Literal
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import BoolArray, Extent, FloatArray
 from benchnav.scenario.sampling.region import Anywhere, Points, Rectangle, Region, Ring
 
-Bounds = tuple[float, float, float, float]
-MANY = (8, 24, 96, 384)  # candidates tested together, until one is accepted
+MANY = (8, 24, 96, 384)  # candidates that are tested together, until one will do
 FEW = (8, 24)
 
 
@@ -26,7 +25,7 @@ class NoPlaceError(Exception):
     team: int | None = None  # index of the team whose part had no place
 
 
-def draw_points(region: Region, bounds: Bounds, count: int, rng: np.random.Generator) -> FloatArray:
+def draw_points(region: Region, bounds: Extent, count: int, rng: np.random.Generator) -> FloatArray:
     """Return points (count, 2) of ``region`` [m], uniform by area."""
     if isinstance(region, Points):
         return np.array(region.points)[rng.integers(len(region.points), size=count)]
@@ -37,7 +36,7 @@ def draw_points(region: Region, bounds: Bounds, count: int, rng: np.random.Gener
     return np.array(region.center) + _in_ring(inner, outer, count, rng)
 
 
-def within(bounds: Bounds, points: FloatArray) -> BoolArray:
+def within(bounds: Extent, points: FloatArray) -> BoolArray:
     """Whether each of the points (N, 2) lies within ``bounds``, edges included, (N,)."""
     x0, y0, x1, y1 = bounds
     found: BoolArray = np.all((points >= (x0, y0)) & (points <= (x1, y1)), axis=1)

@@ -8,16 +8,14 @@ import numpy as np
 
 from benchnav.arena.mesh import Mesh as ArenaMesh
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import FloatArray
+from benchnav.arrays import Extent, FloatArray
 from benchnav.geometry.rotation import rotated
 from benchnav.scenario.sampling.sampler import Scalar, sample
 from benchnav.scenario.shape import Box, Disc, Mesh, Occupancy, Polygon, Polyline, Shape
 from benchnav.scenario.wall import Place, Wall
 
-Bounds = tuple[float, float, float, float]
 
-
-def bounds_wall(bounds: Bounds) -> Solid:
+def bounds_wall(bounds: Extent) -> Solid:
     """Return the wall along the bounds: one clockwise loop, solid outside."""
     x0, y0, x1, y1 = bounds
     return Solid(Kind.WALL, (np.array([[x0, y0], [x0, y1], [x1, y1], [x1, y0]], float),))

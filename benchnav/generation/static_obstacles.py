@@ -9,7 +9,7 @@ import numpy as np
 
 from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import BoolArray, Extent, FloatArray
 from benchnav.generation.clearance import Barrier, added, clear, joined, shifted
 from benchnav.generation.placement import NoPlaceError, directions, draw_points, find_place, within
 from benchnav.generation.solids import draw_solid
@@ -17,8 +17,7 @@ from benchnav.scenario.obstacle import StaticGroup
 from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import sample
 
-ARRANGEMENTS = 50  # arrangements of old places tried before the world is drawn again
-Bounds = tuple[float, float, float, float]
+ARRANGEMENTS = 50  # of old places that are tried before the world is drawn again
 Streams = Sequence[np.random.Generator]
 
 
@@ -56,7 +55,7 @@ class Piece:
 
 def draw_pieces(
     groups: Sequence[StaticGroup],
-    bounds: Bounds,
+    bounds: Extent,
     walls: Barrier,
     keep_free: Barrier,
     streams: Streams,
@@ -103,7 +102,7 @@ class _Search:
     Each method returns the pieces, and the barrier that includes them.
     """
 
-    bounds: Bounds
+    bounds: Extent
     keep_free: Barrier
     folder: Path
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import BoolArray, Extent, FloatArray, IntArray
 from benchnav.generation.clearance import Barrier, clear, point_shapes
 from benchnav.generation.free_space import Space
 from benchnav.generation.placement import MANY, NoPlaceError, distances, draw_points, find_place
@@ -24,8 +24,7 @@ from benchnav.scenario.team import (
     Team,
 )
 
-Bounds = tuple[float, float, float, float]
-_STARTS = 8  # starts tried before an agent without a goal is given up
+_STARTS = 8  # starts that are tried before an agent without a goal is given up
 
 
 @dataclass
@@ -54,7 +53,7 @@ def place_team(
     team: Team,
     radii: FloatArray,
     crowd: Crowd,
-    bounds: Bounds,
+    bounds: Extent,
     spaces: Sequence[Space],
     bodies: Barrier,
     rng: np.random.Generator,
@@ -121,7 +120,7 @@ class _Placing:
     count: int
     radius: float
     crowd: Crowd
-    bounds: Bounds
+    bounds: Extent
     spaces: Sequence[Space]
     bodies: Barrier
     rng: np.random.Generator
@@ -234,7 +233,7 @@ def is_fixed(team: Team) -> bool:
     return isinstance(start, PointsStart)
 
 
-def lattice_of(team: Team, bounds: Bounds, count: int) -> FloatArray:
+def lattice_of(team: Team, bounds: Extent, count: int) -> FloatArray:
     """Return the places (N, 2) of a packed start before jitter; (0, 2) for any other start."""
     start = team.start
     if not isinstance(start, PackedStart):
@@ -242,7 +241,7 @@ def lattice_of(team: Team, bounds: Bounds, count: int) -> FloatArray:
     return lattice(start.front, start.spacing, start.region, bounds, count)
 
 
-def fixed_places(team: Team, bounds: Bounds) -> FloatArray:
+def fixed_places(team: Team, bounds: Extent) -> FloatArray:
     """Return the discs (N, 5) that starts and goals fill in every draw, as capsules.
 
     For a packed start they are enlarged by the jitter of its agents.

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from benchnav.arena.world import World
-from benchnav.generation.build import SPLITS, build
+from benchnav.generation.build import build
 from benchnav.scenario.scenario import Scenario
+from benchnav.scenario.terms import SPLITS
 
 Place = tuple[str, int]  # split, seed
 

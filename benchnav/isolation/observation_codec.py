@@ -44,9 +44,6 @@ def decode_observation(fields: dict[str, Any], maps: dict[int, Map | None]) -> O
         for sensor, kind in _SENSORS.items()
         if f"{sensor}.{fields_of(kind)[0].name}" in fields
     }
-    own = [fields[name] for name in _OWN]
-    create: Any = Observation
-    observation: Observation = create(
-        *own, tuple(maps[row] for row in fields["rows"].tolist()), **readings_by_sensor
-    )
-    return observation
+    own = {name: fields[name] for name in _OWN}
+    held = tuple(maps[row] for row in fields["rows"].tolist())
+    return Observation(**own, maps=held, **readings_by_sensor)

@@ -19,7 +19,7 @@ from benchnav.isolation.observation_codec import encode_observation
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.command_check import CallFailed
 from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import Navigator, Need, Training
+from benchnav.navigation.navigator import CommandKind, Navigator, Need, Training
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.plugin.capabilities import Introduction
 from benchnav.navigation.plugin.configure import Spec
@@ -63,13 +63,15 @@ class Remote(Navigator):
     @cached_property
     def introduction(self) -> Introduction:
         """The properties that the process reports. Raises NavigatorError if it cannot start."""
-        introduction = say_hello(self.process, self.hello)
-        vars(self)["command"] = introduction.command  # declared on the class, known only now
-        return introduction
+        return say_hello(self.process, self.hello)
 
     @property
     def required(self) -> frozenset[Need]:
         return self.introduction.needs
+
+    @property
+    def command(self) -> CommandKind:
+        return self.introduction.command
 
     @property
     def uses_map(self) -> bool:

@@ -182,15 +182,31 @@ def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:
         for m, name in enumerate(s.metrics):
             at, place, metric = n * len(s.metrics) + m, body.places[m][n], metrics.get(name)
             yield Record(
-                navigator, body.scenario, s.track, s.role, name,
-                float(body.found.value[at]), float(body.found.low[at]), float(body.found.high[at]),
-                metric.unit if metric else "", metric.better if metric else None,
-                episodes, int(defined[n, m]), int(body.failed[:, n].sum()),
-                place.low, place.high, place.ranked, place.note,
-                s.split, s.scenario_hash if body.single else "",
-                s.horizon if body.single else float("nan"), s.dt if body.single else float("nan"),
-                rehearsal=s.rehearsal, rehearsal_decisions=decisions, rehearsal_seconds=seconds,
-            )  # fmt: skip
+                navigator=navigator,
+                scenario=body.scenario,
+                track=s.track,
+                role=s.role,
+                metric=name,
+                value=float(body.found.value[at]),
+                low=float(body.found.low[at]),
+                high=float(body.found.high[at]),
+                unit=metric.unit if metric else "",
+                better=metric.better if metric else None,
+                episodes=episodes,
+                defined=int(defined[n, m]),
+                failures=int(body.failed[:, n].sum()),
+                rank_low=place.low,
+                rank_high=place.high,
+                ranked=place.ranked,
+                note=place.note,
+                split=s.split,
+                scenario_hash=s.scenario_hash if body.single else "",
+                horizon=s.horizon if body.single else float("nan"),
+                dt=s.dt if body.single else float("nan"),
+                rehearsal=s.rehearsal,
+                rehearsal_decisions=decisions,
+                rehearsal_seconds=seconds,
+            )
 
 
 def _mean_cost(body: _Body, navigator: int) -> tuple[float, float]:
@@ -217,12 +233,29 @@ def _missing(
             for name in s.metrics:
                 metric = metrics.get(name)
                 yield Record(
-                    cell.navigator, s.scenario, s.track, s.role, name,
-                    float("nan"), float("nan"), float("nan"),
-                    metric.unit if metric else "", metric.better if metric else None,
-                    0, 0, 0, None, None, 0, f"n/a ({cell.reason})",
-                    s.split, s.scenario_hash, s.horizon, s.dt, rehearsal=s.rehearsal,
-                )  # fmt: skip
+                    navigator=cell.navigator,
+                    scenario=s.scenario,
+                    track=s.track,
+                    role=s.role,
+                    metric=name,
+                    value=float("nan"),
+                    low=float("nan"),
+                    high=float("nan"),
+                    unit=metric.unit if metric else "",
+                    better=metric.better if metric else None,
+                    episodes=0,
+                    defined=0,
+                    failures=0,
+                    rank_low=None,
+                    rank_high=None,
+                    ranked=0,
+                    note=f"n/a ({cell.reason})",
+                    split=s.split,
+                    scenario_hash=s.scenario_hash,
+                    horizon=s.horizon,
+                    dt=s.dt,
+                    rehearsal=s.rehearsal,
+                )
 
 
 def _place(names: Sequence[str]) -> Callable[[Record], tuple[Any, ...]]:

@@ -7,25 +7,48 @@ pass of its own; it ranks. NaN where that pass was not made.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.metric import Direction, Metric, metric
 from benchnav.metrics.quantities.episode_analysis import analyse
-from benchnav.metrics.success import OWN
 
 
-def decision_time(episode: Episode, share: float) -> float:
-    """[s] quantile ``share`` over decisions of the time per active agent of the navigator."""
-    return _quantile(analyse(episode).decision_per_agent, share)
+def _percentiles(
+    name: str, times: Callable[[Episode], FloatArray], title: str, meaning: str,
+    better: Direction | None,
+) -> tuple[Metric, Metric, Metric]:  # fmt: skip
+    """Return the 50th, 95th and 99th percentile of ``times(episode)`` (N,) [s], ascending."""
+
+    def one(percent: int) -> Metric:
+        which = "median" if percent == 50 else f"{percent}th percentile of the"
+
+        def function(episode: Episode, members: BoolArray) -> float:
+            return _quantile(times(episode), percent / 100)
+
+        function.__name__ = function.__qualname__ = f"{name}_p{percent}"
+        function.__doc__ = f"[s] {which} {meaning}."
+        declare = metric(
+            title=f"{which[0].upper()}{which[1:]} {title}", unit="s", better=better, low=0.0,
+            scope="group", verifiable=False,
+        )  # fmt: skip
+        return declare(function)
+
+    return one(50), one(95), one(99)
 
 
-def latency(episode: Episode, share: float) -> float:
-    """[s] quantile ``share`` of the time that one world alone waits for a decision."""
+def _decision_times(episode: Episode) -> FloatArray:
+    """Return (N,) [s] the time of each decision per active agent of the navigator, ascending."""
+    return analyse(episode).decision_per_agent
+
+
+def _latencies(episode: Episode) -> FloatArray:
+    """Return (N,) [s] how long one world alone waits for each decision, ascending."""
     taken = episode.timings.latency
-    return math.nan if taken is None else _quantile(np.sort(taken), share)
+    return np.zeros(0) if taken is None else np.sort(taken)
 
 
 def _quantile(ordered: FloatArray, share: float) -> float:
@@ -35,36 +58,24 @@ def _quantile(ordered: FloatArray, share: float) -> float:
     return float(np.interp(share * (len(ordered) - 1), np.arange(len(ordered)), ordered))
 
 
-def decision_time_p50(episode: Episode, members: BoolArray) -> float:
-    """[s] median time per decision and agent."""
-    return decision_time(episode, 0.50)
+decision_time_p50, decision_time_p95, decision_time_p99 = _percentiles(
+    "decision_time", _decision_times, "decision time per agent",
+    "time per decision and agent", None,
+)  # fmt: skip
+latency_p50, latency_p95, latency_p99 = _percentiles(
+    "latency", _latencies, "time for a decision of one world alone",
+    "time that one world alone waits for a decision", "lower",
+)  # fmt: skip
 
 
-def decision_time_p95(episode: Episode, members: BoolArray) -> float:
-    """[s] 95th percentile of the time per decision and agent."""
-    return decision_time(episode, 0.95)
-
-
-def decision_time_p99(episode: Episode, members: BoolArray) -> float:
-    """[s] 99th percentile of the time per decision and agent."""
-    return decision_time(episode, 0.99)
-
-
-def latency_p50(episode: Episode, members: BoolArray) -> float:
-    """[s] median time that one world alone waits for a decision."""
-    return latency(episode, 0.50)
-
-
-def latency_p95(episode: Episode, members: BoolArray) -> float:
-    """[s] 95th percentile of the time that one world alone waits for a decision."""
-    return latency(episode, 0.95)
-
-
-def latency_p99(episode: Episode, members: BoolArray) -> float:
-    """[s] 99th percentile of the time that one world alone waits for a decision."""
-    return latency(episode, 0.99)
-
-
+@metric(
+    title="Most memory that the process held",
+    unit="B",
+    better=None,
+    low=0.0,
+    scope="group",
+    verifiable=False,
+)
 def peak_memory(episode: Episode, members: BoolArray) -> float:
     """[B] most that the process held in memory until the episode's end; NaN where unknown.
 
@@ -74,50 +85,31 @@ def peak_memory(episode: Episode, members: BoolArray) -> float:
     return math.nan if memory is None else float(memory)
 
 
+@metric(
+    title="Time before the first decision",
+    unit="s",
+    better="lower",
+    low=0.0,
+    scope="group",
+    verifiable=False,
+)
 def planning_time(episode: Episode, members: BoolArray) -> float:
     """[s] that this world took of the navigator's reset."""
     return float(episode.timings.planning)
 
 
+@metric(
+    title="Share of decisions over the scenario's budget",
+    unit="",
+    better="lower",
+    low=0.0,
+    high=1.0,
+    scope="group",
+    verifiable=False,
+)
 def over_budget(episode: Episode, members: BoolArray) -> float:
     """Share of decisions that took longer than the scenario's budget; NaN without one."""
     budget, decision = episode.world.clock.decision_budget, episode.timings.decision
     if budget is None or len(decision) == 0:
         return math.nan
     return float((decision > budget).mean())
-
-
-DECISION_TIME_P50, DECISION_TIME_P95, DECISION_TIME_P99 = (
-    Metric(
-        f"decision_time_{name}", f"{title} decision time per agent", "s", None, 0.0, math.inf,
-        OWN, function, scope="group", verifiable=False,
-    )
-    for name, title, function in [
-        ("p50", "Median", decision_time_p50),
-        ("p95", "95th percentile of the", decision_time_p95),
-        ("p99", "99th percentile of the", decision_time_p99),
-    ]
-)  # fmt: skip
-LATENCY_P50, LATENCY_P95, LATENCY_P99 = (
-    Metric(
-        f"latency_{name}", f"{title} time for a decision of one world alone", "s", "lower", 0.0,
-        math.inf, OWN, function, scope="group", verifiable=False,
-    )
-    for name, title, function in [
-        ("p50", "Median", latency_p50),
-        ("p95", "95th percentile of the", latency_p95),
-        ("p99", "99th percentile of the", latency_p99),
-    ]
-)  # fmt: skip
-PEAK_MEMORY = Metric(
-    "peak_memory", "Most memory that the process held", "B", None, 0.0, math.inf, OWN,
-    peak_memory, scope="group", verifiable=False,
-)  # fmt: skip
-PLANNING_TIME = Metric(
-    "planning_time", "Time before the first decision", "s", "lower", 0.0, math.inf, OWN,
-    planning_time, scope="group", verifiable=False,
-)  # fmt: skip
-OVER_BUDGET = Metric(
-    "over_budget", "Share of decisions over the scenario's budget", "", "lower", 0.0, 1.0, OWN,
-    over_budget, scope="group", verifiable=False,
-)  # fmt: skip

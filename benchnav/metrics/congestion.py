@@ -9,19 +9,26 @@ import math
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import BoolArray, Extent, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.density import frame_times
 from benchnav.metrics.quantities.episode_analysis import Analysis, analyse
 from benchnav.metrics.quantities.trajectory import positions_at, present_at
-from benchnav.metrics.success import OWN
 
 SLOW = 0.2  # of the preferred speed
 CELL = 0.5  # [m] of the velocity field of the congestion level
 WINDOW = 10.0  # [s] over which that field is averaged
+_STEFFEN = "Steffen & Seyfried 2010, computed with PedPy"
 
 
+@metric(
+    title="Share of time slow beside another agent and not at the goal",
+    unit="",
+    better=None,
+    low=0.0,
+    high=1.0,
+)
 def jam(episode: Episode) -> FloatArray:
     """(A,) share of its time in which the agent was slower than 0.2 × its preferred speed
     while not at the goal and with another agent's centre within two of its diameters.
@@ -36,6 +43,14 @@ def jam(episode: Episode) -> FloatArray:
     return np.where(total > 0.0, jammed.sum(axis=1) / np.where(total > 0.0, total, 1.0), math.nan)
 
 
+@metric(
+    title="Mean Voronoi density in the measurement area",
+    unit="1/m²",
+    better=None,
+    low=0.0,
+    reference=_STEFFEN,
+    scope="group",
+)
 def density_mean(episode: Episode, members: BoolArray) -> float:
     """[1/m²] mean over time, at 1 Hz, of the Voronoi density.
 
@@ -45,12 +60,27 @@ def density_mean(episode: Episode, members: BoolArray) -> float:
     return float(density.mean()) if len(density) else math.nan
 
 
+@metric(
+    title="Greatest Voronoi density in the measurement area",
+    unit="1/m²",
+    better=None,
+    low=0.0,
+    reference=_STEFFEN,
+    scope="group",
+)
 def density_peak(episode: Episode, members: BoolArray) -> float:
     """[1/m²] greatest Voronoi density, at 1 Hz."""
     density = analyse(episode).density
     return float(density.max()) if len(density) else math.nan
 
 
+@metric(
+    title="Flow through the middle line of the measurement area",
+    unit="1/s",
+    better=None,
+    low=0.0,
+    scope="group",
+)
 def flow(episode: Episode, members: BoolArray) -> float:
     """[1/s] of members (A,) through the line that halves the measurement area.
 
@@ -68,7 +98,7 @@ def flow(episode: Episode, members: BoolArray) -> float:
     return float((len(times) - 1) / (times[-1] - times[0]))
 
 
-def first_crossings(found: Analysis, area: tuple[float, float, float, float]) -> FloatArray:
+def first_crossings(found: Analysis, area: Extent) -> FloatArray:
     """(A,) [s] when each agent first crosses the middle line of ``area``; inf if never."""
     agents, t = found.world.agents, found.trajectories
     x = int(np.argmax(np.abs(agents.goal - agents.start).sum(axis=0)))  # the axis that is crossed
@@ -84,6 +114,14 @@ def first_crossings(found: Analysis, area: tuple[float, float, float, float]) ->
     return first
 
 
+@metric(
+    title="Deviation of velocities from their mean in the measurement area",
+    unit="m/s",
+    better=None,
+    low=0.0,
+    reference="Helbing, Johansson & Al-Abideen 2007, whose variance is its square",
+    scope="group",
+)
 def velocity_fluctuation(episode: Episode, members: BoolArray) -> float:
     """[m/s] mean over time of the root mean square deviation from the mean velocity of those
     who are in the measurement area; instants with fewer than two of them do not count.
@@ -100,6 +138,14 @@ def velocity_fluctuation(episode: Episode, members: BoolArray) -> float:
     return float(np.sqrt(variance[count > 1]).mean()) if (count > 1).any() else math.nan
 
 
+@metric(
+    title="Range of rotation of the velocity field over mean speed",
+    unit="1/m",
+    better=None,
+    low=0.0,
+    reference="Feliciani & Nishinari 2018",
+    scope="group",
+)
 def congestion_level(episode: Episode, members: BoolArray) -> float:
     """[1/m] (greatest − smallest rotation of the velocity field) / mean speed, mean over time.
 
@@ -122,9 +168,7 @@ def congestion_level(episode: Episode, members: BoolArray) -> float:
     return float(np.mean(defined)) if defined else math.nan
 
 
-def _level(
-    place: FloatArray, velocity: FloatArray, area: tuple[float, float, float, float]
-) -> float:
+def _level(place: FloatArray, velocity: FloatArray, area: Extent) -> float:
     """Of one window: places and velocities (N, 2)."""
     low, size = np.array(area[:2]), np.array([area[2] - area[0], area[3] - area[1]])
     cells = np.maximum(1, np.round(size / CELL)).astype(np.int64)
@@ -150,7 +194,7 @@ def _level(
 
 
 def _in_area(
-    found: Analysis, area: tuple[float, float, float, float], times: FloatArray
+    found: Analysis, area: Extent, times: FloatArray
 ) -> tuple[FloatArray, BoolArray, FloatArray]:
     """Places (A, N, 2), who is in the area (A, N), and velocities (A, N, 2) at ``times``.
 
@@ -165,32 +209,3 @@ def _in_area(
     span = np.maximum(after - before, 1e-9)[None, :, None]
     velocity: FloatArray = (positions_at(t, after) - positions_at(t, before)) / span
     return place, inside, velocity
-
-
-JAM = Metric(
-    "jam", "Share of time slow beside another agent and not at the goal", "", None, 0.0, 1.0,
-    OWN, jam,
-)  # fmt: skip
-_STEFFEN = "Steffen & Seyfried 2010, computed with PedPy"
-DENSITY_MEAN = Metric(
-    "density_mean", "Mean Voronoi density in the measurement area", "1/m²", None, 0.0, math.inf,
-    _STEFFEN, density_mean, scope="group",
-)  # fmt: skip
-DENSITY_PEAK = Metric(
-    "density_peak", "Greatest Voronoi density in the measurement area", "1/m²", None, 0.0,
-    math.inf, _STEFFEN, density_peak, scope="group",
-)  # fmt: skip
-FLOW = Metric(
-    "flow", "Flow through the middle line of the measurement area", "1/s", None, 0.0, math.inf,
-    OWN, flow, scope="group",
-)  # fmt: skip
-CONGESTION_LEVEL = Metric(
-    "congestion_level", "Range of rotation of the velocity field over mean speed", "1/m", None,
-    0.0, math.inf, "Feliciani & Nishinari 2018", congestion_level, scope="group",
-)  # fmt: skip
-VELOCITY_FLUCTUATION = Metric(
-    "velocity_fluctuation", "Deviation of velocities from their mean in the measurement area",
-    "m/s", None, 0.0, math.inf,
-    "Helbing, Johansson & Al-Abideen 2007, whose variance is its square",
-    velocity_fluctuation, scope="group",
-)  # fmt: skip

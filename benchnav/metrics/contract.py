@@ -1,5 +1,6 @@
 """What a metric must be; the registry asks it."""
 
+from types import ModuleType
 from typing import Any
 
 from benchnav.metrics.metric import Metric
@@ -7,8 +8,10 @@ from benchnav.metrics.metric import Metric
 
 def metric_rule(name: str, plugin: Any) -> str:
     """Return what the metric ``name`` must be and is not; "" if there is nothing."""
+    if isinstance(plugin, ModuleType):
+        return f"be named as one metric, {plugin.__name__}:{name}: a module is no metric"
     if not isinstance(plugin, Metric):
-        return "be a benchnav.metrics.metric.Metric"
+        return "be a benchnav.metrics.metric.Metric, as the decorator `metric` makes of a function"
     if ":" not in name and plugin.name != name:
         return f"carry that name, and not {plugin.name!r}"
     if plugin.better not in ("higher", "lower", None):

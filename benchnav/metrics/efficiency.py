@@ -6,21 +6,26 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.episode_analysis import analyse
-from benchnav.metrics.success import OWN
+
+_ANDERSON = "Anderson et al. 2018, On evaluation of embodied navigation agents"
+_YOKOYAMA = "Yokoyama et al. 2021, Success weighted by completion time"
 
 
+@metric(title="Time until first arrival", unit="s", better="lower", low=0.0, conditional=True)
 def time_to_goal(episode: Episode) -> FloatArray:
     """(A,) [s] first arrival; NaN where it never came."""
     return analyse(episode).arrival.copy()
 
 
+@metric(title="Way travelled", unit="m", better=None, low=0.0)
 def path_length(episode: Episode) -> FloatArray:
     """(A,) [m] travelled until the attempt was over, in the plane: turning adds nothing."""
     return analyse(episode).trajectories.length.copy()
 
 
+@metric(title="Shortest way among walls and static obstacles", unit="m", better=None, low=0.0)
 def geodesic_length(episode: Episode) -> FloatArray:
     """(A,) [m] shortest way of the agent's disc among walls and static obstacles to its goal disc.
 
@@ -29,6 +34,14 @@ def geodesic_length(episode: Episode) -> FloatArray:
     return analyse(episode).geodesic.copy()
 
 
+@metric(
+    title="Shortest way over way travelled",
+    unit="",
+    better="higher",
+    low=0.0,
+    high=1.0,
+    conditional=True,
+)
 def efficiency(episode: Episode) -> FloatArray:
     """(A,) shortest way over way travelled, of those that arrived.
 
@@ -39,12 +52,28 @@ def efficiency(episode: Episode) -> FloatArray:
     return np.where(found.arrived, _share(found.geodesic, found.trajectories.length), math.nan)
 
 
+@metric(
+    title="Success weighted by path length",
+    unit="",
+    better="higher",
+    low=0.0,
+    high=1.0,
+    reference=_ANDERSON,
+)
 def spl(episode: Episode) -> FloatArray:
     """(A,) success weighted by path length: success · ℓ* / max(ℓ, ℓ*)."""
     found = analyse(episode)
     return found.success * _share(found.geodesic, found.trajectories.length)
 
 
+@metric(
+    title="Success weighted by completion time",
+    unit="",
+    better="higher",
+    low=0.0,
+    high=1.0,
+    reference=_YOKOYAMA,
+)
 def sct(episode: Episode) -> FloatArray:
     """(A,) success weighted by completion time: success · T* / max(T, T*).
 
@@ -57,6 +86,14 @@ def sct(episode: Episode) -> FloatArray:
     return found.success * _share(best, time)
 
 
+@metric(
+    title="Time until the last one arrived",
+    unit="s",
+    better="lower",
+    low=0.0,
+    scope="group",
+    conditional=True,
+)
 def makespan(episode: Episode, members: BoolArray) -> float:
     """[s] when the last of the members (A,) arrived; NaN unless all did."""
     times = analyse(episode).arrival[members]
@@ -68,27 +105,3 @@ def _share(best: FloatArray, taken: FloatArray) -> FloatArray:
     asked = np.where(best > 0.0, best, math.nan)
     share: FloatArray = asked / np.maximum(taken, asked)
     return share
-
-
-_ANDERSON = "Anderson et al. 2018, On evaluation of embodied navigation agents"
-_YOKOYAMA = "Yokoyama et al. 2021, Success weighted by completion time"
-
-TIME_TO_GOAL = Metric(
-    "time_to_goal", "Time until first arrival", "s", "lower", 0.0, math.inf, OWN, time_to_goal,
-    conditional=True,
-)  # fmt: skip
-PATH_LENGTH = Metric("path_length", "Way travelled", "m", None, 0.0, math.inf, OWN, path_length)
-GEODESIC_LENGTH = Metric(
-    "geodesic_length", "Shortest way among walls and static obstacles", "m", None, 0.0, math.inf,
-    OWN, geodesic_length,
-)  # fmt: skip
-EFFICIENCY = Metric(
-    "efficiency", "Shortest way over way travelled", "", "higher", 0.0, 1.0, OWN, efficiency,
-    conditional=True,
-)  # fmt: skip
-SPL = Metric("spl", "Success weighted by path length", "", "higher", 0.0, 1.0, _ANDERSON, spl)
-SCT = Metric("sct", "Success weighted by completion time", "", "higher", 0.0, 1.0, _YOKOYAMA, sct)
-MAKESPAN = Metric(
-    "makespan", "Time until the last one arrived", "s", "lower", 0.0, math.inf, OWN, makespan,
-    scope="group", conditional=True,
-)  # fmt: skip

@@ -17,12 +17,17 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode
 from benchnav.kernels import kernel
 from benchnav.metrics.groups import label_parts
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.density import FRAME_RATE
 from benchnav.metrics.quantities.episode_analysis import Analysis, analyse
-from benchnav.metrics.success import OWN
 
 
+@metric(
+    title="Mean lateral distance of a follower from its leader's way",
+    unit="m",
+    better=None,
+    low=0.0,
+)
 def path_keeping(episode: Episode) -> FloatArray:
     """(A,) [m] mean distance of a follower from the way that its leader took.
 
@@ -45,6 +50,12 @@ def path_keeping(episode: Episode) -> FloatArray:
     return kept
 
 
+@metric(
+    title="Mean time from falling behind the group until back with it",
+    unit="s",
+    better=None,
+    low=0.0,
+)
 def catch_up_time(episode: Episode) -> FloatArray:
     """(A,) [s] mean time from falling behind the group until being back with it.
 
@@ -160,13 +171,3 @@ def behind(place: FloatArray, left: FloatArray, active: BoolArray, radius: Float
             apart = active[a, k] and size[label[a]] < largest
             lost[a, k] = apart and left[a, k] > total / count
     return lost
-
-
-PATH_KEEPING = Metric(
-    "path_keeping", "Mean lateral distance of a follower from its leader's way", "m", None, 0.0,
-    math.inf, OWN, path_keeping,
-)  # fmt: skip
-CATCH_UP_TIME = Metric(
-    "catch_up_time", "Mean time from falling behind the group until back with it", "s", None,
-    0.0, math.inf, OWN, catch_up_time,
-)  # fmt: skip

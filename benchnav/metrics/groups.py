@@ -13,14 +13,20 @@ import numpy as np
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode
 from benchnav.kernels import kernel
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.episode_analysis import analyse
-from benchnav.metrics.success import OWN
 
 LINK = 3.0  # diameters between centres that hold a group together
 STILL = 1e-9  # [m] a step that is shorter has no direction
 
 
+@metric(
+    title="Spread of a team over that of its closest packing",
+    unit="",
+    better=None,
+    low=0.0,
+    scope="group",
+)
 def cohesion(episode: Episode, members: BoolArray) -> float:
     """Mean distance to the centroid over that of as many discs packed hexagonally into a disc.
 
@@ -30,11 +36,21 @@ def cohesion(episode: Episode, members: BoolArray) -> float:
     return _over_teams(episode, members, _spread)
 
 
+@metric(
+    title="How far a team moves in one direction",
+    unit="",
+    better=None,
+    low=0.0,
+    high=1.0,
+    reference="Vicsek et al. 1995",
+    scope="group",
+)
 def polarisation(episode: Episode, members: BoolArray) -> float:
     """Length of the mean of the unit vectors of motion (Vicsek order), of those that move."""
     return _over_teams(episode, members, _order)
 
 
+@metric(title="Connected parts of a team", unit="", better=None, low=1.0, scope="group")
 def splits(episode: Episode, members: BoolArray) -> float:
     """Connected parts of the team, where centres within three diameters are connected."""
     return _over_teams(episode, members, _parts)
@@ -125,16 +141,3 @@ def label_parts(
                     top += 1
         parts += 1
     return parts
-
-
-COHESION = Metric(
-    "cohesion", "Spread of a team over that of its closest packing", "", None, 0.0, math.inf, OWN,
-    cohesion, scope="group",
-)  # fmt: skip
-POLARISATION = Metric(
-    "polarisation", "How far a team moves in one direction", "", None, 0.0, 1.0,
-    "Vicsek et al. 1995", polarisation, scope="group",
-)  # fmt: skip
-SPLITS = Metric(
-    "splits", "Connected parts of a team", "", None, 1.0, math.inf, OWN, splits, scope="group"
-)

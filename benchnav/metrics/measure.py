@@ -28,9 +28,7 @@ def own_metrics() -> tuple[Metric, ...]:
 
 def is_own(name: str) -> bool:
     """Whether the metric of this name is part of benchnav, and not of a plugin."""
-    source = METRICS.source(name)
-    ours = source.distribution.partition(" ")[0] == "benchnav"
-    return ours and not METRICS.is_local(name) and source.value.startswith("benchnav.")
+    return METRICS.source(name).is_own and not METRICS.is_local(name)
 
 
 def all_metrics() -> tuple[Metric, ...]:

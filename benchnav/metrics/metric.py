@@ -1,32 +1,85 @@
 """A metric: a pure function of an episode, with unit, direction, range and reference."""
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal
+from types import ModuleType
+from typing import Any, Literal
 
 from benchnav.arrays import LARGEST, BoolArray, FloatArray
 from benchnav.episode.episode import Episode
 
+OWN = "own definition"
+Direction = Literal["higher", "lower"]
+Scope = Literal["agent", "group"]
+Function = Callable[..., FloatArray | float]
+"""Per agent: ``(episode) -> (A,)``; per group: ``(episode, members) -> float``."""
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, kw_only=True)
 class Metric:
-    """Per agent: ``function(episode) -> (A,)``; per group: ``function(episode, members) -> float``.
+    """A function of an episode and what tables must know of it. Called, it calls the function.
 
-    Undefined is NaN, never a perfect score.
+    Undefined is NaN, never a perfect score. `metric` makes one of a function.
     """
 
     name: str  # "success", "path_length", …
     title: str  # one sentence
     unit: str  # "", "m", "s", "rad/m", …
-    better: Literal["higher", "lower"] | None  # None: descriptive, never ranked
+    better: Direction | None  # None: descriptive, never ranked
     low: float  # smallest and greatest possible value
     high: float
     reference: str  # where the definition comes from
-    function: Callable[..., FloatArray | float]
-    scope: Literal["agent", "group"] = "agent"
+    function: Function
+    scope: Scope = "agent"
     conditional: bool = False  # defined only for agents that arrived: shows its n, never ranks
     verifiable: bool = True  # False for timings
     rate: bool = False  # per-agent 0/1: its interval is one of binomials
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "__doc__", self.function.__doc__)  # for `help`
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self.function(*arguments)
+
+
+def metric(
+    *,
+    title: str,
+    unit: str,
+    better: Direction | None,
+    low: float = -math.inf,
+    high: float = math.inf,
+    reference: str = OWN,
+    scope: Scope = "agent",
+    conditional: bool = False,
+    verifiable: bool = True,
+    rate: bool = False,
+) -> Callable[[Function], Metric]:
+    """Return a decorator that makes a `Metric` of a function, under the function's name.
+
+    Its arguments are the fields of `Metric`. The function of an agent's metric takes the episode
+    and returns (A,); that of a group's metric also takes the members (A,), and returns a number.
+    """
+
+    def decorate(function: Function) -> Metric:
+        return Metric(
+            name=function.__name__, title=title, unit=unit, better=better, low=low, high=high,
+            reference=reference, function=function, scope=scope, conditional=conditional,
+            verifiable=verifiable, rate=rate,
+        )  # fmt: skip
+
+    return decorate
+
+
+def metrics_in(module: ModuleType) -> dict[str, str]:
+    """Return {metric: attribute} of the metrics that a module defines; imported ones are not."""
+    return {
+        thing.name: attribute
+        for attribute, thing in vars(module).items()
+        if isinstance(thing, Metric)
+        and getattr(thing.function, "__module__", "") == module.__name__
+    }
 
 
 def evaluate(metric: Metric, episode: Episode, members: BoolArray) -> tuple[float, int]:

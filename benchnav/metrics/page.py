@@ -12,7 +12,7 @@ SECTIONS = (
     "success", "safety", "efficiency", "smoothness", "congestion", "groups", "following",
     "compute",
 )  # fmt: skip
-HEAD = """# Metrics
+HEAD = '''# Metrics
 
 Generated from the registry by `python -m benchnav.metrics.page > docs/metrics.md`; a test
 compares the two.
@@ -30,9 +30,31 @@ Every metric keeps its value, to rounding, when the world is moved or turned and
 agents are reordered, and within 5 % when the same smooth motion is recorded at dt, dt/2
 and dt/5. `benchnav.testing.check_metric.check_metric` holds anybody's metric to the same.
 
+A function becomes a metric by the decorator `metric`, and is checked by `check_metric`:
+
+```python
+import numpy as np
+
+from benchnav.metrics.metric import metric
+from benchnav.testing.check_metric import check_metric
+
+
+@metric(title="Arrived in the first 10 s", unit="", better="higher", low=0.0, high=1.0)
+def early(episode):
+    """(A,) 1 where the agent arrived within 10 s."""
+    return (np.nan_to_num(episode.arrival, nan=np.inf) <= 10.0).astype(float)
+
+
+check_metric(early)
+```
+
+A distribution names each of its metrics by an entry point of the group `benchnav.metrics`:
+`early = "my_package.metrics:early"`. In a script, `benchnav.register_metric("early")(early)` makes
+it known to this process.
+
 | metric | what | unit | better | range | of | reference |
 | --- | --- | --- | --- | --- | --- | --- |
-"""
+'''
 
 
 def page() -> str:

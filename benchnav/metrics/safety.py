@@ -10,40 +10,53 @@ from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.encounters import TTC_CAP
 from benchnav.metrics.quantities.episode_analysis import analyse
-from benchnav.metrics.success import OWN, rate
 
 INTIMATE = 0.45  # [m] Hall 1966: the far edge of intimate distance
 PERSONAL = 1.2  # [m] Hall 1966: the far edge of personal distance
+_HALL = "Hall 1966, The Hidden Dimension"
 
 
+@metric(
+    title="Charged with at least one collision",
+    unit="",
+    better="lower",
+    low=0.0,
+    high=1.0,
+    rate=True,
+)
 def collided(episode: Episode) -> FloatArray:
     """(A,) 1 where the agent was charged with at least one collision event."""
     return (_events(episode, episode.contacts.charged) > 0).astype(np.float64)
 
 
+@metric(title="Collision events with walls", unit="", better=None, low=0.0)
 def collisions_wall(episode: Episode) -> FloatArray:
     """(A,) charged events with walls."""
     return _of_kind(episode, Kind.WALL)
 
 
+@metric(title="Collision events with static obstacles", unit="", better=None, low=0.0)
 def collisions_static(episode: Episode) -> FloatArray:
     """(A,) charged events with static obstacles."""
     return _of_kind(episode, Kind.STATIC)
 
 
+@metric(title="Collision events with dynamic obstacles", unit="", better=None, low=0.0)
 def collisions_dynamic(episode: Episode) -> FloatArray:
     """(A,) charged events with dynamic obstacles."""
     return _of_kind(episode, Kind.DYNAMIC)
 
 
+@metric(title="Collision events with other agents", unit="", better=None, low=0.0)
 def collisions_agent(episode: Episode) -> FloatArray:
     """(A,) charged events with other agents."""
     return _of_kind(episode, Kind.AGENT)
 
 
+@metric(title="Time in collision", unit="s", better="lower", low=0.0)
 def contact_time(episode: Episode) -> FloatArray:
     """(A,) [s] in charged contact with at least one partner: overlapping events count once.
 
@@ -61,6 +74,7 @@ def contact_time(episode: Episode) -> FloatArray:
     return total
 
 
+@metric(title="Smallest gap to anything that can be hit", unit="m", better="higher")
 def min_clearance(episode: Episode) -> FloatArray:
     """(A,) [m] smallest gap to anything that can be hit; NaN where there is nothing.
 
@@ -70,6 +84,14 @@ def min_clearance(episode: Episode) -> FloatArray:
     return np.where(np.isfinite(clearance), clearance, np.nan)
 
 
+@metric(
+    title="Smallest time to a collision at constant velocities, up to 5 s",
+    unit="s",
+    better="higher",
+    low=0.0,
+    high=TTC_CAP,
+    reference="Hayward 1972, Near-miss determination",
+)
 def min_time_to_collision(episode: Episode) -> FloatArray:
     """(A,) [s] smallest time to a touch, if all kept the velocities that they had at some instant.
 
@@ -84,6 +106,14 @@ def min_time_to_collision(episode: Episode) -> FloatArray:
     return time
 
 
+@metric(
+    title="Share of time with another agent nearer than 0.45 m, rim to rim",
+    unit="",
+    better=None,
+    low=0.0,
+    high=1.0,
+    reference=_HALL,
+)
 def personal_space_intimate(episode: Episode) -> FloatArray:
     """(A,) share of its attempt with less than 0.45 m to another agent, rim to rim.
 
@@ -92,6 +122,14 @@ def personal_space_intimate(episode: Episode) -> FloatArray:
     return _share_within(episode, INTIMATE)
 
 
+@metric(
+    title="Share of time with another agent nearer than 1.2 m, rim to rim",
+    unit="",
+    better=None,
+    low=0.0,
+    high=1.0,
+    reference=_HALL,
+)
 def personal_space_personal(episode: Episode) -> FloatArray:
     """(A,) share of its attempt with less than 1.2 m to another agent, rim to rim.
 
@@ -122,36 +160,3 @@ def _share_within(episode: Episode, distance: float) -> FloatArray:
     total = duration.sum(axis=1)
     inside_for = (share * duration).sum(axis=1)
     return np.where(total > 0.0, inside_for / np.where(total > 0.0, total, 1.0), np.nan)
-
-
-COLLIDED = rate("collided", "Charged with at least one collision", "lower", collided)
-_EVENTS = [
-    ("collisions_wall", "Collision events with walls", collisions_wall),
-    ("collisions_static", "Collision events with static obstacles", collisions_static),
-    ("collisions_dynamic", "Collision events with dynamic obstacles", collisions_dynamic),
-    ("collisions_agent", "Collision events with other agents", collisions_agent),
-]
-COLLISIONS_WALL, COLLISIONS_STATIC, COLLISIONS_DYNAMIC, COLLISIONS_AGENT = (
-    Metric(name, title, "", None, 0.0, np.inf, OWN, function) for name, title, function in _EVENTS
-)
-CONTACT_TIME = Metric(
-    "contact_time", "Time in collision", "s", "lower", 0.0, np.inf, OWN, contact_time
-)
-MIN_CLEARANCE = Metric(
-    "min_clearance", "Smallest gap to anything that can be hit", "m", "higher",
-    -np.inf, np.inf, OWN, min_clearance,
-)  # fmt: skip
-MIN_TIME_TO_COLLISION = Metric(
-    "min_time_to_collision", "Smallest time to a collision at constant velocities, up to 5 s", "s",
-    "higher", 0.0, TTC_CAP, "Hayward 1972, Near-miss determination",
-    min_time_to_collision,
-)  # fmt: skip
-_HALL = "Hall 1966, The Hidden Dimension"
-PERSONAL_SPACE_INTIMATE = Metric(
-    "personal_space_intimate", "Share of time with another agent nearer than 0.45 m, rim to rim",
-    "", None, 0.0, 1.0, _HALL, personal_space_intimate,
-)  # fmt: skip
-PERSONAL_SPACE_PERSONAL = Metric(
-    "personal_space_personal", "Share of time with another agent nearer than 1.2 m, rim to rim",
-    "", None, 0.0, 1.0, _HALL, personal_space_personal,
-)  # fmt: skip

@@ -13,7 +13,7 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.quantities.lowpass import CUTOFF, RATE
 
@@ -23,6 +23,14 @@ PADDING = 4  # SPARC's zero padding, in powers of two
 STILL = 1e-6  # [m] a segment that is shorter has no direction
 
 
+@metric(
+    title="Change of direction per way travelled",
+    unit="rad/m",
+    better="lower",
+    low=0.0,
+    reference="mean absolute curvature; own definition of its sampling",
+    conditional=True,
+)
 def turning(episode: Episode) -> FloatArray:
     """(A,) [rad/m] ∫|dθ| of the direction of motion over the way travelled.
 
@@ -42,6 +50,13 @@ def turning(episode: Episode) -> FloatArray:
     return np.where(defined, total / np.where(defined, t.length, 1.0), math.nan)
 
 
+@metric(
+    title="Smoothness by jerk: log dimensionless jerk",
+    unit="",
+    better="higher",
+    reference="Hogan & Sternad 2009; Balasubramanian et al. 2012",
+    conditional=True,
+)
 def log_dimensionless_jerk(episode: Episode) -> FloatArray:
     """(A,) −ln( D³ / v_peak² · ∫ |d²v/dt²|² dt ), D the time until arrival.
 
@@ -51,6 +66,14 @@ def log_dimensionless_jerk(episode: Episode) -> FloatArray:
     return _each(episode, _dimensionless_jerk)
 
 
+@metric(
+    title="Smoothness by spectrum: spectral arc length of speed",
+    unit="",
+    better="higher",
+    high=0.0,
+    reference="Balasubramanian et al. 2015",
+    conditional=True,
+)
 def sparc(episode: Episode) -> FloatArray:
     """(A,) spectral arc length of the speed profile up to 1 Hz, negative, 0 being smoothest.
 
@@ -109,18 +132,3 @@ def _each(episode: Episode, measure: Callable[[FloatArray, float], float]) -> Fl
         velocity = found.smooth_velocity(int(agent))
         values[agent] = measure(velocity, float(found.trajectories.end[agent]))
     return values
-
-
-TURNING = Metric(
-    "turning", "Change of direction per way travelled", "rad/m", "lower", 0.0, math.inf,
-    "mean absolute curvature; own definition of its sampling", turning, conditional=True,
-)  # fmt: skip
-LOG_DIMENSIONLESS_JERK = Metric(
-    "log_dimensionless_jerk", "Smoothness by jerk: log dimensionless jerk", "", "higher",
-    -math.inf, math.inf, "Hogan & Sternad 2009; Balasubramanian et al. 2012",
-    log_dimensionless_jerk, conditional=True,
-)  # fmt: skip
-SPARC = Metric(
-    "sparc", "Smoothness by spectrum: spectral arc length of speed", "", "higher",
-    -math.inf, 0.0, "Balasubramanian et al. 2015", sparc, conditional=True,
-)  # fmt: skip

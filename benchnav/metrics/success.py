@@ -5,21 +5,26 @@ apart, and `success` and `arrival` rank.
 """
 
 import math
-from collections.abc import Callable
-from typing import Literal
 
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.quantities.trajectory import positions_at
 
 STUCK_WINDOW = 10.0  # [s]
-OWN = "own definition"
 
 
+@metric(
+    title="Arrived, with no collision before arriving",
+    unit="",
+    better="higher",
+    low=0.0,
+    high=1.0,
+    rate=True,
+)
 def success(episode: Episode) -> FloatArray:
     """(A,) 1 where the agent arrived and no charged contact had started before.
 
@@ -29,17 +34,34 @@ def success(episode: Episode) -> FloatArray:
     return analyse(episode).success.astype(np.float64)
 
 
+@metric(
+    title="Came within goal tolerance before the horizon",
+    unit="",
+    better="higher",
+    low=0.0,
+    high=1.0,
+    rate=True,
+)
 def arrival(episode: Episode) -> FloatArray:
     """(A,) 1 where the agent touched its goal disc before the horizon, hit or not."""
     return analyse(episode).arrived.astype(np.float64)
 
 
+@metric(title="Still on its way at the horizon", unit="", better=None, low=0.0, high=1.0, rate=True)
 def timeout(episode: Episode) -> FloatArray:
     """(A,) 1 where the agent was still on its way when the record ends at the horizon."""
     found = analyse(episode)
     return (found.active_at_end & ~found.failed).astype(np.float64)
 
 
+@metric(
+    title="Timed out within one radius of its last place for 10 s",
+    unit="",
+    better=None,
+    low=0.0,
+    high=1.0,
+    rate=True,
+)
 def stuck(episode: Episode) -> FloatArray:
     """(A,) 1 where the agent timed out and was within one radius of its last place for 10 s.
 
@@ -58,6 +80,7 @@ def stuck(episode: Episode) -> FloatArray:
     return (still & found.active_at_end & ~found.failed).astype(np.float64)
 
 
+@metric(title="Its navigator failed", unit="", better=None, low=0.0, high=1.0, rate=True)
 def failed(episode: Episode) -> FloatArray:
     """(A,) 1 where the agent's navigator failed in this episode."""
     return analyse(episode).failed.astype(np.float64)
@@ -84,20 +107,3 @@ def success_by_horizon(times: FloatArray, horizons: FloatArray) -> FloatArray:
     ordered = np.sort(times)
     share: FloatArray = np.searchsorted(ordered, horizons, side="right") / len(times)
     return share
-
-
-Function = Callable[[Episode], FloatArray]
-
-
-def rate(
-    name: str, title: str, better: Literal["higher", "lower"] | None, function: Function
-) -> Metric:
-    """A share of agents, defined by this project."""
-    return Metric(name, title, "", better, 0.0, 1.0, OWN, function, rate=True)
-
-
-SUCCESS = rate("success", "Arrived, with no collision before arriving", "higher", success)
-ARRIVAL = rate("arrival", "Came within goal tolerance before the horizon", "higher", arrival)
-TIMEOUT = rate("timeout", "Still on its way at the horizon", None, timeout)
-STUCK = rate("stuck", "Timed out within one radius of its last place for 10 s", None, stuck)
-FAILED = rate("failed", "Its navigator failed", None, failed)

@@ -21,8 +21,8 @@ class Briefing:
     """
 
     dt: float  # [s] between decisions
-    horizon: float  # [s]
-    goal_tolerance: float  # [m]
+    horizon: float  # [s] after which the episode ends
+    goal_tolerance: float  # [m] from the goal at which an agent has arrived
     decision_budget: float | None  # [s] per decision and world, None if there is none
     start: FloatArray  # (A, 2) [m]
     heading: FloatArray  # (A,) [rad]
@@ -33,9 +33,9 @@ class Briefing:
     max_turn_rate: FloatArray  # (A,) [rad/s]
     dynamics: ByteArray  # (A,) of Dynamics
     role: ByteArray  # (A,) of Role
-    team: IntArray  # (A,)
-    map: Map | None
-    rng: np.random.Generator
+    team: IntArray  # (A,) number of the team; agents of one team share it
+    map: Map | None  # as the track grants it; None in the track `unknown`
+    rng: np.random.Generator  # the only source of randomness
     rehearsals: tuple[Rehearsal, ...] = ()  # as many as the navigator declares, or none
 
     def __len__(self) -> int:

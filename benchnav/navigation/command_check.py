@@ -10,6 +10,7 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation.plugin.trace import class_name, location, plain
+from benchnav.text.visible import shortened
 
 _PLACE = re.compile(r" (\([^()]+:\d+\))\.?( at t = \S+ s)?$")
 MOST_REMARKS = 20  # that are kept of one episode
@@ -64,8 +65,7 @@ def said(error: BaseException) -> str:
 
 def short(text: object) -> str:
     """On one line, of at most 300 letters; whatever is no text yet is made one."""
-    line = " ".join(plain(text).split())
-    return line if len(line) <= 300 else line[:297] + "..."
+    return shortened(" ".join(plain(text).split()), 300)
 
 
 def remarks_of(answer: Any) -> list[str]:

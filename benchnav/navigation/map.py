@@ -7,14 +7,14 @@ import numpy as np
 
 from benchnav.arena.mesh import Mesh
 from benchnav.arena.solid import Solid
-from benchnav.arrays import FloatArray
+from benchnav.arrays import Extent, FloatArray
 
 
 @dataclass(frozen=True, eq=False)
 class Map:
     """Static geometry as the track says it stands."""
 
-    bounds: tuple[float, float, float, float]  # xmin, ymin, xmax, ymax [m]
+    bounds: Extent  # xmin, ymin, xmax, ymax [m]
     solids: tuple[Solid, ...]
     revision: int = 0  # rises when geometry moves within an episode (track `known` only)
     meshes: tuple[Mesh, ...] = ()

@@ -10,6 +10,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -17,6 +18,7 @@ from pydantic import BaseModel, ConfigDict
 
 from benchnav.arena.sensing import Sensing
 from benchnav.arrays import FloatArray, IntArray
+from benchnav.navigation.agent_view import AgentView
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.plugin.configure import Spec
@@ -54,7 +56,6 @@ class Navigator(ABC):
 
     Config: ClassVar[type[PluginConfig]] = PluginConfig
     needs: ClassVar[frozenset[Need]] = frozenset()
-    command: ClassVar[CommandKind] = "velocity"  # planar velocity [m/s] in the world frame
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         self.config: Any = config if config is not None else self.Config()
@@ -63,6 +64,14 @@ class Navigator(ABC):
     def required(self) -> frozenset[Need]:
         """What this configured instance needs (a pair of parts needs what both need)."""
         return self.needs
+
+    @property
+    def command(self) -> CommandKind:
+        """What `act` returns: planar velocities [m/s] in the world frame, or twists.
+
+        A class may declare it: ``command = "twist"``.
+        """
+        return "velocity"
 
     @property
     def uses_map(self) -> bool:
@@ -121,59 +130,51 @@ class Navigator(ABC):
         """(B, A, 2) commands; entries of inactive agents are ignored."""
 
 
-@dataclass(frozen=True)
-class AgentView:
-    """One agent's slice of an observation."""
-
-    time: float
-    position: FloatArray  # (2,)
-    heading: float
-    velocity: FloatArray  # (2,)
-    goal: FloatArray  # (2,)
-    observation: Observation  # the batch it was taken from
-    world: int  # its place in the batch
-    agent: int
-
-    @property
-    def neighbours(self) -> list[tuple[FloatArray, FloatArray, float]]:
-        """(position, velocity, radius) of each sensed neighbour, nearest first."""
-        seen = self.observation.neighbours
-        if seen is None:
-            return []
-        at = (self.world, self.agent)
-        return [
-            (seen.position[at][k], seen.velocity[at][k], float(seen.radius[at][k]))
-            for k in range(int(seen.count[at]))
-        ]
-
-
 class AgentNavigator(Navigator):
     """For authors who think of one agent: implement `act_agent`; the batching is done here."""
 
-    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
-        if not hasattr(self, "briefings"):
-            self.briefings: dict[int, Briefing] = {}
-        for row, briefing in zip(rows, briefings, strict=True):
-            self.briefings[int(row)] = briefing
-            for agent in range(len(briefing)):
-                self.reset_agent(briefing, int(row), agent)
+    @cached_property
+    def briefings(self) -> dict[int, Briefing]:
+        """The briefing of each row that was reset."""
+        return {}
 
-    def reset_agent(self, briefing: Briefing, row: int, agent: int) -> None:
-        """Start one agent of world ``row``."""
+    @cached_property
+    def _states(self) -> dict[int, list[Any]]:
+        """The states of the agents of each row that was reset."""
+        return {}
+
+    def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        for row, briefing in zip(rows.tolist(), briefings, strict=True):
+            self.briefings[row] = briefing
+            self._states[row] = [
+                self.reset_agent(briefing, row, agent) for agent in range(len(briefing))
+            ]
+
+    def reset_agent(self, briefing: Briefing, row: int, agent: int) -> Any:
+        """Start one agent of the world ``row`` and return its state, an empty dict by default.
+
+        `act_agent` gets this object as ``view.state`` in each decision of the episode, and may
+        change it. No other agent and no other world sees it.
+        """
+        return {}
 
     @abstractmethod
     def act_agent(self, view: AgentView, briefing: Briefing) -> FloatArray | Sequence[float]:
-        """(2,) the command of one active agent."""
+        """Return the command (2,) of one active agent."""
 
     def act(self, observation: Observation) -> FloatArray:
         command = np.zeros((*observation.active.shape, 2))
-        for world, agent in np.argwhere(observation.active):
-            at = (int(world), int(agent))
-            view = AgentView(
-                float(observation.time[world]), observation.position[at],
-                float(observation.heading[at]), observation.velocity[at],
-                observation.goal[at], observation, *at,
-            )  # fmt: skip
-            briefing = self.briefings[int(observation.rows[world])]
-            command[at] = self.act_agent(view, briefing)
+        for world, agent in np.argwhere(observation.active).tolist():
+            row = int(observation.rows[world])
+            view = self._view(observation, world, agent, row)
+            command[world, agent] = self.act_agent(view, self.briefings[row])
         return command
+
+    def _view(self, observation: Observation, world: int, agent: int, row: int) -> AgentView:
+        at = (world, agent)
+        return AgentView(
+            time=float(observation.time[world]), position=observation.position[at],
+            heading=float(observation.heading[at]), velocity=observation.velocity[at],
+            goal=observation.goal[at], row=row, agent=agent, state=self._states[row][agent],
+            observation=observation, batch_index=world,
+        )  # fmt: skip

@@ -12,9 +12,9 @@ from benchnav.navigation.map import Map
 from benchnav.sensors.readings import Edges, Neighbours, Rays, Rows
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Observation(Rows):
-    """One decision's view."""
+    """What the agents of a navigator perceive at one decision, in all worlds of the batch."""
 
     rows: IntArray  # (B,) the row that `reset` gave each world
     time: FloatArray  # (B,) [s]
@@ -24,9 +24,9 @@ class Observation(Rows):
     velocity: FloatArray  # (B, A, 2) [m/s] as executed in the last step
     goal: FloatArray  # (B, A, 2) [m]
     maps: tuple[Map | None, ...]  # (B,) as the track grants it now
-    rays: Rays | None = None
-    neighbours: Neighbours | None = None
-    edges: Edges | None = None
+    rays: Rays | None = None  # None if the navigator does not need rays
+    neighbours: Neighbours | None = None  # None if the navigator does not need neighbours
+    edges: Edges | None = None  # None if the navigator does not need edges
 
     def __len__(self) -> int:
         return len(self.rows)

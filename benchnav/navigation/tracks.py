@@ -7,7 +7,6 @@ unknown  no map
 """
 
 from dataclasses import replace
-from typing import Literal, get_args
 
 import numpy as np
 
@@ -17,9 +16,6 @@ from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
 from benchnav.navigation.map import Map
 
-Track = Literal["known", "stale", "partial", "unknown"]
-TRACKS: tuple[str, ...] = get_args(Track)
-
 
 def granted_map(
     world: World, track: str, body_position: FloatArray | None = None, revision: int = 0
@@ -28,7 +24,7 @@ def granted_map(
 
     Args:
         world: the drawn world.
-        track: one of `TRACKS`.
+        track: one of `benchnav.scenario.terms.TRACKS`.
         body_position: (M, 2) [m] where its bodies stand now; None: where they start.
         revision: how often static obstacles were re-placed so far.
 

@@ -20,7 +20,7 @@ from typing import Any
 from benchnav.errors import BenchnavError
 from benchnav.named_module import current_folder
 from benchnav.processes.channel import Channel, ChannelError
-from benchnav.processes.main_module import main_module, require_main_guard
+from benchnav.processes.main_module import main_module, stop_import_of_main
 from benchnav.processes.process_tree import kill
 from benchnav.processes.server import PREPARE, START
 
@@ -71,7 +71,8 @@ class ForkServer:
     def __init__(self) -> None:
         if not hasattr(os, "fork"):
             raise BenchnavError(
-                "Worker processes must be forked, which this system cannot do. Use 0 workers."
+                f"This system ({sys.platform}) cannot start processes by os.fork, which benchnav"
+                " needs for every plugin. On Windows, use benchnav in WSL 2."
             )
         ours, theirs = socket.socketpair()
         path = json.dumps([entry or os.getcwd() for entry in sys.path])  # noqa: PTH109
@@ -107,8 +108,6 @@ class ForkServer:
         ``main`` also its ``__main__``. With ``warm`` it begins with the modules and kernels of a
         run, otherwise only with the modules that plugins build on.
         """
-        if main:
-            require_main_guard()
         ours, theirs = socket.socketpair()
         with TemporaryFile() as file:
             file.truncate(NOTES)
@@ -191,7 +190,8 @@ _servers: list[ForkServer] = []
 
 
 def fork_server() -> ForkServer:
-    """Return the server of this process, which lives as long as it; start one if needed."""
+    """The server of this process, which lives as long as it; a new one where there is none."""
+    stop_import_of_main()
     if _servers and _servers[0].owner != os.getpid():
         _servers.clear()  # they belong to the process that this one was forked from
     if _servers and not _servers[0].alive:

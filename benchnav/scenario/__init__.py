@@ -1,1 +1,1 @@
-"""What a YAML file says, and how it is read."""
+"""Scenario descriptions, and how they are read from YAML files."""

@@ -1,8 +1,10 @@
-"""What every part of a scenario's description shares: strictness, numbers with bounds."""
+"""The common base of all parts of a scenario: strictness, numbers with bounds."""
 
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Discriminator, Field, Tag
+
+from benchnav.arrays import Extent
 
 
 class Spec(BaseModel):
@@ -11,10 +13,10 @@ class Spec(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
-FAR = 1e5  # [m] no coordinate lies farther from the origin
+FAR = 1e5  # [m] largest distance of a coordinate from the origin
 
 
-def _ordered(box: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+def _ordered(box: Extent) -> Extent:
     if not (box[0] < box[2] and box[1] < box[3]):
         raise ValueError(
             "must be [xmin, ymin, xmax, ymax] with xmin < xmax and ymin < ymax;"
@@ -35,14 +37,14 @@ MAX_NAME = 100  # characters of a scenario's name
 Name = Annotated[str, Field(pattern=r"^[a-z0-9]+([_-][a-z0-9]+)*$", max_length=60)]
 
 
-def _how_many(value: Any) -> str:
-    """The tag of a place, which is no key: a list whose first entry is a list holds points."""
+def _place_tag(value: Any) -> str:
+    """Return the union tag of a place: a list whose first entry is a list holds points."""
     several = isinstance(value, list | tuple) and (not value or isinstance(value[0], list | tuple))
     return "several points" if several else "a point"
 
 
-ONE_OR_MORE = Discriminator(_how_many)
-"""Of a union of a point and a list of points, tagged ``a point`` and ``several points``."""
+ONE_OR_MORE = Discriminator(_place_tag)
+"""Tags of a union of a point and a list of points: ``a point`` and ``several points``."""
 Places = Annotated[
     Annotated[Point, Tag("a point")]
     | Annotated[tuple[Point, ...], Field(min_length=1, max_length=1000), Tag("several points")],
@@ -52,12 +54,12 @@ Places = Annotated[
 
 
 def listed(places: Places | None) -> tuple[Point, ...]:
-    """The points of one place or several; none of None."""
+    """Return the points of one place or several; none for None."""
     if places is None:
         return ()
     return places if isinstance(places[0], tuple) else (places,)
 
 
-def inside(bounds: tuple[float, float, float, float], x: float, y: float) -> bool:
-    """True where (x, y) lies within ``bounds``, edges included."""
+def inside(bounds: Extent, x: float, y: float) -> bool:
+    """Whether (x, y) lies within ``bounds``, edges included."""
     return bounds[0] <= x <= bounds[2] and bounds[1] <= y <= bounds[3]

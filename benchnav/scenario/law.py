@@ -14,7 +14,7 @@ Time = Annotated[float, Field(ge=0, le=1e6)]
 
 
 class BackAndForth(Spec):
-    """To and fro on a straight track that is centred where the obstacle is placed."""
+    """Back and forth on a straight track that is centred where the obstacle is placed."""
 
     type: Literal["back-and-forth"]
     length: PositiveScalar = Field(description="of the track [m]")
@@ -26,7 +26,7 @@ class BackAndForth(Spec):
 
 
 class WaypointLoop(Spec):
-    """Round and round through waypoints, in straight lines."""
+    """A closed loop of straight lines through waypoints."""
 
     type: Literal["waypoint-loop"]
     points: tuple[Point, ...] = Field(
@@ -44,7 +44,7 @@ class WaypointLoop(Spec):
 
 
 class CircleLaw(Spec):
-    """Round a circle that is centred where the obstacle is placed."""
+    """A circle that is centred where the obstacle is placed."""
 
     type: Literal["circle"]
     radius: PositiveScalar = Field(description="[m]")
@@ -54,10 +54,10 @@ class CircleLaw(Spec):
 
 
 class RecordedTrack(Spec):
-    """What somebody recorded, in the arena's frame: a file, or points written here.
+    """A recording in the arena's frame: a file, or points in the scenario.
 
     An obstacle stands at its first point until its first time, and at its last
-    point after its last time. The recording is taken from its first frame on.
+    point after its last time. The recording starts at its first frame.
     """
 
     type: Literal["recorded-track"]

@@ -1,4 +1,4 @@
-"""Scenarios from files."""
+"""Load scenarios from files."""
 
 from pathlib import Path
 from typing import Any
@@ -12,20 +12,20 @@ from benchnav.scenario.scenario import Scenario
 
 
 def load_scenario(path: Path | str, given: Given | None = None) -> Scenario:
-    """The scenario in the YAML file ``path``, with parameters other than the default.
+    """Return the scenario in the YAML file ``path``, with the parameters ``given``.
 
     Raises:
-        UsageError: a parameter that it does not have, or a number out of its bounds.
-        ScenarioError: with ``file:line: key`` of everything that is wrong, up to ten complaints.
+        UsageError: an unknown parameter, or a number out of its bounds.
+        ScenarioError: with ``file:line: key`` of each problem, up to ten.
     """
     return _checked(read_yaml(path), Path(path).parent, given or {})
 
 
 def scenario_from_text(text: str, name: str, folder: Path | str = ".") -> Scenario:
-    """The scenario in ``text``; ``name`` stands for the file in messages.
+    """Return the scenario in ``text``; messages use ``name`` as the file name.
 
     Raises:
-        ScenarioError: as `load_scenario`.
+        ScenarioError: like `load_scenario`.
     """
     return _checked(read_yaml_text(text, name), Path(folder), {})
 
@@ -44,7 +44,7 @@ def _checked(document: Document, folder: Path, given: Given) -> Scenario:
 
 
 def _places_of_teams(document: Document) -> dict[tuple[PathKey, ...], str]:
-    """Where teams, their parts, and the parts of these stand in the file."""
+    """Return the places of teams, their parts, and the parts of these in the file."""
     paths: list[tuple[PathKey, ...]] = []
     for i, team in document.place.children["teams"].children.items():
         for key, part in team.children.items():
@@ -61,7 +61,7 @@ def _is_file(path: Path) -> bool:
 
 
 def json_schema() -> dict[str, Any]:
-    """JSON Schema (2020-12) of a scenario file."""
+    """Return the JSON Schema (2020-12) of a scenario file."""
     schema = Scenario.model_json_schema()
     _allow_references({key: part for key, part in schema.items() if key != "$defs"})
     _allow_references({k: part for k, part in schema["$defs"].items() if k != "Parameter"})
@@ -73,7 +73,7 @@ _OF_NUMBERS = ("type", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaxim
 
 
 def _allow_references(node: Any) -> None:
-    """Wherever a number may stand, a parameter may."""
+    """Allow a parameter wherever a number is allowed."""
     for child in list(node.values() if isinstance(node, dict) else node):
         if isinstance(child, dict | list):
             _allow_references(child)

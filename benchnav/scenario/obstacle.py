@@ -1,4 +1,4 @@
-"""Groups of obstacles: static ones that may be re-placed, dynamic ones that never yield."""
+"""Groups of obstacles: static ones that may be relocated, dynamic ones that never yield."""
 
 from pydantic import Field, model_validator
 
@@ -49,17 +49,17 @@ class StaticGroup(Spec):
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Where the obstacles stand; none where places are drawn."""
+        """The obstacles' places; none if they are drawn."""
         return listed(self.at)
 
     @property
     def was_moved(self) -> bool:
-        """True where the stale map may show another place, also where that is 0 m away."""
+        """Whether the stale map may show another place, even one 0 m away."""
         return self.moved is not False
 
     @property
     def fixed(self) -> bool:
-        """True where every draw is the same."""
+        """Whether every draw is the same."""
         return self.at is not None and shape_is_fixed(self.shape) and fixed(self.heading)
 
 
@@ -95,5 +95,5 @@ class DynamicGroup(Spec):
 
     @property
     def points(self) -> tuple[Point, ...]:
-        """Where the laws' origins lie; none where they are drawn or recorded."""
+        """The origins of the laws; none if they are drawn or recorded."""
         return listed(self.at)

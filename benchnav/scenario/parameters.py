@@ -1,8 +1,8 @@
-"""Parameters: numbers that a scenario's file leaves open, with a default and bounds.
+"""Parameters: numbers that a scenario file leaves open, with a default and bounds.
 
-A file declares ``parameters: {followers: {default: 24, low: 1, high: 249}}`` and says
-``{parameter: followers}`` where the number shall stand. ``family/name:followers=100``
-is then the scenario with another one. What is hashed, stored and drawn holds the
+A file declares ``parameters: {followers: {default: 24, low: 1, high: 249}}`` and has
+``{parameter: followers}`` in place of the number. ``family/name:followers=100``
+is then the scenario with another number. Hashes, stored scenarios and draws use the
 number, never its name.
 """
 
@@ -23,7 +23,7 @@ LARGEST = 1e9
 
 
 class Parameter(Spec):
-    """A number that whoever names the scenario may choose."""
+    """A number that can be chosen where the scenario is named."""
 
     default: float = Field(ge=-LARGEST, le=LARGEST)
     low: float = Field(ge=-LARGEST, le=LARGEST, description="smallest that may be chosen")
@@ -32,7 +32,7 @@ class Parameter(Spec):
 
     @property
     def whole(self) -> bool:
-        """True where all that the file says of it are whole numbers: then it must be one."""
+        """Whether default and bounds are whole numbers: then the value must be one, too."""
         return all(x == int(x) for x in (self.default, self.low, self.high))
 
     @model_validator(mode="after")
@@ -48,7 +48,7 @@ Parameters = dict[Name, Parameter]
 
 
 class Reference(Spec):
-    """The number that a parameter of the scenario stands for."""
+    """A reference to a parameter of the scenario, in place of a number."""
 
     parameter: Name
 
@@ -58,9 +58,9 @@ class _Declared(Spec):
 
 
 def split_parameters(name: str) -> tuple[str, dict[str, float]]:
-    """``"yard:agents=3,gap=0.5"`` → ``"yard", {"agents": 3.0, "gap": 0.5}``.
+    """Split ``"yard:agents=3,gap=0.5"`` into ``"yard", {"agents": 3.0, "gap": 0.5}``.
 
-    Raises UsageError where what stands behind the last colon has ``=`` and is not that.
+    Raises UsageError if the text after the last colon contains ``=`` and is malformed.
     """
     base, colon, rest = name.rpartition(":")
     if not colon or "=" not in rest:
@@ -81,16 +81,16 @@ def split_parameters(name: str) -> tuple[str, dict[str, float]]:
 
 
 def joined_parameters(given: Given) -> str:
-    """The other way round: ``":agents=3,gap=0.5"``, or ``""`` without any."""
+    """Return ``":agents=3,gap=0.5"``, or ``""`` without parameters."""
     parts = [f"{key}={value:.12g}" for key, value in sorted(given.items())]
     return ":" + ",".join(parts) if parts else ""
 
 
 def resolve(document: Document, given: Given) -> tuple[Document, dict[str, float]]:
-    """The document with numbers in place of parameters, and those that are not the default.
+    """Return the document with numbers in place of parameters, and the values off their default.
 
     Raises:
-        ScenarioError: a declaration is wrong, or something names no parameter.
+        ScenarioError: a declaration is wrong, or a reference has an unknown name.
         UsageError: ``given`` has an unknown parameter, or one out of bounds.
     """
     data = document.data
@@ -105,12 +105,12 @@ def resolve(document: Document, given: Given) -> tuple[Document, dict[str, float
         values[name] = value
     used: set[str] = set()
     resolved = {
-        key: part if key == "parameters" else _substituted(part, (key,), document, values, used)
+        key: part if key == "parameters" else _substitute(part, (key,), document, values, used)
         for key, part in data.items()
     }
     for name in values:
         if name not in used:
-            raise ScenarioError(f"{document.where(('parameters', name))} is used nowhere.")
+            raise ScenarioError(f"{document.where(('parameters', name))} is not used.")
     chosen = {n: v for n, v in values.items() if v != declared.parameters[n].default}
     return replace(document, data=resolved), chosen
 
@@ -130,18 +130,18 @@ def _check_given(where: str, declared: Parameters, name: str, value: float) -> N
         )
 
 
-def _substituted(
+def _substitute(
     node: Any, path: tuple[PathKey, ...], document: Document, values: Given, used: set[str]
 ) -> Any:
     if isinstance(node, list):
         return [
-            _substituted(child, (*path, i), document, values, used) for i, child in enumerate(node)
+            _substitute(child, (*path, i), document, values, used) for i, child in enumerate(node)
         ]
     if not isinstance(node, dict):
         return node
     if set(node) != {"parameter"}:
         return {
-            key: _substituted(child, (*path, key), document, values, used)
+            key: _substitute(child, (*path, key), document, values, used)
             for key, child in node.items()
         }
     name = node["parameter"]

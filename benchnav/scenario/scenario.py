@@ -36,11 +36,11 @@ from benchnav.system.plain_file import open_file
 
 MAX_AGENTS = 5000
 MAX_OBSTACLES = 2000
-_PROSE = {"title", "description", "parameters"}  # of which the values stand where they are used
+_PROSE = {"title", "description", "parameters"}  # parameter values count where they are used
 
 
 class Scenario(Spec):
-    """What a scenario file says. Metres, seconds, radians; x right, y up."""
+    """The content of a scenario file. Metres, seconds, radians; x right, y up."""
 
     name: str = Field(
         pattern=NAME_PATTERN,
@@ -48,19 +48,25 @@ class Scenario(Spec):
         description="family/name",
     )
     version: int = Field(1, ge=1, le=10**6, description="rises when results stop being comparable")
-    title: str = Field("", max_length=200)
-    description: str = Field("", max_length=5000)
+    title: str = Field("", max_length=200, description="one line for lists")
+    description: str = Field("", max_length=5000, description="what is difficult here")
     parameters: Parameters = Field({}, max_length=20, description="that NAME:key=number may set")
     bounds: Bounds = Field(description="of the arena: [xmin, ymin, xmax, ymax] [m]")
     walled: bool = Field(True, description="a wall stands along the bounds")
     layout: Layout | None = Field(None, description="walls that are generated")
-    walls: tuple[Wall, ...] = Field((), max_length=MAX_OBSTACLES)
-    static: tuple[StaticGroup, ...] = Field((), max_length=100)
-    dynamic: tuple[DynamicGroup, ...] = Field((), max_length=100)
-    teams: tuple[Team, ...] = Field(min_length=1, max_length=100)
-    clock: Clock = Clock()
-    rules: Rules = Rules()
-    sensing: Sensing = Sensing()
+    walls: tuple[Wall, ...] = Field(
+        (), max_length=MAX_OBSTACLES, description="fixed structure, the same in every world"
+    )
+    static: tuple[StaticGroup, ...] = Field(
+        (), max_length=100, description="obstacles that are placed anew in each world"
+    )
+    dynamic: tuple[DynamicGroup, ...] = Field(
+        (), max_length=100, description="obstacles that move by a law and never yield"
+    )
+    teams: tuple[Team, ...] = Field(min_length=1, max_length=100, description="the agents")
+    clock: Clock = Field(Clock(), description="time step, horizon and decision budget")
+    rules: Rules = Field(Rules(), description="contacts, and when an agent has arrived")
+    sensing: Sensing = Field(Sensing(), description="what each agent perceives")
     tracks: Annotated[tuple[Track, ...], Field(min_length=1, max_length=4)] | None = Field(
         None, description="in which it may be run; all that make sense if not given"
     )
@@ -72,7 +78,7 @@ class Scenario(Spec):
 
     @property
     def folder(self) -> Path:
-        """What file names in the scenario are relative to."""
+        """The base folder of file names in the scenario."""
         return self._folder
 
     def placed_in(
@@ -81,10 +87,10 @@ class Scenario(Spec):
         chosen: dict[str, float] | None = None,
         where: dict[tuple[PathKey, ...], str] | None = None,
     ) -> "Scenario":
-        """The same scenario, its file names relative to ``folder``.
+        """Return the same scenario, with file names relative to ``folder``.
 
-        ``chosen`` are its parameters that are not the default; ``where`` gives the
-        ``file:line: key`` of parts that messages name.
+        ``chosen`` are its parameters off their defaults; ``where`` gives the
+        ``file:line: key`` of parts for messages.
         """
         copy = self.model_copy()
         copy.__dict__.pop("hash", None)
@@ -92,13 +98,13 @@ class Scenario(Spec):
         return copy
 
     def moved_to(self, folder: Path) -> "Scenario":
-        """The same scenario where copies of its files lie in another folder."""
+        """Return the same scenario for copies of its files in another folder."""
         return self.placed_in(folder, self._chosen, self._where)
 
     def where(self, path: Sequence[PathKey]) -> str:
-        """``file:line: teams[0].start`` of a part of a team; without a file if it came from none.
+        """Return ``file:line: teams[0].start`` of a part of a team; without file if there is none.
 
-        A part that has no place of its own, as a default, stands where what holds it stands.
+        A part without a place of its own, such as a default, has the place of its parent.
         """
         for stop in range(len(path), 1, -1):
             if tuple(path[:stop]) in self._where:
@@ -107,7 +113,7 @@ class Scenario(Spec):
 
     @property
     def identity(self) -> str:
-        """``name@version``, and ``:key=number`` of parameters that are not the default."""
+        """The text ``name@version``, with ``:key=number`` for parameters off their defaults."""
         return f"{self.name}@{self.version}{joined_parameters(self._chosen)}"
 
     @cached_property
@@ -127,7 +133,7 @@ class Scenario(Spec):
 
     @cached_property
     def drivers(self) -> tuple[Driver, ...]:
-        """Background navigators by first team; an agent whose driver is k > 0 has entry k - 1."""
+        """Background navigators by first team; an agent with driver k > 0 has entry k - 1."""
         found: list[Driver] = []
         for team in self.teams:
             if not team.evaluated and team.driver not in found:
@@ -136,12 +142,12 @@ class Scenario(Spec):
 
     @property
     def driver_specs(self) -> tuple[dict[str, Any], ...]:
-        """What `benchnav.navigation.plugin.configure.make` takes for each of `drivers`."""
+        """Arguments of `benchnav.navigation.plugin.configure.make` for each of `drivers`."""
         return tuple({"type": d.type, **d.params} for d in self.drivers)
 
     @property
     def granted_tracks(self) -> tuple[Track, ...]:
-        """Knowledge tracks in which the scenario may be run; stale only where anything moves."""
+        """Knowledge tracks in which the scenario may be run; stale only if obstacles were moved."""
         if self.tracks is not None:
             return self.tracks
         moves = any(group.was_moved or group.relocate_at is not None for group in self.static)
@@ -150,7 +156,7 @@ class Scenario(Spec):
         )
 
     def files(self) -> Iterator[tuple[tuple[PathKey, ...], Path]]:
-        """Where in the scenario a file is named, and its path; a ROS map's image comes with it."""
+        """Yield the key and path of each file that the scenario names, with images of ROS maps."""
         shapes: list[tuple[tuple[PathKey, ...], Shape]] = [
             *((("walls", i), wall.shape) for i, wall in enumerate(self.walls)),
             *((("static", i), group.shape) for i, group in enumerate(self.static)),
@@ -169,7 +175,7 @@ class Scenario(Spec):
                 yield ("dynamic", i, "law", "file"), self._folder / group.law.file
 
     def named_files(self) -> dict[str, Path]:
-        """Its files by their names relative to `folder`; by the whole path where that is given."""
+        """Its files by their names relative to `folder`, or by absolute path where given so."""
         return {
             (
                 path.relative_to(self._folder) if path.is_relative_to(self._folder) else path
@@ -188,20 +194,20 @@ Problem = tuple[tuple[PathKey, ...], str]
 
 
 def _image_of(path: Path) -> Path | None:
-    """The image that a ROS map's YAML names."""
+    """Return the image that a ROS map's YAML file names."""
     from benchnav.config.yaml_reader import read_yaml
     from benchnav.errors import ScenarioError
 
     try:
         data: Any = read_yaml(path).data
     except ScenarioError:
-        return None  # the map's own reader says what is wrong with it
+        return None  # the map's own reader reports the problem
     image = path.parent / str(data.get("image", "")) if isinstance(data, dict) else None
     return image if image is not None and image.is_file() else None
 
 
 def _problems(scenario: Scenario) -> Iterator[Problem]:
-    """What no part can know alone."""
+    """Yield problems that concern several parts."""
     yield from _team_problems(scenario)
     yield from _place_problems(scenario)
     if scenario.layout is not None and (text := layout_problem(scenario.layout, scenario.bounds)):
@@ -253,7 +259,7 @@ def _namesake_problems(before: Sequence[Team], team: Team, i: int) -> Iterator[P
 
 
 def _room_problems(scenario: Scenario) -> Iterator[Problem]:
-    """Teams that are larger than what they start from or want to reach."""
+    """Yield teams that are too large for their starts or goals."""
     for i, team in enumerate(scenario.teams):
         most, radius = int(support(team.count)[1]), support(team.radius)[0]
         margin = radius if scenario.walled else 0.0
@@ -267,7 +273,7 @@ def _room_problems(scenario: Scenario) -> Iterator[Problem]:
                 room = most_that_fit(place.region, scenario.bounds, 2.0 * radius + gap, margin)
                 text = (
                     f"the region holds at most {room} agents of radius {radius:g} m that are"
-                    f" {gap:g} m apart, however closely they are packed"
+                    f" {gap:g} m apart, in the densest packing"
                 )
             else:
                 continue

@@ -1,4 +1,4 @@
-"""Shapes of walls and obstacles. Units: metres and radians; a shape stands about its origin."""
+"""Shapes of walls and obstacles. Units: metres and radians; a shape is centred on its origin."""
 
 from typing import Annotated, Literal
 
@@ -22,7 +22,7 @@ class Box(Spec):
 
     @property
     def reach(self) -> float:
-        """Greatest distance [m] of any point from the origin."""
+        """Return the largest distance [m] of any point from the origin."""
         w = support(self.width)[1]
         d = w if self.depth is None else support(self.depth)[1]
         return 0.5 * float((w * w + d * d) ** 0.5)
@@ -36,12 +36,12 @@ class Disc(Spec):
 
     @property
     def reach(self) -> float:
-        """Greatest distance [m] of any point from the origin."""
+        """Return the largest distance [m] of any point from the origin."""
         return support(self.radius)[1]
 
 
 class Polygon(Spec):
-    """A simple polygon, its corners in either order."""
+    """A simple polygon, with corners in either order."""
 
     type: Literal["polygon"]
     points: tuple[Point, ...] = Field(min_length=3, max_length=1000, description="corners [m]")
@@ -53,13 +53,13 @@ class Polygon(Spec):
         polygon = shapely.Polygon(self.points)
         if not polygon.is_valid or polygon.area <= 0:
             raise FieldError(
-                ("points",), "must go once round an area without crossing or touching themselves"
+                ("points",), "must enclose one area without crossing or touching themselves"
             )
         return self
 
     @property
     def reach(self) -> float:
-        """Greatest distance [m] of any point from the origin."""
+        """Return the largest distance [m] of any point from the origin."""
         return max(float((x * x + y * y) ** 0.5) for x, y in self.points)
 
 
@@ -81,9 +81,9 @@ class Polyline(Spec):
 
     @property
     def reach(self) -> float:
-        """Greatest distance [m] of any point from the origin."""
+        """Return the largest distance [m] of any point from the origin."""
         far = max(float((x * x + y * y) ** 0.5) for x, y in self.points)
-        return far + self.thickness  # half of it, and mitred corners
+        return far + self.thickness  # half of the thickness, and mitred corners
 
 
 class Mesh(Spec):
@@ -122,7 +122,7 @@ Shape = Annotated[Box | Disc | Polygon | Polyline | Mesh | Occupancy, Field(disc
 
 
 def shape_is_fixed(shape: "Shape") -> bool:
-    """True where every draw of the shape is the same."""
+    """Whether every draw of the shape is the same."""
     if isinstance(shape, Box):
         return fixed(shape.width) and (shape.depth is None or fixed(shape.depth))
     return fixed(shape.radius) if isinstance(shape, Disc) else True

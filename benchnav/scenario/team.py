@@ -1,4 +1,4 @@
-"""Teams: who starts where, wants what, and is driven by whom."""
+"""Teams: starts, goals, bodies and drivers of groups of agents."""
 
 from typing import Annotated, Any, Literal
 
@@ -15,7 +15,7 @@ class RegionStart(Spec):
 
     type: Literal["region"]
     region: Region
-    separation: Distance = Field(0.0, description="least gap [m] to anybody at the start")
+    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
 
 
 class CircleStart(Spec):
@@ -28,7 +28,7 @@ class CircleStart(Spec):
     jitter: Distance = Field(
         0.0, description="x and y are each shifted by up to half of it either way [m]"
     )
-    separation: Distance = Field(0.0, description="least gap [m] to anybody at the start")
+    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
     clear_of_goals: bool = Field(
         False, description="keep the gap to the goals of those placed before, too"
     )
@@ -44,11 +44,11 @@ class GridStart(Spec):
     jitter: Distance = Field(
         0.0, description="x and y are each shifted by up to half of it either way [m]"
     )
-    separation: Distance = Field(0.0, description="least gap [m] to anybody at the start")
+    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
 
 
 class PackedStart(Spec):
-    """Agents side by side on a hexagonal lattice in a region, those nearest to its front first."""
+    """Agents on a hexagonal lattice in a region, those nearest to its front first."""
 
     type: Literal["packed"]
     region: Region = Field(description="of their centres")
@@ -57,7 +57,7 @@ class PackedStart(Spec):
     jitter: Distance = Field(
         0.0, description="x and y are each shifted by up to half of it either way [m]"
     )
-    separation: Distance = Field(0.0, description="least gap [m] to anybody at the start")
+    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
 
 
 class PointsStart(Spec):
@@ -65,7 +65,7 @@ class PointsStart(Spec):
 
     type: Literal["points"]
     points: tuple[Point, ...] = Field(min_length=1, max_length=5000, description="[m]")
-    separation: Distance = Field(0.0, description="least gap [m] to anybody at the start")
+    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
 
 
 class RegionGoal(Spec):
@@ -91,7 +91,7 @@ class AntipodalGoal(Spec):
 
 
 class ShiftedGoal(Spec):
-    """Each agent's goal is its start, moved by a vector: a group arrives as it stood."""
+    """Each agent's goal is its start, moved by a vector: a group keeps its formation."""
 
     type: Literal["shifted"]
     by: Point = Field(description="[m]")
@@ -104,7 +104,7 @@ Goal = Annotated[RegionGoal | PointsGoal | AntipodalGoal | ShiftedGoal, Field(di
 
 
 class Driver(BaseModel):
-    """A navigator by name, with its parameters beside the name."""
+    """A navigator by name, with its parameters as further keys."""
 
     model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
 
@@ -112,7 +112,7 @@ class Driver(BaseModel):
 
     @property
     def params(self) -> dict[str, Any]:
-        """Every key but ``type``."""
+        """Return every key except ``type``."""
         return dict(self.model_extra or {})
 
 
@@ -123,12 +123,12 @@ def _named(value: Any) -> Any:
 class Team(Spec):
     """Agents that share a role, a body and a driver.
 
-    Listed twice under one name, once for each role, leaders and followers are one team.
+    Two teams with one name, one for each role, form one team of leaders and followers.
     """
 
     name: Name
     role: Literal["leader", "follower"] = "leader"
-    count: Count = 1.0
+    count: Count = Field(1.0, description="agents in the team")
     radius: PositiveScalar = Field(description="[m]")
     max_speed: PositiveScalar = Field(description="[m/s]")
     preferred_speed: PositiveScalar | None = Field(
@@ -148,7 +148,7 @@ class Team(Spec):
 
     @property
     def evaluated(self) -> bool:
-        """True where the navigator under evaluation drives this team."""
+        """Whether the evaluated navigator drives this team."""
         return self.driver.type == "evaluated"
 
     @model_validator(mode="after")
@@ -167,5 +167,5 @@ class Team(Spec):
                     ("preferred_speed",), f"must be ≤ max_speed ({top[1]:g}); got {preferred[1]:g}"
                 )
         if self.evaluated and self.driver.params:
-            raise FieldError(("driver",), "takes no parameters when it is `evaluated`")
+            raise FieldError(("driver",), "takes no parameters if it is `evaluated`")
         return self

@@ -1,7 +1,7 @@
 """The terms of an episode: clock, rules, sensing and knowledge."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Literal, get_args
 
 from pydantic import Field, model_validator
 
@@ -9,6 +9,8 @@ from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Length, Spec
 
 Track = Literal["known", "stale", "partial", "unknown"]
+TRACKS: tuple[Track, ...] = get_args(Track)
+SPLITS = ("train", "validation", "test")
 MAX_STEPS = 100_000
 
 
@@ -24,7 +26,7 @@ class Clock(Spec):
 
     @property
     def steps(self) -> int:
-        """Decisions until the horizon."""
+        """The number of decisions until the horizon."""
         return round(self.horizon / self.dt)
 
     @model_validator(mode="after")
@@ -45,7 +47,7 @@ class Clock(Spec):
 
 
 class Rules(Spec):
-    """What counts as arriving, and what contacts do."""
+    """The conditions of arrival, and the effects of contacts."""
 
     goal_tolerance: Length = Field(0.5, description="between centre and goal [m]")
     contact: Literal["slide", "stop", "end"] = Field(
@@ -68,14 +70,14 @@ class Rays(Spec):
 
 
 class Nearest(Spec):
-    """The nearest so many within a range."""
+    """The nearest objects within a range."""
 
     count: Annotated[int, Field(ge=1, le=1000)] = 10
     range: Length = Field(10.0, description="[m]")
 
 
 class Sensing(Spec):
-    """The sensors of every agent; null for none of a kind."""
+    """The sensors of every agent; null for a missing kind."""
 
     rays: Rays | None = Rays()
     neighbours: Nearest | None = Nearest(count=10, range=10.0)

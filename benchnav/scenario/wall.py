@@ -4,6 +4,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Tag, model_validator
 
+from benchnav.arrays import Extent
 from benchnav.config.validation import FieldError
 from benchnav.scenario.base import ONE_OR_MORE, Length, Spec
 from benchnav.scenario.sampling.sampler import Scalar, fixed
@@ -14,7 +15,7 @@ Share = Annotated[float, Field(ge=0, le=1)]
 
 
 class Wall(Spec):
-    """A piece of fixed structure, or the same piece in several places."""
+    """A wall, or the same wall in several places."""
 
     shape: Shape
     at: Annotated[
@@ -42,13 +43,13 @@ class Wall(Spec):
 
     @property
     def fixed(self) -> bool:
-        """True where every draw is the same."""
+        """Whether every draw is the same."""
         numbers = (number for place in self.places for number in place)
         return shape_is_fixed(self.shape) and all(map(fixed, (*numbers, self.heading)))
 
     @property
     def places(self) -> tuple[Place, ...]:
-        """Where the shape stands, once or several times."""
+        """The places of the shape, one or several."""
         first = self.at[0]
         return self.at if isinstance(first, tuple) else (self.at,)  # type: ignore[return-value]
 
@@ -77,7 +78,7 @@ class Rooms(Spec):
 Layout = Annotated[Maze | Rooms, Field(discriminator="type")]
 
 
-def layout_problem(layout: "Layout", bounds: tuple[float, float, float, float]) -> str:
+def layout_problem(layout: "Layout", bounds: Extent) -> str:
     """Why ``layout`` does not fit ``bounds``; "" if it does."""
     width = (bounds[2] - bounds[0]) / layout.columns
     height = (bounds[3] - bounds[1]) / layout.rows

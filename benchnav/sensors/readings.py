@@ -63,6 +63,6 @@ class Edges(Rows):
     end: FloatArray  # (B, A, E, 2) [m]
     before: FloatArray  # (B, A, E, 2) unit direction of the previous edge of its loop
     after: FloatArray  # (B, A, E, 2) unit direction of the next edge of its loop
-    start_convex: BoolArray  # (B, A, E)
-    end_convex: BoolArray  # (B, A, E)
+    start_convex: BoolArray  # (B, A, E) whether the solid is convex at the start
+    end_convex: BoolArray  # (B, A, E) whether the solid is convex at the end
     count: IntArray  # (B, A) valid entries

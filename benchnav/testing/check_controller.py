@@ -8,7 +8,7 @@ from benchnav.arena.sensing import Sensing
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.controller import Controller, Guide
-from benchnav.navigation.navigator import Navigator, Need
+from benchnav.navigation.navigator import CommandKind, Navigator, Need
 from benchnav.navigation.observation import Observation
 from benchnav.plugins import CONTROLLERS
 from benchnav.testing.check_navigator import check_navigator
@@ -43,11 +43,14 @@ class _Guided(Navigator):
     def __init__(self, controller: Controller) -> None:
         super().__init__()
         self.controller = controller
-        vars(self)["command"] = controller.command
 
     @property
     def required(self) -> frozenset[Need]:
         return self.controller.required
+
+    @property
+    def command(self) -> CommandKind:
+        return self.controller.command
 
     def unfit(self, sensing: Sensing) -> str:
         return self.controller.unfit(sensing)

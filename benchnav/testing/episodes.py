@@ -14,11 +14,10 @@ from benchnav.arena.body import Body
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
-from benchnav.arrays import FloatArray
+from benchnav.arrays import Extent, FloatArray
 from benchnav.episode.episode import Contacts, Episode, Identity, Status, Timings
 
 Path = Callable[[FloatArray], FloatArray]  # times (N,) [s] -> places (N, 2) [m]
-Bounds = tuple[float, float, float, float]
 RULES = Rules(0.2, ContactRule.SLIDE, Afterwards.VANISH, Afterwards.VANISH, Charge.HITTER)
 
 
@@ -55,11 +54,11 @@ class Setting:
 
     dt: float = 0.1  # [s]
     horizon: float = 20.0  # [s]
-    bounds: Bounds = (-20.0, -20.0, 20.0, 20.0)
+    bounds: Extent = (-20.0, -20.0, 20.0, 20.0)
     solids: tuple[Solid, ...] = ()
     bodies: tuple[Body, ...] = ()
     body_paths: tuple[Path, ...] = ()
-    area: Bounds | None = None
+    area: Extent | None = None
     rules: Rules = field(default=RULES)
     budget: float | None = None  # [s]
     failure: str = ""
@@ -115,7 +114,7 @@ def stop_and_go(start: tuple[float, float], speed: float, period: float) -> Path
     return path
 
 
-def room(bounds: Bounds) -> Solid:
+def room(bounds: Extent) -> Solid:
     """The inside of four walls: a clockwise loop."""
     x0, y0, x1, y1 = bounds
     return Solid(Kind.WALL, (np.array([[x0, y0], [x0, y1], [x1, y1], [x1, y0]], float),))

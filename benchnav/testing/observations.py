@@ -5,7 +5,7 @@ navigator can be compared decision by decision.
 """
 
 from collections.abc import Sequence
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
 from zlib import crc32
 
@@ -13,13 +13,12 @@ import numpy as np
 
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, FloatArray, IntArray
-from benchnav.episode.episode import Status
 from benchnav.navigation.briefing import Briefing, brief
 from benchnav.navigation.command_check import said
 from benchnav.navigation.navigator import Navigator, Need
 from benchnav.navigation.observation import Observation
+from benchnav.navigation.observe import deciding, observe
 from benchnav.navigation.tracks import granted_map
-from benchnav.sensors.sense import sense
 from benchnav.testing.rehearsals import rehearsals_of
 from benchnav.world.simulation import Simulation
 
@@ -74,32 +73,11 @@ def observations_of(
     maps = tuple(told.map for told in briefings_of(worlds, needs))
     seen = []
     for _ in range(frames):
-        seen.append(_observation(simulation, chosen, needs, maps, rows))
+        active = deciding(simulation, chosen)
+        observation = observe(simulation, chosen, active, needs, maps)
+        seen.append(observation if rows is None else replace(observation, rows=rows.copy()))
         simulation.step(_script(simulation), np.zeros((simulation.B, simulation.A), np.bool_))
     return seen
-
-
-def _observation(
-    simulation: Simulation, chosen: IntArray, needs: frozenset[Need], maps: tuple[Any, ...],
-    rows: IntArray | None,
-) -> Observation:  # fmt: skip
-    at = (np.arange(simulation.B)[:, None], chosen)
-    status = simulation.status[at]
-    active = (chosen >= 0) & (status == int(Status.ACTIVE)) & simulation.present[at]
-    rays, neighbours, edges = sense(simulation, np.where(active, chosen, -1), needs)
-
-    def own(array: FloatArray) -> FloatArray:
-        values = array[at]
-        values[chosen < 0] = 0.0
-        return values
-
-    dt = simulation.worlds[0].clock.dt
-    return Observation(
-        np.arange(simulation.B) if rows is None else rows.copy(),
-        simulation.steps_done * np.float64(dt), active, own(simulation.position),
-        own(simulation.heading), own(simulation.velocity), own(simulation.goal), maps,
-        rays, neighbours, edges,
-    )  # fmt: skip
 
 
 def _script(simulation: Simulation) -> FloatArray:

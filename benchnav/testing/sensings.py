@@ -9,8 +9,7 @@ from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensi
 from benchnav.errors import BenchnavError
 from benchnav.generation.build import sensing_of
 from benchnav.navigation.navigator import Navigator
-from benchnav.plugins import SCENARIOS
-from benchnav.scenario.catalogue import find
+from benchnav.scenario.catalogue import find, names
 from benchnav.testing.scenes import SENSING, USUAL
 
 COUNTS = (*range(1, 65), 72, 90, 100, 120, 128, 180, 181, 256, 270, 360, 361, 512, 720, 1080, 1081)
@@ -36,7 +35,7 @@ def _sensings() -> Iterator[Sensing]:
 
 def _of_scenarios() -> Iterator[Sensing]:
     """Those of the scenarios that are installed."""
-    for name in SCENARIOS.names():
+    for name in names():
         try:
             yield sensing_of(find(name))
         except BenchnavError:  # a scenario that is broken is not this navigator's fault

@@ -14,7 +14,7 @@ from benchnav.arena.agents import Agents, Dynamics
 from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import World
-from benchnav.arrays import FloatArray, IntArray
+from benchnav.arrays import Extent, FloatArray, IntArray
 from benchnav.episode.episode import Episode
 
 
@@ -68,7 +68,7 @@ class _Motion:
         placed: FloatArray = self.turn(points) + self.offset
         return placed
 
-    def box(self, bounds: tuple[float, float, float, float]) -> tuple[float, float, float, float]:
+    def box(self, bounds: Extent) -> Extent:
         x0, y0, x1, y1 = bounds
         corners = self.place(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]], float))
         low, high = corners.min(axis=0), corners.max(axis=0)

@@ -29,3 +29,8 @@ def visible_lines(text: str) -> str:
 def visible(text: str) -> str:
     """Return the text on one line, with `MARK` for control, format and unpaired characters."""
     return visible_lines(re.sub(r"\s+", " ", text)).encode("utf-8", "replace").decode()
+
+
+def shortened(text: str, most: int) -> str:
+    """Return the text, cut to ``most`` characters, the last three of which are then dots."""
+    return text if len(text) <= most else text[: most - 3] + "..."

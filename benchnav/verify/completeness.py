@@ -1,4 +1,4 @@
-"""Which parts a run must have, and which it has."""
+"""The parts that a run must have, and those that it has."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -16,19 +16,19 @@ _SHOWN = 10  # seeds of each kind
 
 
 def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[Cell, Part]]:
-    """Every part with the cell that it is of; the report says what lacks or is too much."""
+    """Yield every part with its cell; report missing and surplus seeds and parts."""
     stored = {str(c["key"]): c for c in run.manifest.cells}
     for cell in suite.cells:
         where = f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
-        said = stored.get(cell.key, {"key": cell.key})
-        reason = str(said.get("reason", ""))
+        entry = stored.get(cell.key, {"key": cell.key})
+        reason = str(entry.get("reason", ""))
         if reason:
             if parts_of(run.cell(cell.key)):
                 report.find("coverage", where, f"is n/a ({reason}), and has episodes")
             report.counts["n/a cells"] += 1
             continue
         try:
-            parts = run.parts_in(said)
+            parts = run.parts_in(entry)
         except CorruptPartError as error:
             report.find("manifest", where, str(error))
             continue
@@ -40,7 +40,9 @@ def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[C
         if path not in known and run.key_of(path):
             report.notes["cell of other source, which an unfinished --again left"] += 1
         elif path not in known:
-            report.find("coverage", str(run.shown / "parts" / path.name), "is no cell of the suite")
+            report.find(
+                "coverage", str(run.shown / "parts" / path.name), "is not a cell of the suite"
+            )
 
 
 def _check_seeds(parts: list[Part], seeds: range, where: str, report: Report) -> None:

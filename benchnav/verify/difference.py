@@ -1,4 +1,4 @@
-"""Where two values differ: types, shapes and every bit of every float."""
+"""The first difference of two values: types, shapes and every bit of every float."""
 
 from dataclasses import fields, is_dataclass
 from typing import Any
@@ -6,12 +6,13 @@ from typing import Any
 import numpy as np
 
 from benchnav.arrays import AnyArray
+from benchnav.text.visible import shortened
 
 _BITS = {8: np.uint64, 4: np.uint32, 2: np.uint16, 1: np.uint8}
 
 
 def first_difference(stored: Any, right: Any, name: str = "") -> str:
-    """``"agents.start[3, 0] is 1.5, not 1.25"``; ``""`` where everything is the same."""
+    """Return ``"agents.start[3, 0] is 1.5, not 1.25"``; ``""`` if the values are equal."""
     if isinstance(stored, np.ndarray) and isinstance(right, np.ndarray):
         return _of_arrays(stored, right, name)
     if is_dataclass(stored) and type(stored) is type(right):
@@ -49,5 +50,4 @@ def _of_arrays(stored: AnyArray, right: AnyArray, name: str) -> str:
 
 
 def _shown(value: Any) -> str:
-    text = repr(value.item() if isinstance(value, np.generic) else value)
-    return text if len(text) <= 80 else text[:77] + "..."
+    return shortened(repr(value.item() if isinstance(value, np.generic) else value), 80)

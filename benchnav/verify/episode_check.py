@@ -1,4 +1,4 @@
-"""A stored episode beside the one that its commands lead to."""
+"""Compare a stored episode with the re-simulation of its commands."""
 
 from dataclasses import fields
 
@@ -15,7 +15,7 @@ _STATES = ("position", "heading", "status", "body_position", "arrival")
 
 
 def compare(stored: Episode, again: Episode, where: str, report: Report) -> None:
-    """Report every array that is not the same to the last bit, and a digest that does not fit."""
+    """Report every array that differs in any bit, and a digest that does not match."""
     for name in _STATES:
         _differ("state", name, getattr(stored, name), getattr(again, name), where, report)
     _differ("command", "executed", stored.executed, again.executed, where, report)
@@ -26,8 +26,8 @@ def compare(stored: Episode, again: Episode, where: str, report: Report) -> None
         )  # fmt: skip
     else:
         for f in fields(Contacts):
-            mine, other = getattr(stored.contacts, f.name), getattr(again.contacts, f.name)
-            _differ("event", f"contacts.{f.name}", mine, other, where, report)
+            own, other = getattr(stored.contacts, f.name), getattr(again.contacts, f.name)
+            _differ("event", f"contacts.{f.name}", own, other, where, report)
     right = digest(stored)
     if stored.digest != right:
         report.find("digest", where, f"digest is {stored.digest[:12]}…, not {right[:12]}…")
@@ -44,7 +44,7 @@ def _differ(
 
 
 def check_commands(stored: Episode, again: Episode, where: str, report: Report) -> None:
-    """Nobody is asked for a command who is not active."""
+    """Report commands of inactive agents, which must be 0."""
     steps = min(len(stored.requested), len(again.requested))
     idle = again.status[:steps] != int(Status.ACTIVE)
     strange = np.argwhere(idle & (stored.requested[:steps] != 0.0).any(axis=2))
@@ -54,7 +54,7 @@ def check_commands(stored: Episode, again: Episode, where: str, report: Report) 
 
 
 def check_timings(episode: Episode, probe: bool, where: str, report: Report) -> None:
-    """Nobody can verify a timing, but some cannot be."""
+    """Report impossible timings; possible ones cannot be verified."""
     times, steps = episode.timings, len(episode.requested)
     seconds = [times.decision, np.array([times.planning, times.rehearsal])]
     latency = times.latency
@@ -66,10 +66,10 @@ def check_timings(episode: Episode, probe: bool, where: str, report: Report) -> 
             np.isfinite(s).all() and (s >= 0.0).all() for s in seconds
         ),
         f"a batch must have 1 to {MAX_WORLDS} worlds": not 1 <= times.batch <= MAX_WORLDS,
-        "latency must stand with the first seed of a cell": latency is not None and not probe,
+        "latency must be stored with the first seed of a cell": latency is not None and not probe,
         f"latency must have at most {DECISIONS} calls": latency is not None
         and len(latency) > DECISIONS,
-        "memory must be more than nothing": times.memory is not None and times.memory <= 0,
+        "memory must be more than 0": times.memory is not None and times.memory <= 0,
     }
     for text, broken in wrong.items():
         if broken:

@@ -1,4 +1,4 @@
-"""Everything that is wanted of one part."""
+"""All requested checks of one part."""
 
 from dataclasses import dataclass
 
@@ -10,15 +10,15 @@ from benchnav.verify.reference.reference_check import check_twin
 
 @dataclass(frozen=True)
 class Examination:
-    """A part, and what to do with it."""
+    """A part, and the checks to make."""
 
     check: PartCheck
-    twin: tuple[int, ...]  # seeds of the episodes that the slow twin replays
+    twin: tuple[int, ...]  # seeds of the episodes that the reference simulator replays
     referee: bool
 
 
 def examine(task: Examination) -> Report:
-    """Re-simulate the part, and what else is wanted."""
+    """Re-simulate the part, and make the other requested checks."""
     report, scored, rehearsed = check_part(task.check)
     for pair in scored + rehearsed:
         if pair.stored.identity.seed in task.twin:

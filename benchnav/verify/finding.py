@@ -1,4 +1,4 @@
-"""What verifying a run finds, and what it counted on the way."""
+"""The findings and counts of a verification."""
 
 from collections import Counter
 from dataclasses import dataclass, field
@@ -6,54 +6,56 @@ from itertools import zip_longest
 
 from benchnav.text.plural import counted
 
-KINDS = {  # what a finding is about → what must hold there
-    "changed": "nothing writes the run while it is verified",
-    "manifest": "the suite, its cells and hashes fit each other",
-    "scenario": "a scenario is what its hash says, and its files are there",
-    "coverage": "every cell has every seed once, and nothing else is there",
-    "seal": "files have the size and sha256 that their part was sealed with",
-    "identity": "episodes say which cell and seed they are of",
+KINDS = {  # subject of a finding → the condition that must hold
+    "changed": "the run does not change while it is verified",
+    "manifest": "the suite, its cells and hashes match each other",
+    "scenario": "a scenario matches its hash, and its files are present",
+    "coverage": "every cell has every seed once, and no other content",
+    "seal": "files match the size and sha256 in the seal of their part",
+    "identity": "episodes name their own cell and seed",
     "world": "the stored world is the one that scenario, split and seed draw",
     "command": "commands are such as a navigator may have given",
     "state": "re-simulated commands lead to the stored states, bit for bit",
     "event": "and to the stored collision events",
-    "digest": "digests are those of what is stored",
-    "rehearsal": "what was granted and charged is what was rehearsed",
+    "digest": "digests match the stored content",
+    "rehearsal": "granted and charged rehearsals match those that were made",
     "metric": "values are those measured on the re-simulated episode, within 1e-9",
-    "timing": "timings are possible ones",
-    "twin": "the slow twin of the kernels agrees",
+    "timing": "timings are possible",
+    "twin": "the slow reference simulator agrees with the kernels",
     "referee": "trimesh and python-fcl judge every contact alike",
-    "rerun": "the navigators, run again, answer the same",
+    "rerun": "the navigators, run again, give the same commands",
 }
 
 
 @dataclass(frozen=True, order=True)
 class Finding:
-    """Something stored that does not agree with the rest."""
+    """A stored item that does not match the rest."""
 
     kind: str  # of KINDS
     where: str  # file, cell, seed
-    what: str  # what is stored, and what must be there
+    what: str  # the stored item, and the expected one
 
 
 @dataclass
 class Report:
-    """Findings, and what was looked at; reports of parts add up."""
+    """Findings, and counts of checks; reports of parts add up."""
 
     findings: list[Finding] = field(default_factory=list)
     counts: Counter[str] = field(default_factory=Counter)
-    notes: Counter[str] = field(default_factory=Counter)  # what was not checked, and how often
+    notes: Counter[str] = field(default_factory=Counter)  # unchecked items, and their numbers
     unknown: set[str] = field(default_factory=set)  # metrics that are not installed here
-    unmeasured: set[str] = field(default_factory=set)  # metrics that are here, and not in a part
+    unmeasured: set[str] = field(default_factory=set)  # installed metrics that a part does not have
     versions: list[str] = field(default_factory=list)  # of packages that differ from the run's
     sources: list[str] = field(default_factory=list)  # a sentence for each navigator
-    claims: str = ""  # what the manifest says that nothing follows from
-    caveats: list[str] = field(default_factory=list)  # where the run is not what is installed
-    content: str = ""  # digest of what was verified
+    claims: str = ""  # statements of the manifest that cannot be checked
+    caveats: list[str] = field(
+        default_factory=list
+    )  # differences of the run from what is installed
+    content: str = ""  # digest of the verified run
 
     @property
     def clean(self) -> bool:
-        """True where nothing disagrees."""
+        """Whether there is no finding."""
         return not self.findings
 
     def find(self, kind: str, where: str, what: str) -> None:
@@ -61,7 +63,7 @@ class Report:
         self.findings.append(Finding(kind, where, what))
 
     def add(self, other: "Report") -> None:
-        """Take over what another one holds."""
+        """Add the content of another report."""
         self.findings += other.findings
         self.counts += other.counts
         self.notes += other.notes
@@ -69,19 +71,19 @@ class Report:
         self.unmeasured |= other.unmeasured
 
     def sort(self) -> None:
-        """Findings by kind, causes before what follows from them."""
+        """Sort findings by kind, causes before their consequences."""
         order = list(KINDS)
         self.findings.sort(key=lambda f: (order.index(f.kind), f.where, f.what))
 
     def few(self, most: int) -> list[Finding]:
-        """At most so many findings, some of every kind."""
+        """Return at most ``most`` findings, some of every kind."""
         kinds = [[f for f in self.findings if f.kind == kind] for kind in KINDS]
         chosen = [f for turn in zip_longest(*kinds) for f in turn if f is not None][:most]
         return [f for f in self.findings if any(f is other for other in chosen)]
 
     @property
     def checked(self) -> list[str]:
-        """What was checked, in words."""
+        """Return sentences about the checks that were made."""
         c, n = self.counts, self._counted
         lines = [
             f"{n('episodes', 'episode')} and {n('rehearsals', 'rehearsal')}: worlds drawn again,"
@@ -90,35 +92,35 @@ class Report:
         ]
         if c["twin episodes"]:
             lines.append(
-                f"{n('twin episodes', 'episode')} by the slow twin of the kernels:"
+                f"{n('twin episodes', 'episode')} by the slow reference simulator:"
                 f" {n('twin decisions', 'decision')}, {n('twin events', 'event')}"
             )
         if c["judged states"]:
             lines.append(
                 f"{n('judged events', 'event')} by trimesh and python-fcl, and"
-                f" {n('judged states', 'state')} of agents for events that lack"
+                f" {n('judged states', 'state')} of agents for missing events"
             )
         if c["rerun"]:
             lines.append(f"{n('rerun', 'episode')} by running their navigators again")
         return lines
 
-    def _counted(self, what: str, noun: str) -> str:
-        return counted(self.counts[what], noun)
+    def _counted(self, key: str, noun: str) -> str:
+        return counted(self.counts[key], noun)
 
     @property
     def unchecked(self) -> list[str]:
-        """What was not, in words."""
+        """Return sentences about what was not checked."""
         c = self.counts
         lines = [
-            f"timings, which nobody can verify: {c['values of timings']} values follow from the"
-            " stored seconds, and that is all there is to say"
+            f"timings, which cannot be verified: {c['values of timings']} values match the"
+            " stored seconds, and no more can be checked"
         ]
         if self.claims:
-            lines.append(f"what its author says of the run: {self.claims}")
+            lines.append(f"statements of the author about the run: {self.claims}")
         if not c["rerun"]:
-            lines.append("whether the navigators gave these commands (--rerun asks them)")
+            lines.append("whether the navigators gave these commands (--rerun checks it)")
         if c["n/a cells"] and not c["rerun n/a"]:
-            lines.append(f"why cells are n/a ({c['n/a cells']}), which navigators say (--rerun)")
+            lines.append(f"why cells are n/a ({c['n/a cells']}), as navigators report it (--rerun)")
         if self.unmeasured:
             names = ", ".join(sorted(self.unmeasured))
             lines.append(f"metrics that are installed here and not measured in the run: {names}")

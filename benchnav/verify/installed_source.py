@@ -1,4 +1,4 @@
-"""Whether the code that is installed here is the code that a run's episodes were made by."""
+"""Compare the installed code of a navigator with the code that produced a run's episodes."""
 
 from benchnav.runner.plan.contestant import Entry, source_of
 from benchnav.source.importable import MAIN
@@ -7,14 +7,14 @@ from benchnav.verify.untrusted_spec import is_by_module, is_program
 
 
 def compare_source(entry: Entry, packed: bool) -> str:
-    """Return a sentence about the navigator ``entry`` of a run; nothing of it is imported.
+    """Return a sentence about the navigator ``entry`` of a run, without importing it.
 
-    ``packed``: the run came in a pack. What a stranger names is then not looked for.
+    ``packed``: the run came in a pack. Modules that an untrusted pack names are not searched.
     """
     if not entry.source_hash:
-        return f"{entry.label}: not recorded, so that nobody can say whether the same is installed"
+        return f"{entry.label}: not recorded, so it cannot be compared with the installed source"
     if packed and (is_program(entry.spec) or is_by_module(entry.spec)):
-        return f"{entry.label}: not compared, for somebody else's pack names it by file or module"
+        return f"{entry.label}: not compared, because an untrusted pack names it by file or module"
     modules = [place.partition(":")[0] for place in entry.places]
     if MAIN in modules:
         return f"{entry.label}: a notebook or script defined it, which cannot be compared"

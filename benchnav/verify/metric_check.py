@@ -1,4 +1,4 @@
-"""The values that a run holds beside those measured on the re-simulated episodes."""
+"""Compare a run's values with those measured on the re-simulated episodes."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -11,17 +11,17 @@ from benchnav.runner.execute.plugin_metrics import guest_rows
 from benchnav.runner.plan.task import Measuring
 from benchnav.verify.finding import Report
 
-TOLERANCE = 1e-9  # of a value; of its size where that is more than 1
+TOLERANCE = 1e-9  # of a value; relative for values above 1
 Rows = Mapping[int, list[dict[str, Any]]]  # of `benchnav.store.parts.results.RESULTS`, by seed
 
 
 def measured_again(
     episodes: Sequence[Episode], names: Sequence[str], measuring: Measuring | None
 ) -> list[list[dict[str, Any]]]:
-    """For each episode the rows that metrics of these names give.
+    """Return for each episode the rows of the metrics ``names``.
 
-    Those of plugins are measured in processes of their own; where ``measuring`` is None, in
-    this one.
+    Metrics of plugins are measured in separate processes; in this one if ``measuring``
+    is None.
     """
     if measuring is None:
         return [measure(episode, [load_metric(name) for name in names]) for episode in episodes]
@@ -31,8 +31,8 @@ def measured_again(
         guests = guest_rows(
             name, episodes, measuring.registrations, measuring.main, measuring.timeout
         )
-        for mine, theirs in zip(rows, guests, strict=True):
-            mine += theirs
+        for episode_rows, plugin_rows in zip(rows, guests, strict=True):
+            episode_rows += plugin_rows
     return rows
 
 
@@ -43,19 +43,19 @@ def check_values(
     where: str,
     report: Report,
 ) -> None:
-    """Report every row that is not one of ``right``, those of the episode made again.
+    """Report every row that differs from ``right``, the rows of the re-simulated episode.
 
-    Values of metrics that are not ``known`` here, each with whether it is verifiable, are
-    counted, and not checked. A timing's value must follow from the stored timings; that these
-    are true, nobody can verify.
+    ``known`` maps the metrics installed here to whether they are verifiable; values of other
+    metrics are counted and not checked. A timing's value must follow from the stored timings,
+    which cannot be verified themselves.
     """
     expected = {(row["role"], row["metric"]): row for row in right}
-    seen: set[tuple[str, str]] = set()
+    earlier: set[tuple[str, str]] = set()
     for row in stored:
         key = row["role"], row["metric"]
-        if key in seen:
-            report.find("metric", where, f"{_named(key)} stands twice")
-        seen.add(key)
+        if key in earlier:
+            report.find("metric", where, f"{_named(key)} is repeated")
+        earlier.add(key)
         if row["metric"] not in known:
             report.unknown.add(row["metric"])
             report.notes[f"value of the metric {row['metric']!r}, which is not installed here"] += 1
@@ -65,8 +65,8 @@ def check_values(
             _check_row(row, expected[key], where, report)
             kind = "values" if known[row["metric"]] else "values of timings"
             report.counts[kind] += 1
-    for key in sorted(expected.keys() - seen):
-        report.find("metric", where, f"{_named(key)} lacks")
+    for key in sorted(expected.keys() - earlier):
+        report.find("metric", where, f"{_named(key)} is missing")
 
 
 def _check_row(
@@ -74,9 +74,9 @@ def _check_row(
 ) -> None:
     for name, value in right.items():
         if name in ("traceback", "remarks") and row[name] is None:
-            continue  # older parts lack them
+            continue  # older parts do not have it
         if name == "traceback" and value is not None:
-            continue  # its lines are those of the libraries that are installed
+            continue  # a traceback depends on the versions of libraries
         close = _close(row[name], value) if name in ("value", "rehearsal_seconds") else None
         if not (row[name] == value if close is None else close):
             text = f"{_named((right['role'], right['metric']))} has"
@@ -96,10 +96,10 @@ def _named(key: tuple[str, str]) -> str:
 
 
 def expected_metrics(stored: set[str], version: str, known: Iterable[str]) -> tuple[str, ...]:
-    """What must have been measured: what is stored and known here, and all that shipped.
+    """Return the metrics that must be measured: stored ones known here, and all shipped ones.
 
-    ``version`` is that of the benchnav that made the run: if it is this one, none of the
-    metrics that ship with it may lack.
+    ``version`` is that of the benchnav that produced the run: if it equals this one, no
+    shipped metric may be missing.
     """
     ours = f"benchnav {version}"
     return tuple(

@@ -1,4 +1,4 @@
-"""Checks one part of a run: every episode, rehearsal and value in it."""
+"""Check one part of a run: every episode, rehearsal and value in it."""
 
 from collections import OrderedDict
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,35 +25,35 @@ from benchnav.verify.metric_check import check_values, expected_metrics, measure
 from benchnav.verify.rehearsal_check import check_rehearsals
 from benchnav.verify.resimulation import resimulate, unfit
 
-_KEPT = 256  # worlds that a process remembers: other navigators meet the same
+_KEPT = 256  # worlds in the cache of a process: other navigators run in the same worlds
 _WORLDS: OrderedDict[tuple[str, str, int], World] = OrderedDict()
 
 
 @dataclass(frozen=True)
 class PartCheck:
-    """What is to be checked of a part, and against what."""
+    """A part, and the context of its check."""
 
     cell: Cell
     part: Part
     salt: str
-    probe: int  # the seed with which latency stands
+    probe: int  # the seed of the episode that stores latency
     version: str  # of the benchnav that made the run
-    metrics: Mapping[str, bool]  # that are installed here, and whether they are verifiable
-    measuring: Measuring | None  # how those of plugins are measured; None: in this process
+    metrics: Mapping[str, bool]  # installed metrics, and whether they are verifiable
+    measuring: Measuring | None  # how to measure metrics of plugins; None: in this process
 
     @property
     def assignment(self) -> Assignment:
-        """Who ran where."""
+        """The assignment of the navigator to the part's cell."""
         return replace(self.cell.assignment, salt=self.salt)
 
     @property
     def shown(self) -> str:
-        """The cell, as findings name it."""
+        """The name of the cell in findings."""
         cell = self.cell
         return f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
 
     def place(self, episode: Episode) -> str:
-        """An episode of it, as findings name it."""
+        """Return the name of an episode in findings."""
         rehearsal = episode.identity.rehearsal
         more = f", rehearsal {rehearsal}" if rehearsal else ""
         return f"{self.shown}, seed {episode.identity.seed}{more}"
@@ -61,16 +61,16 @@ class PartCheck:
 
 @dataclass(frozen=True)
 class Pair:
-    """A stored episode, and the one that its commands lead to in the world drawn anew."""
+    """A stored episode, and the re-simulation of its commands in the redrawn world."""
 
     stored: Episode
     again: Episode
-    touched: FloatArray  # (N, 2) [m] where the agent of each event was when it first touched
+    touched: FloatArray  # (N, 2) [m] agent positions at the first touch of each event
     where: str
 
 
 def check_part(task: PartCheck) -> tuple[Report, list[Pair], list[Pair]]:
-    """(what disagrees, scored episodes, rehearsals) of a part."""
+    """Return (report, scored episodes, rehearsals) of a part."""
     report = Report()
     try:
         scored = list(task.part.episodes())
@@ -89,7 +89,7 @@ def check_part(task: PartCheck) -> tuple[Report, list[Pair], list[Pair]]:
         pairs = _again(task, fit, report)
         practice = _again(task, fit_rehearsed, report)
     except (BenchnavError, ArithmeticError, MemoryError, ValueError) as error:
-        report.find("world", task.shown, f"cannot be made again: {type(error).__name__}: {error}")
+        report.find("world", task.shown, f"cannot be drawn again: {type(error).__name__}: {error}")
         return report, [], []
     _check_rehearsals(task, fit, fit_rehearsed, report)
     _check_values(task, pairs, rows, report)
@@ -99,27 +99,27 @@ def check_part(task: PartCheck) -> tuple[Report, list[Pair], list[Pair]]:
 
 
 def _identified(task: PartCheck, episode: Episode, report: Report) -> bool:
-    """Report an episode of another cell, seed or navigator; True where it is of this part."""
-    who = episode.identity
-    right = replace(task.assignment.identity(who.seed), rehearsal=who.rehearsal)
+    """Whether an episode belongs to this part; report one of another cell, seed or navigator."""
+    identity = episode.identity
+    right = replace(task.assignment.identity(identity.seed), rehearsal=identity.rehearsal)
     place = task.place(episode)
-    text = first_difference(who, right, "identity")
+    text = first_difference(identity, right, "identity")
     if text:
         report.find("identity", place, text)
-    if who.seed not in task.part.seeds:
-        report.find("identity", place, f"seed {who.seed} is not one of {task.part.stem}")
+    if identity.seed not in task.part.seeds:
+        report.find("identity", place, f"seed {identity.seed} is not one of {task.part.stem}")
         return False
     return True
 
 
 def _again(task: PartCheck, episodes: Sequence[Episode], report: Report) -> list[Pair]:
-    """Re-simulate what can be, and compare."""
+    """Re-simulate episodes where possible, and compare."""
     checked: list[tuple[World, Episode]] = []
     for episode in episodes:
         world, place = _world(task, episode), task.place(episode)
         text = first_difference(episode.world, world, "world")
         if text:
-            report.find("world", place, f"{text} (drawn anew)")
+            report.find("world", place, f"{text} (redrawn)")
         wrong = unfit(world, episode)
         if wrong:
             report.find("command", place, wrong)
@@ -148,7 +148,7 @@ def _batches(
 
 
 def _world(task: PartCheck, episode: Episode) -> World:
-    """The world of an episode, drawn anew."""
+    """Return the redrawn world of an episode."""
     cell, seed, k = task.cell, episode.identity.seed, episode.identity.rehearsal
     key = cell.scenario.hash, cell.split, seed
     world = _WORLDS.get(key)
@@ -172,13 +172,13 @@ def _check_rehearsals(
         own = made.pop(seed_of(episode), [])
         check_rehearsals(task.assignment, episode, own, task.place(episode), report)
     for seed in made:
-        report.find("rehearsal", task.shown, f"seed {seed} has rehearsals, and no episode")
+        report.find("rehearsal", task.shown, f"seed {seed} has rehearsals, but no episode")
 
 
 def _check_values(
     task: PartCheck, pairs: Sequence[Pair], rows: Sequence[dict[str, Any]], report: Report
 ) -> None:
-    """Of episodes that could be re-simulated; others were reported."""
+    """Check values of re-simulated episodes; others are reported already."""
     by_seed: dict[int, list[dict[str, Any]]] = {}
     for row in rows:
         by_seed.setdefault(row["seed"], []).append(row)
@@ -193,7 +193,7 @@ def _check_values(
     for seed in by_seed:
         if seed not in task.part.seeds:
             report.find(
-                "metric", task.shown, f"there are values for seed {seed}, which is not here"
+                "metric", task.shown, f"there are values for seed {seed}, which has no episode"
             )
 
 

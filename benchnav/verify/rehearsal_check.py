@@ -1,4 +1,4 @@
-"""What was rehearsed for an episode, beside what its navigator was granted and charged."""
+"""Compare an episode's rehearsals with those that its navigator was granted and charged."""
 
 from collections.abc import Mapping, Sequence
 
@@ -17,19 +17,19 @@ def check_rehearsals(
     where: str,
     report: Report,
 ) -> None:
-    """Report where ``rehearsals``, sorted, do not fit the episode that they were made for."""
+    """Report differences between ``rehearsals``, sorted, and their scored episode."""
 
     def find(what: str) -> None:
         report.find("rehearsal", where, what)
 
     granted, done = assignment.rehearsals, Rehearsed(list(rehearsals))
     if scored.rehearsals != granted:
-        find(f"{scored.rehearsals} are said to be granted; the navigator asks for {granted}")
+        find(f"{scored.rehearsals} are recorded as granted; the navigator requests {granted}")
     numbers = [e.identity.rehearsal for e in rehearsals]
     if numbers != list(range(1, len(numbers) + 1)):
-        find(f"must be numbered from 1 on; got {numbers}")
+        find(f"must be numbered from 1; got {numbers}")
     if any(e.rehearsals or e.rehearsal_decisions or e.timings.rehearsal for e in rehearsals):
-        find("no rehearsal may be granted or charged any itself")
+        find("no rehearsal may itself be granted or charged rehearsals")
     failed = [e for e in rehearsals if e.failure]
     if failed and failed[0] is not rehearsals[-1]:
         find(f"none may follow number {failed[0].identity.rehearsal}, which failed")
@@ -48,4 +48,4 @@ def check_rehearsals(
     if abs(scored.timings.rehearsal - done.seconds) > _SECONDS * max(1.0, done.seconds):
         find(f"{scored.timings.rehearsal!r} s are charged, not {done.seconds!r} s")
     if scored.reproducible and not all(e.reproducible for e in rehearsals):
-        find("the episode cannot be reproducible where a rehearsal is not")
+        find("the episode cannot be reproducible if a rehearsal is not")

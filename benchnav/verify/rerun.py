@@ -1,7 +1,7 @@
-"""Runs the navigators of a run again: only this finds commands that were replaced.
+"""Run the navigators of a run again: only this detects replaced commands.
 
-They play in workers of their own, as in any run, and what these write is compared here: no
-evaluated code runs where a run is judged.
+They run in separate workers, as in any run, and this process compares the files that the workers
+write: it runs no evaluated code.
 """
 
 import dataclasses
@@ -24,20 +24,26 @@ from benchnav.runner.plan.task import Task, chunks
 from benchnav.store.parts.part import FILES, SEAL, Part
 from benchnav.store.runs.manifest import ISOLATED
 from benchnav.store.runs.run_folder import RunFolder
+from benchnav.text.visible import shortened
 from benchnav.verify.finding import Report
 from benchnav.verify.part_check import PartCheck
 from benchnav.verify.untrusted_spec import is_by_module, is_program
 
-_TOLD = ("act ", "reset ", "in rehearsal ", "the scenario's background ")  # raised or answered
+_REPRODUCIBLE = (
+    "act ",
+    "reset ",
+    "in rehearsal ",
+    "the scenario's background ",
+)  # raised or answered
 
 Installed = Mapping[str, tuple[Entry | None, str]]  # by label: `installed`
 
 
 @dataclass(frozen=True)
 class Rerun:
-    """Parts to be run again.
+    """Parts to run again.
 
-    ``folder`` is where, and ``limits`` are those of the run.
+    ``folder`` is for the new episodes; ``limits`` are those of the run.
     """
 
     folder: Path
@@ -48,7 +54,7 @@ class Rerun:
     stored: dict[tuple[str, int], PartCheck] = field(default_factory=dict)  # by cell and seed
 
     def add(self, check: PartCheck, entry: tuple[Entry | None, str]) -> None:
-        """Plan what can be run again of a part."""
+        """Plan the episodes of a part that can be run again."""
         found, why = entry
         seeds = list(check.part.seeds)
         if found is None:
@@ -70,7 +76,7 @@ class Rerun:
         self.stored.update(((check.cell.key, seed), check) for seed in again)
 
     def run(self, workers: int) -> None:
-        """Run, and report every episode that is not repeated to the last bit."""
+        """Run, and report every episode that differs in any bit."""
         tasks = sorted(self.tasks, key=lambda task: -task.cell.effort * len(task.seeds))
         self.progress.expect(task.load for task in tasks)
         if not tasks:
@@ -93,7 +99,7 @@ class Rerun:
         new = {_place(episode): episode for episode in _episodes(part)}
         for old in _episodes(check.part):
             if _place(old) not in new:
-                continue  # of another task; what a rehearsal lacks is found without running anybody
+                continue  # of another task; missing rehearsals are found by re-simulation
             again = new[_place(old)]
             if not (old.reproducible or again.reproducible):
                 why = "a clock decides what its navigator does"
@@ -119,28 +125,28 @@ def _place(episode: Episode) -> tuple[int, int]:
 
 
 def _may_fail_again(failure: str) -> bool:
-    return not failure or failure.startswith(_TOLD)
+    return not failure or failure.startswith(_REPRODUCIBLE)
 
 
 def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry | None, str]:
-    """(the same navigator as it is installed here, ""), or (None, why there is none).
+    """Return (the navigator as installed here, ""), or (None, why it cannot be used).
 
-    Nothing that a stranger names by module is imported, and no program of theirs is started:
-    only what is registered here. ``cells`` have the sensors that it is asked about.
+    No module that an untrusted pack names is imported, and none of its programs is started:
+    only registered plugins are used. ``cells`` have the sensors that it must support.
     """
     if packed and is_program(entry.spec):
-        return None, f"{entry.label} is a program, in somebody else's pack"
+        return None, f"{entry.label} is a program, in an untrusted pack"
     if packed and is_by_module(entry.spec):
-        return None, f"{entry.label} is named by its module, in somebody else's pack"
+        return None, f"{entry.label} is named by its module, in an untrusted pack"
     sensings = tuple(dict.fromkeys(sensing_of(cell.scenario) for cell in cells))
     meeting = Meeting(sensings, entry.mode == ISOLATED)
     try:
         spec, where = {**entry.spec, "label": entry.label}, f"the navigator {entry.label!r}"
         found = meeting.entry(spec, where)
     except BenchnavError as error:
-        return None, f"{entry.label} cannot be made here: {_short(str(error))}"
+        return None, f"{entry.label} cannot be created here: {_short(str(error))}"
     if found.lacks:
-        return None, f"{entry.label} cannot be made here: {found.lacks}"
+        return None, f"{entry.label} cannot be created here: {found.lacks}"
     if found.hash != entry.hash:
         return None, f"{entry.label} is another one here ({found.source} instead of {entry.source})"
     if entry.source_hash and found.source_hash != entry.source_hash:
@@ -149,7 +155,7 @@ def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry 
 
 
 def all_installed(run: RunFolder, cells: Sequence[Cell]) -> Installed:
-    """Who of a run is installed here, and why others are not."""
+    """Return the installed navigators of a run, and why others are missing."""
     packed = run.packed is not None
     entries = {cell.entry.label: cell.entry for cell in cells}
     return {label: installed(entry, packed, cells) for label, entry in entries.items()}
@@ -158,32 +164,31 @@ def all_installed(run: RunFolder, cells: Sequence[Cell]) -> Installed:
 def check_reasons(
     run: RunFolder, cells: Sequence[Cell], entries: Installed, report: Report
 ) -> None:
-    """Report cells that are n/a and need not be, or the other way round."""
-    said = {str(c["key"]): str(c.get("reason", "")) for c in run.manifest.cells}
+    """Report cells whose n/a status does not match the installed navigator."""
+    reasons = {str(c["key"]): str(c.get("reason", "")) for c in run.manifest.cells}
     for cell in cells:
         label = cell.entry.label
         entry, why = entries[label]
-        stored = said.get(cell.key, "")
+        stored = reasons.get(cell.key, "")
         if entry is None:
             if stored:
                 report.notes[f"reason of a cell that is n/a: {why}"] += 1
             continue
         if entry.uses_map != cell.entry.uses_map:
             where = f"{cell.scenario.identity}, {label}"
-            says = "uses" if entry.uses_map else "does not use"
-            report.find("rerun", where, f"the navigator says that it {says} the map")
+            uses = "uses" if entry.uses_map else "does not use"
+            report.find("rerun", where, f"the navigator reports that it {uses} the map")
         if entry.training != cell.entry.training:
             where = f"{cell.scenario.identity}, {label}"
-            what = f"training is {cell.entry.training}, but the navigator says {entry.training}"
-            report.find("rerun", where, what)
+            text = f"training is {cell.entry.training}, but the navigator reports {entry.training}"
+            report.find("rerun", where, text)
         right = dataclasses.replace(cell, entry=entry).reason
         report.counts["rerun n/a"] += bool(stored)
         if right != stored:
             where = f"{cell.scenario.identity}, {cell.track}, {label}"
-            report.find("rerun", where, f"n/a: {stored!r}, but the navigator says {right!r}")
+            report.find("rerun", where, f"n/a: {stored!r}, but the navigator reports {right!r}")
 
 
 def _short(value: Any) -> str:
     text = value if isinstance(value, str) else repr(value)
-    text = re.sub(r"\s+", " ", text)
-    return text if len(text) <= 120 else text[:117] + "..."
+    return shortened(re.sub(r"\s+", " ", text), 120)

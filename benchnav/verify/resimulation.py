@@ -1,4 +1,4 @@
-"""Stored commands → the episodes that they lead to."""
+"""Re-simulate stored commands to episodes."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,7 +14,7 @@ from benchnav.world.simulation import Simulation
 
 
 def unfit(world: World, episode: Episode) -> str:
-    """Why the commands of ``episode`` cannot be stepped in ``world``; ``""`` where they can."""
+    """Return why the commands of ``episode`` cannot be stepped in ``world``; ``""`` if they can."""
     agents, steps = len(world.agents), len(episode.requested)
     if episode.requested.shape != (steps, agents, 2):
         return f"there are commands for {episode.requested.shape[1]} agents, not {agents}"
@@ -23,7 +23,7 @@ def unfit(world: World, episode: Episode) -> str:
     if not np.isfinite(episode.requested).all():
         return "requested commands must be finite"
     if episode.twist is None or episode.twist.shape != (agents,):
-        return "it must say of every agent whether its commands are twists"
+        return "it must state for every agent whether its commands are twists"
     for driver in np.unique(world.agents.driver):
         kinds = episode.twist[world.agents.driver == driver]
         if kinds.any() != kinds.all():
@@ -32,18 +32,18 @@ def unfit(world: World, episode: Episode) -> str:
 
 
 class Resimulated(NamedTuple):
-    """What stored commands lead to."""
+    """The result of stored commands."""
 
     episode: Episode
-    wrong: str  # with its length; "" if nothing is
-    touched: FloatArray  # (N, 2) [m] where the agent of each event was when it first touched
+    wrong: str  # problem with the episode's length; "" if there is none
+    touched: FloatArray  # (N, 2) [m] agent positions at the first touch of each event
 
 
 def resimulate(pairs: Sequence[tuple[World, Episode]]) -> list[Resimulated]:
-    """What the stored commands of each pair lead to.
+    """Return the results of the stored commands of each pair.
 
-    All worlds share clock and rules, and no pair is `unfit`. What commands cannot tell,
-    such as timings, is taken from what is stored.
+    All worlds share clock and rules, and no pair is `unfit`. Data that does not follow from
+    commands, such as timings, is copied from the stored episode.
     """
     simulation = Simulation([world for world, _ in pairs])
     recorder = Recorder(simulation)
@@ -84,10 +84,10 @@ def resimulate(pairs: Sequence[tuple[World, Episode]]) -> list[Resimulated]:
 
 
 def _end(simulation: Simulation, b: int, episode: Episode) -> str:
-    """The record of world b ends here: its navigator failed, or nobody is left to go on."""
+    """Handle the end of world b's record: its navigator failed, or no agent is active."""
     going_on = bool(simulation.running[b])
     if not episode.failure:
         simulation.running[b] = False
-        return "it ends though an evaluated agent is on its way" if going_on else ""
+        return "it ends although an evaluated agent is active" if going_on else ""
     simulation.fail(b, np.flatnonzero(simulation.world(b).agents.evaluated))
     return "" if going_on else "its navigator failed after its end"

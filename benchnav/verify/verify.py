@@ -1,4 +1,4 @@
-"""Checks a whole run, part by part, in worker processes."""
+"""Verify a whole run, part by part, in worker processes."""
 
 import os
 import signal
@@ -12,7 +12,7 @@ from pathlib import Path
 from benchnav.errors import BenchnavError, StoreError
 from benchnav.metrics.declared import declared_metrics
 from benchnav.plugins import registrations
-from benchnav.processes.main_module import main_module
+from benchnav.processes.main_module import main_of, without_main
 from benchnav.processes.process_tree import end_with_parent
 from benchnav.runner.execute.progress import Progress
 from benchnav.runner.plan.installed_differences import caveats_of
@@ -20,6 +20,7 @@ from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.task import Measuring
 from benchnav.store.runs.manifest import Manifest, versions
 from benchnav.store.runs.pinned_run import changed_since, pinned, pinned_digest
+from benchnav.store.runs.provenance import sentence
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.system.temporary_folder import TemporaryFolder
 from benchnav.threads import core_count
@@ -33,14 +34,14 @@ from benchnav.verify.reference.fcl_check import require_referee
 from benchnav.verify.reference.sample import sampled
 from benchnav.verify.rerun import Rerun, all_installed, check_reasons
 
-VERIFIABLE = 3  # schema from which on a run holds all that this needs
+VERIFIABLE = 3  # first schema in which a run holds everything that verifying needs
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """What to do beyond re-simulating."""
+    """The checks beyond re-simulation."""
 
-    twin: int = 20  # episodes to be replayed through the slow twin
+    twin: int = 20  # number of episodes that the reference simulator replays
     referee: bool = False  # judge every contact again with trimesh and python-fcl
     rerun: bool = False  # run the navigators again
 
@@ -55,37 +56,37 @@ def verify(
     """Re-simulate a run and check everything in it.
 
     Args:
-        run: the run; it is only read, as it is when this begins.
-        wanted: what to do beyond that.
+        run: the run; it is only read, in its state at the beginning.
+        wanted: the checks beyond re-simulation.
         workers: processes; None: as many as there are cores; 0: in this process.
-        progress: is told of every finished episode.
+        progress: is notified of every finished episode.
 
     Raises:
-        StoreError: an older benchnav made the run, which did not keep what this needs.
-        MissingExtraError: the referee is wanted, and python-fcl or trimesh is not installed.
+        StoreError: an older benchnav produced the run, which did not store what this needs.
+        MissingExtraError: the referee is requested, and python-fcl or trimesh is not installed.
     """
     if wanted.referee:
         require_referee()
-    told = progress if progress is not None else Progress()
+    reporter = progress if progress is not None else Progress()
     run = pinned(run)
     report = Report(content=pinned_digest(run))
     with TemporaryFolder("verify") as root:
         count = core_count() if workers is None else workers
         tasks = tasks_of(run, root.path, wanted, report, guarded=count > 0)
         episodes = sum(len(task.check.part.seeds) for task in tasks)
-        told.begin(episodes * (2 if wanted.rerun else 1), 0)
+        reporter.begin(episodes * (2 if wanted.rerun else 1), 0)
         try:
-            fit = _examined(tasks, count, report, told)
+            fit = _examined(tasks, count, report, reporter)
             if wanted.rerun:
-                _rerun(run, fit, root.path / "rerun", count, report, told)
+                _rerun(run, fit, root.path / "rerun", count, report, reporter)
         finally:
-            told.end()
+            reporter.end()
     changed = changed_since(run)
     if changed:
         more = f" and {len(changed) - 1} more" if len(changed) > 1 else ""
         report.find(
             "changed", str(run.shown),
-            f"{changed[0]}{more} changed while the run was verified: verify it again once nothing"
+            f"{changed[0]}{more} changed while the run was verified: verify again when no process"
             " writes it",
         )  # fmt: skip
     report.sort()
@@ -93,13 +94,13 @@ def verify(
 
 
 def _examined(
-    tasks: Sequence[Examination], workers: int, report: Report, told: Progress
+    tasks: Sequence[Examination], workers: int, report: Report, reporter: Progress
 ) -> list[PartCheck]:
-    """The parts whose worlds could be drawn and read, after everything went to the report."""
+    """Return the parts whose worlds could be drawn and read; add all findings to the report."""
     fit = []
     for task, part in _done(tasks, workers):
         report.add(part)
-        told.advance(len(task.check.part.seeds))
+        reporter.advance(len(task.check.part.seeds))
         if all(finding.kind not in ("seal", "world") for finding in part.findings):
             fit.append(task.check)
     return fit
@@ -107,9 +108,9 @@ def _examined(
 
 def _rerun(
     run: RunFolder, checks: Sequence[PartCheck], folder: Path, workers: int, report: Report,
-    told: Progress,
+    reporter: Progress,
 ) -> None:  # fmt: skip
-    again = Rerun(folder, Limits.of(run.manifest.limits), report, told)
+    again = Rerun(folder, Limits.of(run.manifest.limits), report, reporter)
     entries = all_installed(run, [check.cell for check in checks])
     for check in checks:
         again.add(check, entries[check.cell.entry.label])
@@ -119,14 +120,14 @@ def _rerun(
 def tasks_of(
     run: RunFolder, root: Path, wanted: Wanted, report: Report, *, guarded: bool = True
 ) -> list[Examination]:
-    """Return what is to be examined of a pinned run; what its manifest shows goes to the report.
+    """Return the examinations of a pinned run; report the findings in its manifest.
 
-    ``guarded``: metrics of plugins are measured in processes of their own.
+    ``guarded``: metrics of plugins are measured in separate processes.
     """
     if run.manifest.schema < VERIFIABLE:
         raise StoreError(
             f"A run must be of schema {VERIFIABLE} or later to be verified. {run.shown} is of"
-            f" schema {run.manifest.schema}: benchnav kept too little then. Run the suite again."
+            f" schema {run.manifest.schema}, which stores too little. Run the suite again."
         )
     _note_versions(run, report)
     suite = restore(run, root, report)
@@ -155,26 +156,27 @@ def tasks_of(
 
 def _measuring(run: RunFolder) -> Measuring:
     timeout = Limits.of(run.manifest.limits).timeout
-    return Measuring((), tuple(registrations()), main_module(), timeout)
+    known = tuple(registrations())
+    return Measuring((), known, main_of(value for _, _, value in known), timeout)
 
 
 def _claims(manifest: Manifest) -> str:
-    """What stands in the manifest that nothing else of the run follows from."""
+    """Return the statements of the manifest that nothing else in the run supports."""
     suite = manifest.suite
     shard = f", shard {manifest.shard}" if manifest.shard else ""
     return (
         f"suite {suite['name']} at version {suite['version']}{shard}, limits"
         f" {Limits.of(manifest.limits)}, titles and descriptions of scenarios, made on"
         f" {manifest.created} by benchnav {manifest.versions.get('benchnav')} on"
-        f" {manifest.platform}"
+        f" {manifest.platform}{sentence(manifest.provenance)}"
     )
 
 
 def _note_versions(run: RunFolder, report: Report) -> None:
     here = versions()
-    for name, said in run.manifest.versions.items():
-        if name in here and here[name] != said:
-            report.versions.append(f"{name} {said} made the run; {here[name]} is here")
+    for name, version in run.manifest.versions.items():
+        if name in here and here[name] != version:
+            report.versions.append(f"{name} {version} produced the run; {here[name]} is here")
 
 
 def _done(tasks: Sequence[Examination], workers: int) -> Iterator[tuple[Examination, Report]]:
@@ -196,19 +198,20 @@ def _done(tasks: Sequence[Examination], workers: int) -> Iterator[tuple[Examinat
 def _collected(
     pool: Executor, tasks: Sequence[Examination]
 ) -> Iterator[tuple[Examination, Report]]:
-    running: dict[Future[Report], Examination] = {pool.submit(examine, t): t for t in tasks}
+    with without_main():  # which the check of a run has no use for
+        running: dict[Future[Report], Examination] = {pool.submit(examine, t): t for t in tasks}
     try:
         for future in as_completed(running):
             yield running[future], future.result()
     except BrokenProcessPool as error:
         raise BenchnavError(
-            "Worker processes must stay alive; one was killed (stderr may say why, and memory"
+            "Worker processes must stay alive; one was killed (see stderr for the cause; memory"
             " may be short). Try --workers 1."
         ) from error
 
 
 def _begin() -> None:
-    """Of a worker: one core, Ctrl-C is the parent's, as is its end, and what is printed is talk."""
+    """Prepare a worker: one core, Ctrl-C handled by the parent, end with it, output to stderr."""
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.environ["BENCHNAV_THREADS"] = "1"

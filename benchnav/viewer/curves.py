@@ -10,7 +10,7 @@ import numpy as np
 
 from benchnav.leaderboard.rendering.curve_table import titled
 from benchnav.leaderboard.statistics.curve import HORIZON, Point, panels
-from benchnav.navigation.tracks import TRACKS
+from benchnav.scenario.terms import TRACKS
 from benchnav.viewer.picture import COLOURS, DASHES, blank, plain
 
 if TYPE_CHECKING:

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import studies.full_knowledge
 from benchnav.errors import BenchnavError
-from benchnav.generation.build import SPLITS
 from benchnav.runner.plan.suite_file import parse_seeds
+from benchnav.scenario.terms import SPLITS
 
 from .measure import measure, summary
 

@@ -76,10 +76,18 @@ def one_world(world, agents, mover=1, spread=4.0):
     position, goal = everybody[:agents], rng.uniform(-spread, spread, (agents, 2))
     boxes = [(spread + 1.0, 0.0, 0.8), (0.0, -spread - 1.5, 1.0)]
     seen = Observation(
-        np.array([world]), np.zeros(1), np.ones((1, agents), bool), position[None],
-        np.zeros((1, agents)), velocity[None, :agents], goal[None], (None,), None,
-        _batched(sees(everybody, velocity, mover)), _batched(faces(position, boxes)),
-    )  # fmt: skip
+        rows=np.array([world]),
+        time=np.zeros(1),
+        active=np.ones((1, agents), bool),
+        position=position[None],
+        heading=np.zeros((1, agents)),
+        velocity=velocity[None, :agents],
+        goal=goal[None],
+        maps=(None,),
+        rays=None,
+        neighbours=_batched(sees(everybody, velocity, mover)),
+        edges=_batched(faces(position, boxes)),
+    )
     return briefing(position, goal, world=world), seen
 
 

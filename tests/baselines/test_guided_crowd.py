@@ -163,7 +163,7 @@ def test_a_file_gives_the_same_path_back(tmp_path):
         ('{"format": "benchnav guiding paths", "version": 1, "paths": [{"points": [[0, 0]]}]}',
          "points"),
         ('{"format": "benchnav guiding paths", "version": 1, "paths": [{"points": [[0, 0], [0, 0]]'
-         "}]}", "lead somewhere"),
+         "}]}", "different points"),
     ],
 )  # fmt: skip
 def test_a_file_that_holds_something_else_is_refused_with_the_place(tmp_path, text, why):
@@ -321,7 +321,7 @@ def test_an_obstacle_that_came_onto_the_path_is_told_and_walked_round():
     box = worlds.box(Kind.STATIC, 10.0, 15.0, 0.6, 0.6)
     episode, navigator = run(worlds.world(group(6), [box]), [rehearsal(DETOUR, 9.0)], spread=1.0)
     (remark,) = navigator.remarks(0)
-    assert remark.startswith("something stands on the guiding path of team 0 that did not when")
+    assert remark.startswith("an obstacle is on the guiding path of team 0 that was not there")
     assert arrived(episode).all()
 
 
@@ -331,7 +331,7 @@ def test_goals_behind_a_wall_are_told():
     world = worlds.world(group(2, start, [(18.0, 13.5), (17.5, 10.0)]), [wall], steps=120)
     _, navigator = run(world, [rehearsal([(2, 10), (18, 10)], 9.0)])
     (remark,) = navigator.remarks(0)
-    assert "between the end of the guiding path and the goals of 1 of team 0" in remark
+    assert "between the guiding path's end and the goals of 1 of team 0" in remark
 
 
 def test_without_a_success_the_group_goes_straight_and_says_why():
@@ -340,7 +340,7 @@ def test_without_a_success_the_group_goes_straight_and_says_why():
     episode, navigator = run(world, [hit, late])
     assert navigator.remarks(0) == [
         "the leader of team 0 succeeded in none of 2 rehearsals (1 with a collision, 1 not"
-        " arrived): its group goes straight at its goals"
+        " arrived): its group goes straight to its goals"
     ]
     assert np.abs(episode.position[..., 1] - 10.0).max() < 3.0
     assert arrived(episode).all()

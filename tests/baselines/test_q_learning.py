@@ -13,12 +13,15 @@ from benchnav_baselines.learned.q_learning.encoder import (
 from benchnav_baselines.learned.q_learning.learner import Learner, chosen
 from benchnav_baselines.learned.q_learning.moves import MOVES, twists
 from benchnav_baselines.learned.q_learning.navigator import QLearning
+from benchnav_baselines.learned.q_learning.recipe import Recipe
 from benchnav_baselines.learned.q_learning.table import Table, load, save
 from benchnav_baselines.learned.q_learning.table_pilot import SHIPPED
-from benchnav_baselines.learned.q_learning.train import Recipe, main, train
+from benchnav_baselines.learned.q_learning.train import train
+from benchnav_baselines.learned.q_learning.trainer import QLearningTrainer
 
 from benchnav.arena.solid import Kind
-from benchnav.errors import BenchnavError, ConfigError, PluginError
+from benchnav.config.yaml_reader import read_yaml, validate
+from benchnav.errors import BenchnavError, ConfigError, PluginError, UsageError
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
@@ -26,7 +29,7 @@ from benchnav.sensors.readings import Rays
 from benchnav.testing.check_navigator import check_navigator
 from tests.baselines.crowds import answers, briefing
 
-TINY = Recipe(rounds=6, decisions=5, worlds=6, patience=15)
+TINY = Recipe(name="tiny", trainer="q-learning", rounds=6, decisions=5, worlds=6, patience=15)
 
 
 def view(goal, distance, kind=0, approach=0.0, heading=0.0):
@@ -38,9 +41,16 @@ def view(goal, distance, kind=0, approach=0.0, heading=0.0):
         np.full(shape, np.inf),
     )  # fmt: skip
     return Observation(
-        np.zeros(1, np.int64), np.zeros(1), np.ones((1, 1), bool), np.zeros((1, 1, 2)),
-        np.full((1, 1), heading), np.zeros((1, 1, 2)), np.array([[goal]], float), (None,), rays,
-    )  # fmt: skip
+        rows=np.zeros(1, np.int64),
+        time=np.zeros(1),
+        active=np.ones((1, 1), bool),
+        position=np.zeros((1, 1, 2)),
+        heading=np.full((1, 1), heading),
+        velocity=np.zeros((1, 1, 2)),
+        goal=np.array([[goal]], float),
+        maps=(None,),
+        rays=rays,
+    )
 
 
 def digits(seen, speed=2.0, tolerance=0.5):
@@ -157,18 +167,31 @@ def test_exploring_moves_are_drawn_and_others_are_the_best():
 
 
 def test_training_repeats_bit_for_bit_and_depends_on_the_seed():
-    first, again, other = (train(TINY, seed, lambda text: None) for seed in (3, 3, 4))
+    first, again, other = (train(TINY, seed, lambda report: None) for seed in (3, 3, 4))
     assert first[1] == again[1] > 100
     np.testing.assert_array_equal(first[0].values, again[0].values)
     assert not np.array_equal(first[0].values, other[0].values)
 
 
-def test_the_training_command_writes_a_table_that_the_navigator_takes(tmp_path, capsys):
-    file = tmp_path / "table.safetensors"
-    main(["--seed", "1", "--rounds", "2", "--worlds", "8", "--out", str(file)])
-    assert "steps, arrived" in capsys.readouterr().err
+def test_the_trainer_writes_a_table_that_the_navigator_takes(tmp_path):
+    trainer, reports = QLearningTrainer(), []
+    options = {"resume": False, "device": "cpu", "report": reports.append}
+    trainer.train(TINY, 1, tmp_path, **options)
+    assert reports[-1].decisions == reports[-1].total > 0
+    file = tmp_path / "weights.safetensors"
     assert load(file).about["seed"] == "1"
     QLearning(QLearning.Config(table=file))
+    with pytest.raises(UsageError, match="must be a new folder"):
+        trainer.train(TINY, 1, tmp_path, **options)
+    with pytest.raises(UsageError, match="keeps no checkpoints"):
+        trainer.train(TINY, 1, tmp_path, **{**options, "resume": True})
+
+
+def test_the_shipped_recipe_is_what_the_shipped_table_was_trained_with():
+    (path,) = QLearningTrainer.recipes.glob("*.yaml")
+    shipped = validate(Recipe, read_yaml(path))
+    assert (shipped.rounds, shipped.decisions, shipped.worlds) == (700, 8, 1024)
+    assert shipped.scenarios == ("leaders/static", "leaders/dynamic")
 
 
 def test_commands_are_no_more_than_the_moves():
@@ -210,10 +233,10 @@ def refiled(path, *, about=(), **arrays):
 
 
 SPOILED = {
-    "nothing": (lambda path: path.write_bytes(b""), "whole safetensors file"),
-    "cut in the header": (lambda p: p.write_bytes(p.read_bytes()[:40]), "whole safetensors file"),
-    "cut in the arrays": (lambda p: p.write_bytes(p.read_bytes()[:-3]), "whole safetensors file"),
-    "text": (lambda path: path.write_bytes(b"not a table, but text"), "whole safetensors file"),
+    "nothing": (lambda path: path.write_bytes(b""), "complete safetensors"),
+    "cut in the header": (lambda p: p.write_bytes(p.read_bytes()[:40]), "complete safetensors"),
+    "cut in the arrays": (lambda p: p.write_bytes(p.read_bytes()[:-3]), "complete safetensors"),
+    "text": (lambda path: path.write_bytes(b"not a table, but text"), "complete safetensors"),
     "other encoder": (
         lambda path: refiled(path, about={"encoder": "x-1"}),
         "encoder 'x-1' instead of 'q-7rays-1'",

@@ -37,9 +37,15 @@ def walled(*boxes, revision=0):
 def view(place, goal, map, velocity=None):
     place = np.array(place, float)[None]
     return Observation(
-        np.zeros(1, np.int64), np.zeros(1), np.ones(place.shape[:2], bool), place,
-        np.zeros(place.shape[:2]), np.zeros(place.shape), np.array(goal, float)[None], (map,),
-    )  # fmt: skip
+        rows=np.zeros(1, np.int64),
+        time=np.zeros(1),
+        active=np.ones(place.shape[:2], bool),
+        position=place,
+        heading=np.zeros(place.shape[:2]),
+        velocity=np.zeros(place.shape),
+        goal=np.array(goal, float)[None],
+        maps=(map,),
+    )
 
 
 def walk(navigator, told, maps, steps=200):

@@ -75,7 +75,7 @@ def test_a_file_that_is_cut_short_is_refused(path, share):
     write_weights(path, tensors_of(), ABOUT)
     data = path.read_bytes()
     path.write_bytes(data[: int(len(data) * share)])
-    assert "whole safetensors file" in refused(path)
+    assert "complete safetensors file" in refused(path)
 
 
 @given(st.binary(max_size=200))
@@ -106,7 +106,7 @@ def test_an_unknown_encoder_is_refused(path):
     write_weights(path, tensors_of(), {**ABOUT, "encoder": "sonar"})
     assert "the encoder 'sonar', which does not exist" in refused(path)
     write_weights(path, tensors_of(), {"encoder": "ego"})
-    assert "must say what it learned from" in refused(path)
+    assert "must have the facts of its training" in refused(path)
 
 
 def test_another_encoder_s_weights_are_refused(path):
@@ -211,7 +211,7 @@ def test_a_checkpoint_that_is_cut_short_is_refused(tmp_path, share):
     path = tmp_path / checkpoint.FILE
     data = path.read_bytes()
     path.write_bytes(data[: int(len(data) * share)])
-    with pytest.raises(StoreError, match="must be a whole checkpoint") as caught:
+    with pytest.raises(StoreError, match="must be a complete checkpoint") as caught:
         checkpoint.load(tmp_path, learner_of(1), "abc", 3)
     assert str(path) in str(caught.value)
 
@@ -221,7 +221,7 @@ def test_a_checkpoint_that_is_cut_short_is_refused(tmp_path, share):
 )
 def test_what_is_no_checkpoint_is_refused(tmp_path, metadata):
     (tmp_path / checkpoint.FILE).write_bytes(save(tensors_of(), metadata))
-    with pytest.raises(StoreError, match="must be a whole checkpoint"):
+    with pytest.raises(StoreError, match="must be a complete checkpoint"):
         checkpoint.load(tmp_path, learner_of(1), "abc", 3)
 
 

@@ -31,6 +31,7 @@ stages:
   - {decisions: 150, batch: 32, epochs: 1}
 checkpoint: 150
 validation: {worlds: 1}
+trainer: recurrent-ppo
 """
 
 
@@ -196,7 +197,8 @@ def call(capfd, tmp_path):
         ("rows: 2", "gamma: 1.5", "recipe.yaml:4: gamma must be ≤ 1"),
         ("encoder: ego", "encoder: eggo", "recipe.yaml:2: encoder must be one of paper"),
         ("encoder: ego", "encoder: eggo", "Did you mean 'ego'?"),
-        ("encoder: ego", "trainer: ppo", "recipe.yaml:2: trainer must be one of"),
+        ("trainer: recurrent-ppo", "trainer: ppo", "recipe.yaml:13: trainer must be one of"),
+        ("trainer: recurrent-ppo", "", "recipe.yaml:1: trainer must be one of"),
         ("name: tiny", "name: Big Name", "recipe.yaml:1: name must match"),
         ("worlds: 4", "world: 4", "recipe.yaml:3: courses[0].world is not a known key"),
         ("batch: 32, epochs: 1}\n  -", "batch: 8}\n  -", "recipe.yaml:9: stages[0].batch must be"),

@@ -188,9 +188,18 @@ def walkway(position, velocity):
     flags = np.ones((1, agents, 2), bool)
     edges = Edges(start, end, along, along, flags, flags, np.full((1, agents), 2))
     return Observation(
-        np.array([0]), np.zeros(1), np.ones((1, agents), bool), position[None],
-        np.zeros((1, agents)), velocity[None], position[None], (None,), None, near, edges,
-    )  # fmt: skip
+        rows=np.array([0]),
+        time=np.zeros(1),
+        active=np.ones((1, agents), bool),
+        position=position[None],
+        heading=np.zeros((1, agents)),
+        velocity=velocity[None],
+        goal=position[None],
+        maps=(None,),
+        rays=None,
+        neighbours=near,
+        edges=edges,
+    )
 
 
 def lane_order(position, direction, band=0.5):

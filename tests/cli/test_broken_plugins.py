@@ -21,14 +21,14 @@ METRICS = """
 import os, time
 from dataclasses import replace
 import numpy as np
-from benchnav.metrics.success import SUCCESS
+from benchnav.metrics.success import success
 
 def quarter(episode):
     return np.full(len(episode.arrival), 0.25)
 
-good = replace(SUCCESS, name="good", title="good", rate=False, function=quarter)
-dies = replace(SUCCESS, name="dies", function=lambda e: os._exit(0))
-lies = replace(SUCCESS, name="lies", low="low")
+good = replace(success, name="good", title="good", rate=False, function=quarter)
+dies = replace(success, name="dies", function=lambda e: os._exit(0))
+lies = replace(success, name="lies", low="low")
 """
 
 

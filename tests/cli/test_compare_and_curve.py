@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from benchnav.cli.tables import board
+from benchnav.leaderboard import from_runs
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def test_two_navigators_are_compared_in_words(call, run):
     ("wrong", "complaint"),
     [
         (("orca", "straightline"), "Did you mean 'straight-line'"),
-        (("orca",), "must be told a run and two navigators"),
+        (("orca",), "needs a run and two navigators"),
         (("orca", "straight-line", "--scenario", "tiny/opne"), "Did you mean 'tiny/open'"),
         (("orca", "straight-line", "--metric", "sucess"), "Did you mean 'success'"),
         (("orca", "straight-line", "--format", "html"), "markdown, csv, json"),
@@ -103,13 +103,13 @@ def test_a_metric_is_shown_against_a_parameter_with_its_default(call, suite, tmp
 
 
 def test_only_what_is_shown_is_computed(call, run, monkeypatch):
-    seen, real = [], board.leaderboard
+    seen, real = [], from_runs.leaderboard
 
     def counted(results, *rest):
         seen.append(set(results["metric"].unique().to_pylist()))
         return real(results, *rest)
 
-    monkeypatch.setattr(board, "leaderboard", counted)
+    monkeypatch.setattr(from_runs, "leaderboard", counted)
     assert call("leaderboard", run, "--metric", "spl")[0] == 0
     assert call("leaderboard", run)[0] == 0
     assert call("leaderboard", run, "--format", "csv")[0] == 0

@@ -37,7 +37,7 @@ def test_rows_under_the_label_of_a_verified_entry_are_refused(call, runs):
         code, stdout, stderr = call(*arguments)
         assert (code, stdout) == (1, "")
         assert "results.parquet is damaged" in stderr
-        assert "must say navigator 'random-walk' in row 0" in stderr
+        assert "must have navigator 'random-walk' in row 0" in stderr
         assert "Traceback" not in stderr
 
 
@@ -78,7 +78,7 @@ def test_what_is_exchanged_while_a_run_is_verified_gets_no_receipt(call, runs):
 
     report = verify(RunFolder.open(runs[0]), Wanted(0), workers=0, progress=Swap())
     assert "changed" in {finding.kind for finding in report.findings}
-    assert "verify it again once nothing writes it" in str(report.findings)
+    assert "verify again when no process writes it" in str(report.findings)
     for path, content in honest.items():
         path.write_bytes(content)
     assert verify(RunFolder.open(runs[0]), Wanted(0), workers=0).clean
@@ -152,7 +152,7 @@ def test_metrics_that_are_left_out_or_made_up_are_named(call, runs):
 
     results(runs[0], change)
     (finding,) = json.loads(call("verify", runs[0], "--workers", 0, "--json")[1])["findings"][:1]
-    assert "collided of leaders lacks" in finding["what"] or "collided" in finding["what"]
+    assert "collided of leaders is missing" in finding["what"] or "collided" in finding["what"]
     Forger(runs[0]).manifest(lambda said: said["versions"].update(benchnav="0.0.1"))
     results(runs[0], lambda row: {**row, "metric": "charm"} if row["metric"] == "spl" else row)
     code, stdout, _ = call("verify", runs[0], "--workers", 0, "--twin", 0)

@@ -179,7 +179,16 @@ def test_a_metric_that_fails_is_told_at_the_end_and_under_the_table(call, suite,
         return episode.arrival * 0.0 + 0.5
 
     METRICS.register("tests_broken")(
-        Metric("tests_broken", "t", "", "higher", 0.0, 1.0, "r", broken)
+        Metric(
+            name="tests_broken",
+            title="t",
+            unit="",
+            better="higher",
+            low=0.0,
+            high=1.0,
+            reference="r",
+            function=broken,
+        )
     )
     try:
         arguments = ("--workers", "0", "--track", "known")

@@ -103,7 +103,7 @@ VERBS = {
               "what was copied is kept. The same command continues in new."),
     "verify": (["verify", "run.bnrun", "--workers", "0"], "benchnav.verify.verify:examine",
                "the work is not finished. Give the same command again."),
-    "leaderboard": (["leaderboard", "run.bnrun"], "benchnav.cli.tables.board:table",
+    "leaderboard": (["leaderboard", "run.bnrun"], "benchnav.leaderboard.from_runs:stored_values",
                     "the work is not finished. Give the same command again."),
 }  # fmt: skip
 

@@ -29,8 +29,8 @@ def test_a_run_is_verified_packed_and_verified_elsewhere(call, runs, tmp_path):
     assert code == 0
     assert f"{runs[0]}: verified, in" in stdout
     assert "2 episodes and 0 rehearsals" in stdout
-    assert "by the slow twin of the kernels" in stdout
-    assert "timings, which nobody can verify" in stdout
+    assert "by the slow reference simulator" in stdout
+    assert "timings, which cannot be verified" in stdout
     assert "2 of 2 episodes" in stderr
     code, stdout, _ = call("pack", runs[0], "--out", tmp_path / "one.bnrun")
     assert (code, stdout) == (0, f"{tmp_path / 'one.bnrun'}\n")

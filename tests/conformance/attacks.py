@@ -117,8 +117,9 @@ BY_DESIGN = {
     "manifest.unguarded": (
         "an author may leave out that a navigator ran unguarded; only --rerun tells what it does"
     ),
-    "manifest.versions.*, manifest.platform, manifest.created": (
-        "the author's machine and time; verification shows them"
+    "manifest.versions.*, manifest.platform, manifest.created, manifest.provenance,"
+    " manifest.provenance.*": (
+        "the author's machine, code, command and time; verification shows them"
     ),
 }
 """What verification does not find → why. docs/verification.md holds it word for word."""

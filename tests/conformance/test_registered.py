@@ -11,6 +11,11 @@ from benchnav.testing.check_navigator import check_navigator
 from benchnav.testing.check_planner import check_planner
 
 GIVEN = {  # what cannot be made by its name alone
+    "hierarchical": {
+        "type": "hierarchical",
+        "planner": "grid.astar",
+        "controller": "path-following",
+    },
     "process": {
         "type": "process",
         "command": [sys.executable, "-m", "benchnav.isolation.host", "orca"],

@@ -194,11 +194,13 @@ def test_ppo_of_attempts_learns_from_decisions_only(tmp_path):
     again = AttemptPPO.load(tmp_path / "model", env=make_env(), device="cpu")
     again.learn(300 * 12)
     with pytest.raises(UsageError, match="in an AgentVecEnv"):
-        AttemptPPO("MlpPolicy", LeaderEnv(worlds=1), n_steps=8, batch_size=8, device="cpu").learn(8)
+        AttemptPPO(
+            "MlpPolicy", LeaderEnv(worlds=1, others="orca"), n_steps=8, batch_size=8, device="cpu"
+        ).learn(8)
 
 
 def test_the_factory_of_stable_baselines_makes_single_environments():
-    asked = {"scenario": "crowd/circle-crossing", "worlds": 2}
+    asked = {"scenario": "crowd/circle-crossing", "worlds": 2, "others": "orca"}
     with pytest.warns(UserWarning, match="render_mode='rgb_array' that is not in the possible"):
         env = make_vec_env(LEADER, 2, env_kwargs=asked, seed=0)
     assert env.reset().shape == (2, 62)

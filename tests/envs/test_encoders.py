@@ -59,10 +59,18 @@ def imagined(seed=0, B=2, A=3, rays=7):
     flags = np.zeros((*shape, 10), bool)
     edges = Edges(first, second, first, second, flags, flags, rng.integers(0, 11, shape))
     seen = Observation(
-        np.arange(B), np.zeros(B), np.ones(shape, bool), position,
-        rng.uniform(-math.pi, math.pi, shape), rng.uniform(-2, 2, (*shape, 2)),
-        rng.uniform(-9, 9, (*shape, 2)), (None,) * B, seen_rays, neighbours, edges,
-    )  # fmt: skip
+        rows=np.arange(B),
+        time=np.zeros(B),
+        active=np.ones(shape, bool),
+        position=position,
+        heading=rng.uniform(-math.pi, math.pi, shape),
+        velocity=rng.uniform(-2, 2, (*shape, 2)),
+        goal=rng.uniform(-9, 9, (*shape, 2)),
+        maps=(None,) * B,
+        rays=seen_rays,
+        neighbours=neighbours,
+        edges=edges,
+    )
     return seen, Bodies(rng.uniform(0.2, 0.6, shape), rng.uniform(1, 2, shape), np.ones(shape))
 
 

@@ -81,7 +81,7 @@ def test_stable_baselines_learns_and_evaluates_every_agent(name):
 
 @every_scenario
 def test_stable_baselines_evaluates_one_agent(name):
-    env = RecordEpisodeStatistics(LeaderEnv(name, worlds=2))
+    env = RecordEpisodeStatistics(LeaderEnv(name, worlds=2, others="orca"))
     _, lengths = evaluate_policy(
         learner(env), env, n_eval_episodes=2, return_episode_rewards=True, warn=False
     )
@@ -92,7 +92,7 @@ def test_stable_baselines_evaluates_one_agent(name):
 @pytest.mark.long
 @pytest.mark.parametrize("name", names())
 def test_stable_baselines_learns_as_one_agent(name):
-    env = RecordEpisodeStatistics(LeaderEnv(name, worlds=2), 10**6)
+    env = RecordEpisodeStatistics(LeaderEnv(name, worlds=2, others="orca"), 10**6)
     model = learner(env).learn(2048)
     assert env.episode_count == len(model.ep_info_buffer) or env.episode_count > 100
     assert 2048 - find(name).clock.steps <= sum(env.length_queue) <= 2048

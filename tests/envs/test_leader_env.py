@@ -16,7 +16,7 @@ from benchnav.scenario.catalogue import find
 
 @pytest.fixture(scope="module")
 def env():
-    return LeaderEnv("leaders/static", "ego", worlds=4)
+    return LeaderEnv("leaders/static", "ego", worlds=4, others="orca")
 
 
 def attempt(env, action=None, **reset):
@@ -36,7 +36,7 @@ def same(one, other):
 
 
 def test_gymnasium_s_own_check():
-    check_env(gymnasium.make(LEADER, worlds=2, encoder="surround").unwrapped)
+    check_env(gymnasium.make(LEADER, worlds=2, encoder="surround", others="orca").unwrapped)
 
 
 def test_the_check_of_stable_baselines3(env):
@@ -45,14 +45,18 @@ def test_the_check_of_stable_baselines3(env):
 
 def test_it_can_be_made_by_importing_on_the_way():
     register_envs()  # once more does nothing
-    made = gymnasium.make(f"benchnav.envs.gym.registration:{LEADER}", worlds=1, reward={"goal": 7})
+    made = gymnasium.make(
+        f"benchnav.envs.gym.registration:{LEADER}", worlds=1, reward={"goal": 7}, others="orca"
+    )
     assert made.unwrapped.batch.weights == RewardWeights(goal=7)
 
 
 def test_a_seed_decides_everything(env):
     first = attempt(env, seed=11)
     assert same(first, attempt(env, seed=11))
-    assert same(first, attempt(LeaderEnv("leaders/static", "ego", worlds=4), seed=11))
+    assert same(
+        first, attempt(LeaderEnv("leaders/static", "ego", worlds=4, others="orca"), seed=11)
+    )
     assert not same(first, attempt(env, seed=12))
 
 
@@ -113,7 +117,7 @@ def test_the_others_drive_as_their_navigator_does(env):
 
 
 def test_in_a_scenario_with_drivers_only_evaluated_agents_learn():
-    env = LeaderEnv("crowd/circle-crossing", worlds=2)
+    env = LeaderEnv("crowd/circle-crossing", worlds=2, others="orca")
     for seed in range(3):
         _, info = env.reset(seed=seed)
         assert info["agent"] == 0
@@ -130,7 +134,7 @@ class Garbage(Navigator):
 
 
 def test_others_that_answer_garbage_are_named():
-    env = LeaderEnv(worlds=1)
+    env = LeaderEnv(worlds=1, others="orca")
     env._others._navigator = Garbage()
     env.reset()
     with pytest.raises(NavigatorError, match="others='orca': act must return finite numbers"):
@@ -147,9 +151,10 @@ def test_others_that_answer_garbage_are_named():
         ({"reward": {"gaol": 1}}, "no weight 'gaol'. Did you mean 'goal'"),
         ({"reward": {"goal": -1}}, "'goal' of the reward must be greater.* Got -1 instead"),
         ({"others": "orka", "worlds": 1}, "Did you mean 'orca'"),
+        ({"others": None}, "others must name the navigator of the other agents"),
         ({"render_mode": "human"}, "must be None: .* Got 'human' instead"),
     ],
 )
 def test_mistakes_are_explained(wrong, says):
     with pytest.raises(BenchnavError, match=says):
-        LeaderEnv(**wrong)
+        LeaderEnv(**{"others": "orca", **wrong})

@@ -118,7 +118,7 @@ def test_every_view_counts_the_agents_that_learn(mixed):
     zoo.close()
     zoo.close()
 
-    one = LeaderEnv(mixed, worlds=WORLDS)
+    one = LeaderEnv(mixed, worlds=WORLDS, others="orca")
     for seed in range(20):
         _, info = one.reset(seed=seed)
         _, same = one.reset(options=info)
@@ -156,7 +156,7 @@ def test_a_seed_decides_what_drivers_draw_too(mixed):
         paths.append([batch.simulation.position.copy() for batch in batches])
     for first, again in zip(*paths, strict=True):
         np.testing.assert_array_equal(first, again)
-    one = LeaderEnv(mixed, worlds=WORLDS)
+    one = LeaderEnv(mixed, worlds=WORLDS, others="orca")
     first = played(one, {"seed": np.int64(5)})
     after = played(one, {})
     assert np.array_equal(played(one, {"seed": 5}), first)

@@ -67,11 +67,11 @@ def test_the_first_queries_with_starts_and_goals_of_their_own(tiny):
 
 def test_what_cannot_be_asked_for(tiny, tmp_path):
     scen = tiny.with_suffix(".scen")
-    with pytest.raises(MapError, match=r"4 queries that share .*; there are 3\. Ask for fewer"):
+    with pytest.raises(MapError, match=r"4 queries with different .*; there are 3\. Request fewer"):
         import_movingai(tiny, scen, agents=4)
     with pytest.raises(MapError, match=r"2 queries in bucket 7 .* there are 0\. .* 0 to 2"):
         import_movingai(tiny, scen, agents=2, bucket=7)
-    with pytest.raises(UsageError, match=r"A bucket is one of a \.scen file; got 1"):
+    with pytest.raises(UsageError, match=r"A bucket needs a \.scen file; got bucket 1"):
         import_movingai(tiny, bucket=1)
     with pytest.raises(UsageError, match="agents must be ≥ 1; got 0"):
         import_movingai(tiny, agents=0)
@@ -134,7 +134,7 @@ def test_beside_its_map_a_scenario_copies_nothing(ros, tiny):
 
 def test_where_nothing_can_be_written(tiny, tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(UsageError, match="must be writable"):
+    with pytest.raises(UsageError, match="is not writable"):
         write_scenario(import_movingai(tiny), tmp_path / "file" / "tiny.yaml")
 
 
@@ -181,7 +181,7 @@ def test_agents_are_as_large_and_as_many_as_a_map_has_room_for(ros, tmp_path):
     small = import_ros_map(ros)["teams"][0]
     assert (small["count"], small["radius"]) == (5, 0.1)  # for 0.2 m there is room for one
     assert import_ros_map(ros, agents=3)["teams"][0]["count"] == 3
-    with pytest.raises(MapError, match=r"a radius of 0\.6 m free around it\. Try a smaller"):
+    with pytest.raises(MapError, match=r"a radius of 0\.6 m of free space\. Try a smaller"):
         import_ros_map(ros, radius=0.6)
     with pytest.raises(UsageError, match="radius must be > 0 m; got 0"):
         import_ros_map(ros, radius=0)
@@ -252,7 +252,7 @@ def test_names_tell_maps_apart(tmp_path, tiny):
     assert default_name("ros", Path("/maps/map.yaml")) == "ros/map"
     assert import_movingai(tiny, name="mine/hall_2")["name"] == "mine/hall_2"
     for name in ("My Hall", "mine/", "ä", "a" * 101, ""):
-        with pytest.raises(UsageError, match="A scenario's name must be small letters"):
+        with pytest.raises(UsageError, match="A scenario's name must consist of small letters"):
             import_movingai(tiny, name=name)
 
 

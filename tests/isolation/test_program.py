@@ -44,7 +44,7 @@ def test_it_keeps_the_contract():
 
 
 def test_it_is_told_its_config_and_its_talk_is_passed_on(capsys):
-    make(NAVIGATORS, spec("echo", config={"gain": 2.5}))._ask("remarks", {"row": 0})
+    make(NAVIGATORS, spec("echo", config={"gain": 2.5}))._request("remarks", {"row": 0})
     assert "{'gain': 2.5}" in capsys.readouterr().err
 
 
@@ -68,7 +68,10 @@ def test_what_it_has_to_tell_is_kept():
         ),
         ("refuses", "lost at t = 0.4 s"),
         ("other", "act: its process must answer 'command'. Got 'done' instead at t = 0.4 s"),
-        ("twice", "act: its process answered more than was asked, after 'command' at t = 0.4 s"),
+        (
+            "twice",
+            "act: its process sent more bytes than its answer 'command' announces at t = 0.4 s",
+        ),
     ],
 )
 def test_its_episode_is_charged_with_the_cause(how, cause):
@@ -92,7 +95,7 @@ def test_every_world_of_a_batch_is_tried_alone():
     ("how", "cause"),
     [
         ("dies at once", "its process ended with exit status 1 (no licence)"),
-        ("strange", "must answer .hello. with the fields in docs/isolation.md: needs.0"),
+        ("strange", "must answer 'hello' with the fields in docs/isolation.md: needs.0"),
     ],
 )
 def test_what_cannot_be_started_is_asked_wrongly_and_in_a_run_charged(how, cause):

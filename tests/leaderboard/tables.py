@@ -14,7 +14,10 @@ def _nothing(episode):
 
 
 def metric(name, better="higher", low=0.0, high=math.inf, unit="", **flags):
-    return Metric(name, name, unit, better, low, high, "tests", _nothing, **flags)
+    return Metric(
+        name=name, title=name, unit=unit, better=better, low=low, high=high,
+        reference="tests", function=_nothing, **flags,
+    )  # fmt: skip
 
 
 METRICS = {

@@ -125,8 +125,8 @@ def test_named_metrics_have_a_matrix_each_and_named_columns_a_table_a_scenario()
                                                     "tab:success-unknown-leader"]  # fmt: skip
     text = render(board, "latex", columns=["success", "spl"])
     assert re.findall(r"\\label\{(.*)\}", text) == [
-        "tab:leaders-s0-1-unknown-leader", "tab:leaders-s1-1-unknown-leader",
-        "tab:all-unknown-leader",
+        "tab:all-unknown-leader", "tab:leaders-s0-1-unknown-leader",
+        "tab:leaders-s1-1-unknown-leader",
     ]  # fmt: skip
     assert "rank" not in text.split("value ")[0]
 

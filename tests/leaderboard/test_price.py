@@ -93,7 +93,7 @@ def test_without_both_tracks_there_is_no_price():
 
 def test_the_table_in_markdown():
     text = render(board(), "markdown")
-    assert text.startswith("## Track known\n\n### leaders/x@1, track known, leaders, 16 worlds\n")
+    assert text.startswith("## Track known\n\n### all scenarios, track known, leaders, 32 worlds\n")
     assert text.count("## Track ") == 2
     _, tables = text.split("\n## Price of ignorance\n\n")
     assert tables.startswith("### success, known − unknown, leaders, 16 worlds\n")

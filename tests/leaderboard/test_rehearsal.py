@@ -37,7 +37,7 @@ def test_ranks_are_among_the_same_grant_alone(board):
 def test_a_larger_grant_is_another_one():
     more = table(rows() + scores({"pack": [0.2] * 20}, **{**GRANT, "rehearsal": 6}))
     (record,) = [r for r in leaderboard(more, METRICS).records if r.navigator == "pack"]
-    assert (record.ranked, record.note) == (0, "nobody to rank with")
+    assert (record.ranked, record.note) == (0, "no other entry to rank with")
 
 
 def test_aggregates_over_scenarios_keep_grants_apart():

@@ -139,7 +139,7 @@ def test_what_differs_in_kind_is_never_ranked_together(change):
     for r in board(rows).records:
         assert r.rank_low is None
         assert (
-            r.note in ("nobody to rank with", "the mean over scenarios ranks")
+            r.note in ("no other entry to rank with", "the mean over scenarios ranks")
             or "attempted" in r.note
             or r.track == PRICE
         )

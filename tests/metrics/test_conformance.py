@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from benchnav.metrics.measure import load_metric
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.metric import Metric, metric
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.plugins import METRICS
 from benchnav.testing.check_metric import CHECKS, check_metric, values
@@ -71,7 +71,10 @@ def test_registered_metric_conforms(name):
 
 
 def _metric(function, better="higher", low=-math.inf, high=math.inf, **flags):
-    return Metric("bad", "A bad metric", "", better, low, high, "nowhere", function, **flags)
+    return Metric(
+        name="bad", title="A bad metric", unit="", better=better, low=low, high=high,
+        reference="nowhere", function=function, **flags,
+    )  # fmt: skip
 
 
 def _steps(episode):
@@ -195,9 +198,9 @@ BAD = {
 
 @pytest.mark.parametrize("mistake", BAD)
 def test_bad_metric_is_caught(mistake):
-    metric, said = BAD[mistake]
+    bad, said = BAD[mistake]
     with pytest.raises((AssertionError, ValueError), match=said):
-        check_metric(metric)
+        check_metric(bad)
 
 
 def test_nothing_that_ranks_is_best_in_a_crash():
@@ -221,6 +224,7 @@ def test_contact_takes_no_time_where_it_ends_the_attempt():
 def test_good_outside_metric_passes():
     """Mean speed until it is over, for whoever moves at all: what an outsider would write."""
 
+    @metric(title="Mean speed", unit="m/s", better=None, low=0.0, reference="here")
     def mean_speed(episode):
         over = episode.status != 0
         last = np.where(over.any(axis=0), over.argmax(axis=0), len(over) - 1)
@@ -229,6 +233,5 @@ def test_good_outside_metric_passes():
         time = np.where(np.isnan(episode.arrival), last * episode.world.clock.dt, episode.arrival)
         return np.where(time > 0.0, length / np.where(time > 0.0, time, 1.0), np.nan)
 
-    metric = Metric("mean_speed", "Mean speed", "m/s", None, 0.0, math.inf, "here", mean_speed)
     assert len(CHECKS) == 11
-    check_metric(metric)
+    check_metric(mean_speed)

@@ -23,7 +23,10 @@ from benchnav.testing.zoo import smooth, zoo
 
 
 def _metric(function, name="x", **flags):
-    return Metric(name, "t", "", "higher", 0.0, 1.0, "r", function, **flags)
+    return Metric(
+        name=name, title="t", unit="", better="higher", low=0.0, high=1.0, reference="r",
+        function=function, **flags,
+    )  # fmt: skip
 
 
 def test_rows_are_those_of_the_results_table():
@@ -139,10 +142,10 @@ def _interrupted(episode):
 def test_names_are_checked():
     with pytest.raises(PluginError, match=r"different names. Got x twice"):
         measure(zoo()["smooth"], [_metric(lambda e: e.arrival), _metric(lambda e: e.arrival)])
-    with pytest.raises(PluginError, match=r"must be a benchnav.metrics.metric.Metric. Got the"):
+    with pytest.raises(PluginError, match=r"Metric, as the decorator .* Got the"):
         METRICS.register("tests_no_metric")(dict)
     with pytest.raises(PluginError, match=r"must carry that name, and not 'first_name'"):
         METRICS.register("tests_other_name")(_metric(lambda e: e.arrival, "first_name"))
-    with pytest.raises(PluginError, match=r"must be a benchnav.metrics.metric.Metric. Got"):
-        load_metric("benchnav.metrics.success:success")
-    assert load_metric("benchnav.metrics.success:SUCCESS").name == "success"
+    with pytest.raises(PluginError, match=r"must be a benchnav.metrics.metric.Metric, as the"):
+        load_metric("benchnav.metrics.success:success_time")
+    assert load_metric("benchnav.metrics.success:success").name == "success"

@@ -74,7 +74,7 @@ def stand(agents, goal, map=None, **options):
 
 def test_it_goes_to_where_its_plan_leads():
     told, seen = stand(1, [(6.0, 0.0)])
-    navigator = make(NAVIGATORS, {"type": "hierarchical", "planner": "detour"})
+    navigator = make(NAVIGATORS, "detour+path-following")
     command = answers(navigator, [told], seen)[0, 0]
     middle = navigator.plans[0][0].path[1]
     np.testing.assert_allclose(command, middle / np.hypot(*middle), atol=1e-9)
@@ -82,7 +82,7 @@ def test_it_goes_to_where_its_plan_leads():
 
 def test_the_planner_is_told_what_the_agents_are_told():
     told, seen = stand(2, [(6.0, 0.0), (0.0, 5.0)], radius=0.25)
-    navigator = Hierarchical(Hierarchical.Config(planner="detour"))
+    navigator = Hierarchical(Hierarchical.Config(controller="path-following", planner="detour"))
     answers(navigator, [told], seen)
     assert navigator.planner.calls == [
         (0, (0.0, 0.0), (6.0, 0.0), 0.25, 0.2),
@@ -93,7 +93,7 @@ def test_the_planner_is_told_what_the_agents_are_told():
 def test_without_a_plan_the_goal_is_the_target_and_the_reason_is_kept():
     told, seen = stand(1, [(0.0, 6.0)])
     spec = {"type": "detour", "fails": True}
-    navigator = Hierarchical(Hierarchical.Config(planner=spec))
+    navigator = Hierarchical(Hierarchical.Config(controller="path-following", planner=spec))
     np.testing.assert_allclose(answers(navigator, [told], seen), [[(0.0, 1.0)]])
     assert navigator.plans[0][0].reason == "blocked"
 
@@ -111,7 +111,9 @@ def test_without_a_plan_the_goal_is_the_target_and_the_reason_is_kept():
 def test_when_it_plans_again(replan, times):
     """The map changes at 0.6 s; what is planned then starts where the agent is."""
     told, seen = stand(1, [(6.0, 0.0)])
-    navigator = Hierarchical(Hierarchical.Config(planner="detour", replan=replan))
+    navigator = Hierarchical(
+        Hierarchical.Config(controller="path-following", planner="detour", replan=replan)
+    )
     navigator.reset([told], seen.rows)
     planned = []
     for k in range(7):
@@ -128,7 +130,11 @@ def test_when_it_plans_again(replan, times):
 
 def test_who_is_stuck_goes_back_the_way_it_came_and_plans_again():
     told, seen = stand(1, [(6.0, 0.0)])
-    navigator = Hierarchical(Hierarchical.Config(planner="detour", patience=1.0, give_way=1.0))
+    navigator = Hierarchical(
+        Hierarchical.Config(
+            controller="path-following", planner="detour", patience=1.0, give_way=1.0
+        )
+    )
     navigator.reset([told], seen.rows)
     backward, planned = [], []
     for k in range(60):
@@ -161,7 +167,9 @@ def planned_at(navigator, told, seen, maps, place=lambda k: (0.1 * k, 0.0)):
 
 def straight(**parameters):
     planner = {"type": "detour", "spread": 0.0}
-    return Hierarchical(Hierarchical.Config(planner=planner, **parameters))
+    return Hierarchical(
+        Hierarchical.Config(controller="path-following", planner=planner, **parameters)
+    )
 
 
 def test_it_plans_again_when_its_path_is_blocked_and_not_when_another_place_is():
@@ -192,7 +200,9 @@ def test_a_blocked_path_is_planned_anew_at_a_bounded_rate():
 def test_without_a_path_a_changed_map_is_asked_again():
     told, seen = stand(1, [(6.0, 0.0)])
     spec = {"type": "detour", "fails": True}
-    navigator = Hierarchical(Hierarchical.Config(planner=spec, replan="blocked"))
+    navigator = Hierarchical(
+        Hierarchical.Config(controller="path-following", planner=spec, replan="blocked")
+    )
     empty = [Map(BOUNDS, ()), Map(BOUNDS, (), revision=1)]
     assert planned_at(navigator, told, seen, empty[:1] * 3 + empty[1:] * 3) == [0.6]
 
@@ -222,7 +232,9 @@ def test_who_waits_too_long_plans_again(replan):
     """One agent walks and one stands; one that has no path needs no other on the same map."""
     told, seen = stand(2, [(9.0, 0.0), (9.0, 5.0)])
     navigator = Hierarchical(
-        Hierarchical.Config(planner="detour", replan=replan, patience=0.6, cut=1e-9)
+        Hierarchical.Config(
+            controller="path-following", planner="detour", replan=replan, patience=0.6, cut=1e-9
+        )
     )
     navigator.reset([told], seen.rows)
     planned = []
@@ -240,7 +252,7 @@ def test_who_waits_too_long_plans_again(replan):
 
 def test_a_failed_new_plan_leaves_the_old_path():
     told, seen = stand(1, [(6.0, 0.0)])
-    navigator = Hierarchical(Hierarchical.Config(planner="detour"))
+    navigator = Hierarchical(Hierarchical.Config(controller="path-following", planner="detour"))
     first = answers(navigator, [told], seen)
     navigator.planner.config = Detour.Config(fails=True)
     after = navigator.act(replace(seen, maps=(Map(BOUNDS, (), revision=1),)))
@@ -250,7 +262,7 @@ def test_a_failed_new_plan_leaves_the_old_path():
 
 def test_agents_that_are_done_are_not_planned_for_again():
     told, seen = stand(2, [(6.0, 0.0), (0.0, 5.0)])
-    navigator = Hierarchical(Hierarchical.Config(planner="detour"))
+    navigator = Hierarchical(Hierarchical.Config(controller="path-following", planner="detour"))
     answers(navigator, [told], seen)
     active = np.array([[False, True]])
     navigator.act(replace(seen, active=active, maps=(Map(BOUNDS, (), revision=1),)))
@@ -282,8 +294,9 @@ def test_a_pair_needs_and_gives_what_its_parts_need_and_give():
     spin = Hierarchical(Hierarchical.Config(planner="detour", controller="spin"))
     assert spin.required == {Need.MAP, Need.RAYS}
     assert spin.command == "twist"
-    assert Hierarchical.command == "velocity"
-    timed = Hierarchical(Hierarchical.Config(planner={"type": "detour", "timed": True}))
+    timed = Hierarchical(
+        Hierarchical.Config(controller="path-following", planner={"type": "detour", "timed": True})
+    )
     assert spin.reproducible
     assert not timed.reproducible
     orca = OmplOrca(OmplOrca.Config(planner="detour", orca={"time_horizon": 2.5}))
@@ -314,8 +327,12 @@ def test_parts_count_with_their_distributions_parameters_and_files():
 
 def test_wrong_parts_are_refused_by_name():
     with pytest.raises(ConfigError, match=r"^planner: .*'detour' has no parameter 'fail'.*'fails'"):
-        Hierarchical(Hierarchical.Config(planner={"type": "detour", "fail": True}))
+        Hierarchical(
+            Hierarchical.Config(
+                controller="path-following", planner={"type": "detour", "fail": True}
+            )
+        )
     with pytest.raises(UnknownPluginError, match="There is no controller 'orcaa'"):
         Hierarchical(Hierarchical.Config(planner="detour", controller="orcaa"))
     with pytest.raises(ConfigError, match="must be 'never', or 'map-change' or 'blocked', or"):
-        make(NAVIGATORS, {"type": "hierarchical", "replan": 3})
+        make(NAVIGATORS, {"type": "detour+path-following", "replan": 3})

@@ -15,10 +15,15 @@ def seen(position, goal, rows=None, active=None):
     position, goal = np.array(position, float), np.array(goal, float)
     at = position.shape[:2]
     return Observation(
-        np.arange(at[0]) if rows is None else np.array(rows), np.zeros(at[0]),
-        np.ones(at, bool) if active is None else np.array(active),
-        position, np.zeros(at), np.zeros((*at, 2)), goal, (None,) * at[0],
-    )  # fmt: skip
+        rows=np.arange(at[0]) if rows is None else np.array(rows),
+        time=np.zeros(at[0]),
+        active=np.ones(at, bool) if active is None else np.array(active),
+        position=position,
+        heading=np.zeros(at),
+        velocity=np.zeros((*at, 2)),
+        goal=goal,
+        maps=(None,) * at[0],
+    )
 
 
 def tracking(path, lookahead=1.0, cut=0.05):

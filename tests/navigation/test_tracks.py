@@ -8,7 +8,8 @@ from benchnav.arena.body import Body, Law, LawKind, still
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
-from benchnav.navigation.tracks import TRACKS, granted_map
+from benchnav.navigation.tracks import granted_map
+from benchnav.scenario.terms import TRACKS
 
 
 def make_world(stale=None):

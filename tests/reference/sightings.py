@@ -32,7 +32,7 @@ def others(seen, radius, dt, before, b, a):
     kept = [(k, p + dt * v, v, r, age + dt) for k, p, v, r, age in before]
     kept = [one for one in kept if one[4] <= s.MEMORY + 1e-9]
     lost = [o for o in kept if all(o[0] != m[0] or math.dist(o[1], m[1]) > s.SAME for m in met)]
-    return (met + lost)[: s.MOST]
+    return (met + lost)[: s.MAX_OTHERS]
 
 
 def edges(seen, radius, b, a):

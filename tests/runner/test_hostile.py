@@ -247,7 +247,8 @@ def patches(episode):
     math.hypot = np.hypot = np.linalg.norm = lambda *_, **__: 7.0
     return np.zeros(len(episode.world.agents))
 def metric(name, function):
-    return Metric(name, "t", "", "higher", 0.0, 1.0, "r", function)
+    return Metric(name=name, title="t", unit="", better="higher", low=0.0, high=1.0,
+                  reference="r", function=function)
 HANGS = metric("a_hangs", hangs)
 DIES = metric("a_dies", dies)
 PATCHES = metric("a_patches", patches)

@@ -127,7 +127,16 @@ def test_a_metric_that_raises_costs_its_values_and_the_run_goes_on(suite_file, t
         return episode.arrival * 0.0
 
     METRICS.register("tests_broken")(
-        Metric("tests_broken", "t", "", "higher", 0.0, 1.0, "r", broken)
+        Metric(
+            name="tests_broken",
+            title="t",
+            unit="",
+            better="higher",
+            low=0.0,
+            high=1.0,
+            reference="r",
+            function=broken,
+        )
     )
     try:
         summary = run_suite(load_suite(str(suite_file)), tmp_path / "run", workers=0)

@@ -64,7 +64,7 @@ def test_the_guilty_seed_is_found_and_charged_where_it_ran(
     for piece in pieces:
         part = Part(piece.task.folder, piece.task.first, piece.task.stop)
         assert str(part.folder).startswith(str(tmp_path))
-        with pytest.raises(CorruptPartError, match="does not match the files"):
+        with pytest.raises(CorruptPartError, match="does not match the files that came with it"):
             receive(part, {s: c if s == SEAL else c[:-1] for s, c in piece.files.items()})
         with pytest.raises(CorruptPartError, match="is damaged"):
             receive(part, {s: c for s, c in piece.files.items() if s != SEAL})

@@ -1,6 +1,9 @@
+import sys
+
 import pytest
 
-from benchnav.errors import PluginError, UnknownPluginError
+from benchnav.config.yaml_packages import missing_packages
+from benchnav.errors import PluginConflictError, UnknownPluginError
 from benchnav.plugins import SCENARIOS
 from benchnav.scenario import catalogue
 from benchnav.scenario.load import scenario_from_text
@@ -28,16 +31,42 @@ def test_unknown_names():
         catalogue.find("leaders/dynamic@7")
 
 
-def test_plugins(tmp_path):
+def installed(folder, package, name="outside"):
+    """A distribution whose package of scenarios must not be imported."""
+    arenas = folder / package / "mine"
+    arenas.mkdir(parents=True)
+    (folder / package / "__init__.py").write_text("raise RuntimeError('imported')")
+    (arenas / "ready.yaml").write_text(SMALL)
+    metadata = folder / f"{name}-1.0.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    (metadata / "entry_points.txt").write_text(f"[benchnav.scenarios]\narenas = {package}\n")
+
+
+def test_scenarios_of_a_package_are_found_without_importing_it(tmp_path, monkeypatch):
+    installed(tmp_path, "outside_arenas_a")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert "mine/ready" in catalogue.names()
     scenario = scenario_from_text(SMALL, "s.yaml")
-    path = tmp_path / "mine.yaml"
-    path.write_text(SMALL)
-    SCENARIOS.register("mine/ready")(scenario)
-    SCENARIOS.register("mine/path")(path)
-    SCENARIOS.register("mine/made")(lambda: scenario)
-    SCENARIOS.register("mine/wrong")(3)
-    for name in ("mine/ready", "mine/path", "mine/made"):
-        assert name in catalogue.names()
-        assert catalogue.find(name).hash == scenario.hash
-    with pytest.raises(PluginError, match="must be a Scenario, the path of a YAML file"):
-        catalogue.find("mine/wrong")
+    assert catalogue.find("mine/ready").hash == scenario.hash
+    assert "outside_arenas_a" not in sys.modules
+
+
+def test_one_name_in_two_packages_is_a_conflict_that_names_both(tmp_path, monkeypatch):
+    for name in ("one", "other"):
+        (tmp_path / name).mkdir()
+        installed(tmp_path / name, f"outside_arenas_{name}", name)
+        monkeypatch.syspath_prepend(tmp_path / name)
+    assert "mine/ready" in catalogue.names()
+    with pytest.raises(PluginConflictError, match=r"claimed more than once: .*one 1\.0") as caught:
+        catalogue.find("mine/ready")
+    assert "other 1.0" in str(caught.value)
+
+
+def test_a_package_that_is_not_there_is_reported(tmp_path, monkeypatch):
+    installed(tmp_path, "outside_arenas_b")
+    (tmp_path / "outside_arenas_b").rename(tmp_path / "gone")
+    monkeypatch.syspath_prepend(tmp_path)
+    ((package, cause),) = missing_packages(SCENARIOS)
+    assert package == "outside_arenas_b"
+    assert "which outside 1.0 names in its entry points (benchnav.scenarios)" in cause

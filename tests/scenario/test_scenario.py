@@ -95,7 +95,7 @@ def test_shipped_files(path):
          None),
         ("shape: {type: box, width: 1, depth: 2}",
          "shape: {type: polygon, points: [[0, 0], [1, 1], [1, 0], [0, 1]]}",
-         "s.yaml:4: walls[0].shape.points must go once round an area without crossing or"
+         "s.yaml:4: walls[0].shape.points must enclose one area without crossing or"
          " touching themselves."),
         ("shape: {type: box, width: 1, depth: 2}",
          "shape: {type: occupancy, file: none.map, format: movingai}",

@@ -38,7 +38,7 @@ def test_trajnetpp(tmp_path):
     ("text", "changes", "message"),
     [
         ("1 1 2\n", {}, r"t\.txt:1: must be four numbers: frame, id, x, y; got '1 1 2'\."),
-        ("1 1 2 2\n1 1 3 3\n", {}, r"t\.txt:2: frame 1 of id 1 stands twice\."),
+        ("1 1 2 2\n1 1 3 3\n", {}, r"t\.txt:2: frame 1 of id 1 is repeated\."),
         ("1 1 nan 2\n", {}, r"t\.txt:1: must be four numbers"),
         ("1 1.5 0 2\n", {}, r"t\.txt:1: must be four numbers"),
         ("", {}, r"t\.txt:1: the file must hold at least one track\."),

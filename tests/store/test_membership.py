@@ -62,7 +62,7 @@ def change(folder, suffix, column, value, row=1):
 def test_a_row_of_another_cell_is_refused_by_file_and_row(folder, tmp_path, suffix, column):
     number = column in ("seed", "rehearsal")
     change(folder, suffix, column, 7 if number else "other")
-    text = rf"{suffix} must be .* must say {column} .* in row 1.* it says '(7|other)'"
+    text = rf"{suffix} is damaged.* must have {column} .* in row 1.* it has '(7|other)'"
     with pytest.raises(ForeignRowError, match=text):
         list(READERS[suffix](folder.path))
     for refusing in (
@@ -108,7 +108,7 @@ def test_a_column_that_tells_navigators_apart_must_be_there(folder):
 def test_a_manifest_that_does_not_say_of_what_its_rows_are(folder):
     suite = {**folder.manifest.suite, "navigators": []}
     RunFolder(folder.path, dataclasses.replace(folder.manifest, suite=suite)).kept()
-    with pytest.raises(CorruptPartError, match="must say of what a cell's rows are"):
+    with pytest.raises(CorruptPartError, match="must identify the rows of a cell"):
         read_results(folder.path)
 
 

@@ -57,7 +57,7 @@ def test_who_writes_a_new_run_made_its_manifest(attempt, tools, run):
     for error in found:
         if not isinstance(error, tuple):
             assert "must have one writer. The process" in str(error)
-            assert "give another --out" in str(error)
+            assert "choose another --out" in str(error)
 
 
 def test_the_manifest_of_a_writer_is_that_of_now(tools, run):
@@ -79,7 +79,7 @@ def test_a_process_that_was_killed_before_the_manifest_leaves_a_free_folder(tool
 def test_a_folder_with_other_things_gets_no_lock(tools, run):
     run.mkdir()
     (run / "thesis.tex").write_text("")
-    with pytest.raises(RunConflictError, match="holds something that is not a run"):
+    with pytest.raises(RunConflictError, match="It has other content"):
         RunFolder.start(run, tools.manifest())
     assert [path.name for path in run.iterdir()] == ["thesis.tex"]
 

@@ -109,7 +109,7 @@ def info(name, mode=stat.S_IFREG | 0o644):
 def test_members_cannot_escape(packed, tmp_path, name):
     path = forged(packed, lambda found: with_index([*found, (info(name), b"x")]), tmp_path / "f")
     before = set(tmp_path.rglob("*"))
-    with pytest.raises(CorruptPartError, match="which no run has"), opened(path):
+    with pytest.raises(CorruptPartError, match="unknown member"), opened(path):
         pass
     assert set(tmp_path.rglob("*")) == before
 
@@ -186,7 +186,7 @@ def test_what_is_no_pack_is_refused(tmp_path):
     for content in (b"", b"PK", b"x" * 1000):
         (tmp_path / "f").write_bytes(content)
         with (
-            pytest.raises(StoreError, match="or a pack that 'benchnav pack' made"),
+            pytest.raises(StoreError, match="or a pack of 'benchnav pack'"),
             opened(tmp_path / "f"),
         ):
             pass

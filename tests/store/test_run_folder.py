@@ -85,7 +85,7 @@ def test_the_same_suite_resumes_and_another_is_refused_by_name(tools, run):
 
 def test_a_folder_with_something_else_is_refused(tools, tmp_path):
     (tmp_path / "thesis.tex").write_text("x")
-    with pytest.raises(RunConflictError, match="something that is not a run"):
+    with pytest.raises(RunConflictError, match="It has other content"):
         RunFolder.start(tmp_path, tools.manifest())
     assert (tmp_path / "thesis.tex").read_text() == "x"
     with pytest.raises(RunConflictError):
@@ -101,7 +101,9 @@ def test_a_system_without_locks_has_one_writer_too(tools, run, monkeypatch):
         assert (run / lock.MARK).exists()
     assert not (run / lock.MARK).exists()
     (run / lock.MARK).write_text("12345")
-    with pytest.raises(RunConflictError, match=r"12345 .* delete .*\.writer where it was killed"):
+    with pytest.raises(
+        RunConflictError, match=r"12345 .* delete .*\.writer if that process was killed"
+    ):
         folder.writing().__enter__()
     assert (run / lock.MARK).exists()
     (run / lock.MARK).unlink()
@@ -151,7 +153,7 @@ def test_a_damaged_part_is_named_and_can_be_redone(tools, run, suffix, damage):
 
 
 def test_no_run_and_a_damaged_manifest_are_told_apart(tools, run):
-    with pytest.raises(StoreError, match="It is not there"):
+    with pytest.raises(StoreError, match="It does not exist"):
         load_manifest(run)
     run.mkdir()
     with pytest.raises(StoreError, match="It has none"):
@@ -160,7 +162,7 @@ def test_no_run_and_a_damaged_manifest_are_told_apart(tools, run):
     said = json.loads((run / MANIFEST).read_text())
     del said["sha256"]
     (run / MANIFEST).write_text(json.dumps({**said, "schema": 99}))
-    with pytest.raises(StoreError, match=r"schema must be at most 4\. Got 99"):
+    with pytest.raises(StoreError, match=r"schema must be at most 5\. Got 99"):
         load_manifest(run)
     (run / MANIFEST).write_text(json.dumps({**said, "suite": {**said["suite"], "name": "forged"}}))
     with pytest.raises(CorruptPartError, match="Its suite was changed"):
@@ -181,7 +183,7 @@ def test_a_disk_that_refuses_is_an_error_that_says_how_to_go_on(tools, run):
             write(tools, folder, 2, 60)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-    assert "must be writable and have room" in str(refused.value)
+    assert "is not writable, or the disk is full" in str(refused.value)
     assert f"--out {run}" in str(refused.value)
     assert folder.done("cell") == {0, 1}
     assert len(list(folder.cell("cell").iterdir())) == 3

@@ -12,13 +12,13 @@ from benchnav.arena.solid import Kind
 from benchnav.config.yaml_reader import read_yaml_text
 from benchnav.errors import InputError, ScenarioError, UnsolvableError, UsageError
 from benchnav.generation import prepared
-from benchnav.generation.build import SPLITS, build
+from benchnav.generation.build import build
 from benchnav.generation.clearance import barrier, clear
 from benchnav.generation.motion_law import place_at_start, swept
 from benchnav.generation.world_digest import coincidences, is_random, world_digest
-from benchnav.navigation.tracks import TRACKS
 from benchnav.scenario.catalogue import find
 from benchnav.scenario.load import load_scenario, scenario_from_text
+from benchnav.scenario.terms import SPLITS, TRACKS
 from tests.reference import clearance as slow
 from tests.scenario.files import SHIPPED, SMALL
 from tests.scenario.mutations import mutate, text_of

@@ -44,7 +44,7 @@ def refused(block, start, goal):
 def test_what_is_walled_off_is_unreachable(block, start, goal):
     said = refused(block, start, goal)
     assert "the goal of teams[one] agent 1 of 1 is unreachable from its start" in said
-    assert "\ns.yaml:9: teams[0].goal of 'one' is walled off from the start: no way" in said
+    assert "\ns.yaml:9: teams[0].goal of 'one' is walled off from the start: no path" in said
     assert "is 0.4 m wide" in said
     assert "no free place" not in said
 

@@ -1,21 +1,21 @@
-"""How far along its circular arc a disc gets before it touches something."""
+"""The free length of a disc's circular arc."""
 
 import math
 
 from benchnav.arrays import FloatArray
-from benchnav.geometry.capsule import nearest_on_segment
+from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel
 
-CREEP = 0.01  # [m] least advance: an arc that grazes something ends within a margin, not in it
-MOST = 80  # advances; a way that takes more of them counts as ending there
-TICK = 0.1  # [s] between the positions in which moving neighbours are met
+CREEP = 0.01  # [m] smallest advance: an arc that grazes an obstacle ends within a margin
+MAX_ADVANCES = 80  # an arc that takes more counts as ending there
+TICK = 0.1  # [s] between the tested positions of moving neighbours
 
 
 @kernel
 def along_arc(
     x: float, y: float, heading: float, v: float, w: float, s: float
 ) -> tuple[float, float]:
-    """Where a body is that drove s [m] at the twist (v > 0, w)."""
+    """Return the position of a body that drove s [m] at the twist (v > 0, w)."""
     turn = s * w / v
     half = 0.5 * turn
     chord = s if abs(half) < 1e-9 else s * math.sin(half) / half
@@ -27,17 +27,17 @@ def room(
     x: float, y: float, start: FloatArray, end: FloatArray, edges: int,
     position: FloatArray, radius: FloatArray, count: int, most: float,
 ) -> float:  # fmt: skip
-    """Distance [m] from a point to the nearest edge or disc, at most ``most``; < 0 in a disc.
+    """Return the distance [m] to the nearest edge or disc, at most ``most``; < 0 in a disc.
 
     Args:
         x: of the point [m].
         y: of the point [m].
         start: (E, 2) [m].
         end: (E, 2) [m].
-        edges: how many count.
+        edges: number of valid edges.
         position: (K, 2) of discs [m].
         radius: (K,) [m].
-        count: how many count.
+        count: number of valid discs.
         most: [m].
     """
     least2 = most * most
@@ -61,15 +61,15 @@ def arc_clearance(
     start: FloatArray, end: FloatArray, edges: int,
     position: FloatArray, radius: FloatArray, count: int, most: float,
 ) -> float:  # fmt: skip
-    """Length [m] of the arc of (v, w) that a disc of radius ``reach`` drives freely, ≤ ``most``.
+    """Return the free length [m] of the arc of (v, w) for a disc of radius ``reach``, ≤ ``most``.
 
-    By conservative advancement: an arc is no shorter than its chord, so what is d away is
-    not met on the next d of it. The answer errs by `CREEP` at most, and else on the safe side.
+    By conservative advancement: an arc is no shorter than its chord, so an obstacle at distance d
+    is not hit on the next d of it. The error is at most `CREEP`, otherwise on the safe side.
     """
     if v <= 0.0:
         return most
     s = 0.0
-    for _ in range(MOST):
+    for _ in range(MAX_ADVANCES):
         px, py = along_arc(x, y, heading, v, w, s)
         gap = room(px, py, start, end, edges, position, radius, count, reach + most) - reach
         if gap <= 0.0:
@@ -86,10 +86,10 @@ def meeting_time(
     position: FloatArray, velocity: FloatArray, radius: FloatArray, count: int, horizon: float,
     hold: float,
 ) -> float:  # fmt: skip
-    """When [s] a disc on the arc of (v, w) first meets neighbours that keep their velocities.
+    """Return when [s] a disc on the arc of (v, w) first meets neighbours of constant velocity.
 
-    It keeps its course once it has turned for ``hold`` [s]. Tested every `TICK`; ``horizon``
-    where it meets none before. Those that overlap it already count only if they come nearer.
+    It goes straight after it has turned for ``hold`` [s]. Tested every `TICK`; ``horizon``
+    if it meets none before. Neighbours that overlap it already count only if they approach.
     """
     for k in range(1, math.ceil(horizon / TICK - 1e-9) + 1):
         t = k * TICK

@@ -7,11 +7,16 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.controller import Controller, Guide
-from benchnav.navigation.navigator import CommandKind, Need, PluginConfig
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.row_table import RowTable
+from benchnav.navigation import (
+    Briefing,
+    CommandKind,
+    Controller,
+    Guide,
+    Need,
+    Observation,
+    PluginConfig,
+    RowTable,
+)
 from benchnav.threads import run_rows
 
 from ...common.kernel_inputs import bodies_of, flat, sensed
@@ -51,9 +56,10 @@ class DynamicWindowConfig(PluginConfig):
 
 
 class DynamicWindow(Controller):
-    """Drives the best of the arcs that it can reach within a step and on which it can still stop.
+    """Drives the best arc that it can reach within a step and on which it can still stop.
 
-    Twists, so that what is checked is what is driven; holonomic bodies obey them too.
+    It commands twists, so that the checked motion is the executed one; holonomic bodies follow
+    twists too.
     """
 
     Config = DynamicWindowConfig
@@ -62,18 +68,20 @@ class DynamicWindow(Controller):
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
-        self._told = RowTable()
+        self._table = RowTable()
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):
             body = bodies_of(briefing)
-            self._told.put(int(row), body=body, turn=np.zeros(len(body)))
+            self._table.put(int(row), body=body, turn=np.zeros(len(body)))
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
         worlds, agents = observation.active.shape
         rows, c = worlds * agents, self.config
-        body, turn = (self._told.take(name, observation.rows, agents) for name in ("body", "turn"))
-        speed = np.sqrt(np.sum(observation.velocity**2, axis=-1))  # forward: twists drive no other
+        body, turn = (self._table.take(name, observation.rows, agents) for name in ("body", "turn"))
+        speed = np.sqrt(
+            np.sum(observation.velocity**2, axis=-1)
+        )  # forward: twists drive forward only
         position, velocity, radius, _, count, start, end, _, _, edges = sensed(observation)
         arrays = (
             observation.active, observation.position, observation.heading,
@@ -87,5 +95,5 @@ class DynamicWindow(Controller):
             c.predict, c.speeds, c.turns, answer,
         )  # fmt: skip
         twist = answer.reshape(worlds, agents, 2)
-        self._told.write("turn", observation.rows, twist[..., 1])
+        self._table.write("turn", observation.rows, twist[..., 1])
         return twist

@@ -1,8 +1,8 @@
 """The dynamic window of every agent of a batch.
 
 Fox, Burgard and Thrun 1997, "The dynamic window approach to collision avoidance", IEEE
-Robotics & Automation Magazine 4(1):23–33. What is not from the paper says so. Rows N are
-(world, agent) pairs; each depends on nothing but itself.
+Robotics & Automation Magazine 4(1):23–33. Comments mark additions to the paper. Rows N are
+(world, agent) pairs and independent of each other.
 """
 
 import math
@@ -14,14 +14,14 @@ from benchnav.kernels import kernel
 
 from .clearance import arc_clearance, meeting_time, room
 
-LEAST = 0.01  # [m] of the margin that is kept even where the agent is nearer than the margin
+LEAST = 0.01  # [m] of the margin that is kept even if the agent is closer than the margin
 
 
 @kernel
 def window(now: float, change: float, low: float, high: float, out: FloatArray) -> None:
-    """Fill ``out`` (n,) evenly with what is within ``change`` of ``now`` and in low … high.
+    """Fill ``out`` (n,) evenly with values within ``change`` of ``now`` and in low … high.
 
-    The value nearest to 0 is 0 where that is among them (an addition: else nothing drives
+    The value nearest to 0 becomes 0 if 0 is in this range (an addition: otherwise no sample drives
     straight).
     """
     first, last = min(max(now - change, low), high), max(min(now + change, high), low)
@@ -36,10 +36,10 @@ def window(now: float, change: float, low: float, high: float, out: FloatArray) 
 
 @kernel
 def admissible(v: float, w: float, dist: float, brake: float, turn_brake: float, dt: float) -> bool:
-    """True where a body that drives so for a step can still stop within ``dist`` [m] (Eq. 14).
+    """Whether a body that drives so for a step can still stop within ``dist`` [m] (Eq. 14).
 
-    The step itself is an addition. Turning, too, must end there: at radius v / w in it,
-    the arc of length dist turns by dist · w / v, and w² / (2 · turn_brake) may be no more.
+    The step itself is an addition. Turning must end there, too: at radius v / w in it,
+    the arc of length dist turns by dist · w / v, and w² / (2 · turn_brake) must not exceed it.
     """
     way = v * dt + 0.5 * v * v / brake
     return way <= dist and abs(w) * v <= 2.0 * dist * turn_brake
@@ -47,7 +47,7 @@ def admissible(v: float, w: float, dist: float, brake: float, turn_brake: float,
 
 @kernel
 def rest_turn(w: float, turn_brake: float, dt: float) -> float:
-    """By how much [rad] a body turns that keeps w for a step and then brakes as hard as it can."""
+    """Return the turn [rad] of a body that keeps w for a step and then brakes at its limit."""
     return w * dt + 0.5 * w * abs(w) / turn_brake
 
 
@@ -56,9 +56,9 @@ def facing(
     x: float, y: float, heading: float, v: float, w: float, tx: float, ty: float,
     brake: float, turn_brake: float, dt: float,
 ) -> float:  # fmt: skip
-    """1 where the target lies ahead, 0 where behind, of where the body would come to rest.
+    """Return 1 if the target lies ahead, 0 if behind, of the pose where the body would stop.
 
-    It keeps (v, w) for a step and then brakes as hard as it can.
+    It keeps (v, w) for a step and then brakes at its limit.
     """
     turn = rest_turn(w, turn_brake, dt)
     way = v * dt + 0.5 * v * v / brake
@@ -69,7 +69,7 @@ def facing(
 
 @kernel
 def smoothed(score: FloatArray, a: int, b: int) -> float:
-    """The mean of a cell and those around it (σ of the objective); missing cells are left out."""
+    """Return the mean of a cell and its neighbours (σ of the objective), without missing cells."""
     total, cells = 0.0, 0
     for i in range(max(a - 1, 0), min(a + 2, score.shape[0])):
         for j in range(max(b - 1, 0), min(b + 2, score.shape[1])):
@@ -92,12 +92,12 @@ def choose(
     Args:
         low: first row.
         high: one past the last row.
-        active: (N,) rows that are not are left alone.
+        active: (N,) rows to write.
         here: (N, 2) [m].
         heading: (N,) [rad].
-        last: (N, 2) the twist that is executed now.
+        last: (N, 2) the current twist.
         target: (N, 2) [m].
-        remaining: (N,) [m] to where the agent is to stop.
+        remaining: (N,) [m] to the place where the agent must stop.
         body: (N, 6) see `baselines.sensed.BODY`.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].
@@ -108,11 +108,11 @@ def choose(
         edges: (N,) valid edges.
         accelerations: (2,) [m/s²], [rad/s²].
         weights: (3,) α of heading, β of distance, γ of velocity.
-        margin: [m] kept from everything.
+        margin: [m] kept from all obstacles.
         far: [m] clearance that counts as free.
-        horizon: [s] for which neighbours are predicted.
-        hold: [s] after which a turning agent is predicted to keep its course.
-        predict: neighbours keep their velocities (not from the paper); else they stand.
+        horizon: [s] of the prediction of neighbours.
+        hold: [s] after which a turning agent is predicted to go straight.
+        predict: neighbours keep their velocities (not from the paper); otherwise they stand still.
         speeds: samples of v.
         turns: samples of w.
         answer: (N, 2).
@@ -154,7 +154,7 @@ def choose(
                 free[a, b] = dist
                 if time < horizon and time < dt + v / brake:
                     continue
-                if v == 0.0:  # an addition: on the spot, what counts is the way that it turns to
+                if v == 0.0:  # an addition: on the spot, the direction after the turn counts
                     turned = heading[i] + rest_turn(w, turn_brake, dt)
                     dist = arc_clearance(
                         x, y, turned, body[i, 2], 0.0, reach, start[i], end[i], edges[i],
@@ -173,7 +173,7 @@ def choose(
                     weights[0] * ahead + weights[1] * free_share + weights[2] * v / body[i, 2]
                 )  # fmt: skip
         answer[i, 0], answer[i, 1] = _best(score, free, meets, vs, ws, allowed > 0)
-        if answer[i, 0] < 0.0:  # no way is free: brake along the arc that was found free before
+        if answer[i, 0] < 0.0:  # no arc is free: brake along the arc that was free before
             v = max(now - brake * dt, 0.0)
             answer[i, 0] = v
             answer[i, 1] = last[i, 1] * v / now if now > 0.0 else 0.0
@@ -184,10 +184,10 @@ def _best(
     score: FloatArray, free: FloatArray, meets: FloatArray, vs: FloatArray, ws: FloatArray,
     allowed: bool,
 ) -> tuple[float, float]:  # fmt: skip
-    """The twist of the best smoothed score among those that are allowed.
+    """Return the twist of the best smoothed score among the allowed ones.
 
-    Where none is, because moving neighbours will meet the agent whatever it does, the one
-    that meets them last; v = −1 where not even what stands leaves a way.
+    If there is none, because moving neighbours will meet the agent in any case, the twist
+    that meets them last; v = −1 if static obstacles block all.
     """
     v, w, best = -1.0, 0.0, -1.0
     for a in range(len(vs)):

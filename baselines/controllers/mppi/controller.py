@@ -7,12 +7,17 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.controller import Controller, Guide
-from benchnav.navigation.navigator import CommandKind, Need, PluginConfig
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.randomness.agent_streams import agent_streams
-from benchnav.navigation.row_table import RowTable
+from benchnav.navigation import (
+    Briefing,
+    CommandKind,
+    Controller,
+    Guide,
+    Need,
+    Observation,
+    PluginConfig,
+    RowTable,
+    agent_streams,
+)
 from benchnav.threads import run_rows
 
 from ...common.kernel_inputs import bodies_of, flat, sensed
@@ -59,9 +64,9 @@ class MppiConfig(PluginConfig):
 
 
 class Mppi(Controller):
-    """Tries many disturbances of its last plan, and weighs them by exp(−cost / λ).
+    """Tries many disturbances of its last plan, and weights them by exp(−cost / λ).
 
-    Twists; holonomic bodies obey them too.
+    It commands twists; holonomic bodies follow them too.
     """
 
     Config = MppiConfig
@@ -70,19 +75,19 @@ class Mppi(Controller):
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
-        self._told = RowTable()
+        self._table = RowTable()
         self._streams: dict[int, list[np.random.Generator]] = {}
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):
             self._streams[int(row)] = agent_streams(briefing)
             plan = np.zeros((len(briefing), self.config.steps, 2))
-            self._told.put(int(row), body=bodies_of(briefing), plan=plan)
+            self._table.put(int(row), body=bodies_of(briefing), plan=plan)
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
         worlds, agents = observation.active.shape
         rows, c = worlds * agents, self.config
-        body, plan = (self._told.take(name, observation.rows, agents) for name in ("body", "plan"))
+        body, plan = (self._table.take(name, observation.rows, agents) for name in ("body", "plan"))
         position, velocity, radius, kind, count, start, end, _, _, edges = sensed(observation)
         arrays = (
             observation.active, observation.position, observation.heading, guide.target,
@@ -99,11 +104,11 @@ class Mppi(Controller):
             weights, new,
         )  # fmt: skip
         plan = new.reshape(plan.shape)
-        self._told.write("plan", observation.rows, plan)
+        self._table.write("plan", observation.rows, plan)
         return plan[:, :, 0].copy()
 
     def _noise(self, observation: Observation) -> FloatArray:
-        """(B·A, S, M, 2) standard normal, each active agent's from its own stream."""
+        """Draw standard normals (B·A, S, M, 2), each active agent's from its own stream."""
         worlds, agents = observation.active.shape
         noise = np.zeros((worlds, agents, self.config.samples, self.config.knots, 2))
         for world, agent in np.argwhere(observation.active):

@@ -1,17 +1,17 @@
-"""What a sequence of twists would cost: way that is left, contacts, probable contacts, jerks.
+"""The cost of a sequence of twists: remaining distance, contacts, their probability, jerks.
 
-Costs are in metres, as the way that is left. What stands is predicted to stand, and
+Costs are in metres, like the remaining distance. Static obstacles are predicted to stay, and
 neighbours to keep their velocities; a dynamic obstacle may also turn back at once. The
-probability of colliding is Eq. 24 of the paper on leaders that benchnav reproduces, see
+collision probability is Eq. 24 of the paper on leaders that benchnav reproduces, see
 `benchnav.envs.collision_probability`.
 """
 
 import math
 
-from benchnav.arena.solid import Kind
+from benchnav.arena import Kind
 from benchnav.arrays import ByteArray, FloatArray
 from benchnav.envs.collision_probability import probability
-from benchnav.geometry.capsule import nearest_on_segment
+from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel
 
 WEIGHTS = 7  # contact, probability, near, smooth, clearance [m], back, near_edges: see `MppiConfig`
@@ -25,15 +25,15 @@ def cost_of(
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: int,
     start: FloatArray, end: FloatArray, far: FloatArray, edges: int, weights: FloatArray,
 ) -> tuple[float, bool]:  # fmt: skip
-    """(cost [m], touches) of a plan.
+    """Return (cost [m], touches) of a plan.
 
-    Way is the mean over the plan of the distance to the target. A target that is not the
-    end of the path, once passed, is left in any direction: where the path then turns is
-    not known. After a contact the way left stays what it was.
+    The remaining distance is the mean over the plan of the distance to the target. A target that is
+    not the end of the path is, once passed, left in any direction: the direction of the next
+    part of the path is unknown. After a contact, the remaining distance stays constant.
 
     Args:
         plan: (H, 2) twists [m/s, rad/s].
-        tick: [s] that each is held.
+        tick: [s] duration of each twist.
         x: [m].
         y: [m].
         heading: [rad].
@@ -42,16 +42,16 @@ def cost_of(
         goal_y: target [m].
         final: the path ends in the target.
         body: (6,) see `baselines.sensed.BODY`.
-        margin: [m] within which a contact is counted; half of it beside what stands.
+        margin: [m] within which a contact is counted; half of it for static obstacles.
         position: (K, 2) of neighbours [m].
         velocity: (K, 2) [m/s].
         radius: (K,) [m].
         kind: (K,).
-        count: neighbours that count.
+        count: number of valid neighbours.
         start: (E, 2) of edges [m].
         end: (E, 2) [m].
         far: (E,) [m] of each from (x, y).
-        edges: edges that count.
+        edges: number of valid edges.
         weights: (7,) see `WEIGHTS`.
     """
     steps = len(plan)
@@ -105,8 +105,8 @@ def _others(
     x: float, y: float, vx: float, vy: float, time: float, size: float,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: int,
 ) -> tuple[float, float, float]:  # fmt: skip
-    """Gap [m] to the nearest neighbour, highest probability of colliding with a mover, and the
-    gap to the nearest mover if they had turned back at once.
+    """Return the gap [m] to the nearest neighbour, the highest collision probability with a mover,
+    and the gap to the nearest mover if all movers had turned back at once.
     """
     gap, risk, back = 1e9, 0.0, 1e9
     for j in range(count):
@@ -124,7 +124,7 @@ def _others(
 
 @kernel
 def _nearer(dx: float, dy: float, reach: float, gap: float) -> float:
-    """|d| − reach where that is less than ``gap``."""
+    """Return |d| − reach if it is less than ``gap``, else ``gap``."""
     far, d2 = gap + reach, dx * dx + dy * dy
     return math.sqrt(d2) - reach if d2 < far * far else gap
 
@@ -144,9 +144,9 @@ def _edges(
     x: float, y: float, start: FloatArray, end: FloatArray, far: FloatArray, edges: int,
     within: float, moved: float,
 ) -> float:  # fmt: skip
-    """Distance [m] to the nearest edge where that is less than ``within``.
+    """Return the distance [m] to the nearest edge if it is less than ``within``.
 
-    An edge that was ``far`` away is no nearer than that less what was ``moved`` since.
+    An edge that was ``far`` away is no nearer than ``far`` minus the distance ``moved`` since.
     """
     least = within * within
     for k in range(edges):

@@ -1,6 +1,6 @@
 """One decision of model predictive path integral control, for every agent of a batch.
 
-Rows N are (world, agent) pairs; each depends on nothing but itself. See `weights` for the
+Rows N are (world, agent) pairs and independent of each other. See `weights` for the
 source.
 """
 
@@ -19,9 +19,9 @@ from .weights import disturbed, moved_on, weigh
 def gathered(
     i: int, x: float, y: float, way: float, time: float, position: FloatArray,
     velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: int,
-    p: FloatArray, u: FloatArray, r: FloatArray, what: ByteArray,
+    p: FloatArray, u: FloatArray, r: FloatArray, kinds: ByteArray,
 ) -> int:  # fmt: skip
-    """Copy those neighbours of row i that could be met within ``time``; returns how many."""
+    """Copy the neighbours of row i that could be met within ``time``; return their number."""
     n = 0
     for j in range(count):
         dx, dy = position[i, j, 0] - x, position[i, j, 1] - y
@@ -30,14 +30,14 @@ def gathered(
         if dx * dx + dy * dy < reach * reach:
             p[n, 0], p[n, 1] = position[i, j, 0], position[i, j, 1]
             u[n, 0], u[n, 1] = vx, vy
-            r[n], what[n] = radius[i, j], kind[i, j]
+            r[n], kinds[n] = radius[i, j], kind[i, j]
             n += 1
     return n
 
 
 @kernel
 def leaving(base: FloatArray, plan: FloatArray, sigma: FloatArray) -> float:
-    """Σ uᵀ Σ⁻¹ ε / H of a plan u + ε about the base u (H, 2): the control term of the cost."""
+    """Return Σ uᵀ Σ⁻¹ ε / H of a plan u + ε about the base u (H, 2): the cost's control term."""
     total = 0.0
     for t in range(len(base)):
         for c in range(2):
@@ -47,7 +47,7 @@ def leaving(base: FloatArray, plan: FloatArray, sigma: FloatArray) -> float:
 
 @kernel
 def averaged(weight: FloatArray, tried: FloatArray, mean: FloatArray) -> None:
-    """``mean`` (H, 2): Σ weight (S,) · tried (S, H, 2)."""
+    """Set ``mean`` (H, 2) to Σ weight (S,) · tried (S, H, 2)."""
     mean[:] = 0.0
     for k in range(len(weight)):
         if weight[k] > 0.0:
@@ -65,18 +65,18 @@ def control(
     tick: float, spread: FloatArray, temperature: float, control_cost: float, margin: float,
     weights: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    """Write new plans into rows low … high - 1 of ``out`` (N, H, 2); their first twist is driven.
+    """Write new plans into rows low … high - 1 of ``out`` (N, H, 2); their first twist is executed.
 
     Args:
         low: first row.
         high: one past the last row.
-        active: (N,) rows that are not are left alone.
+        active: (N,) rows to write.
         here: (N, 2) [m].
         heading: (N,) [rad].
         target: (N, 2) [m].
         remaining: (N,) [m] of the path.
         body: (N, 6) see `baselines.sensed.BODY`.
-        plan: (N, H, 2) the last plans; zero where there is none.
+        plan: (N, H, 2) the last plans; zero if there is none.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].
         radius: (N, K) [m].
@@ -86,10 +86,10 @@ def control(
         end: (N, E, 2) [m].
         edges: (N,) valid edges.
         noise: (N, S, M, 2) standard normal: S samples, M knots.
-        tick: [s] that each twist of a plan is held.
+        tick: [s] duration of each twist of a plan.
         spread: (2,) of the noise, as shares of preferred speed and top turn rate.
         temperature: λ [m].
-        control_cost: γ / λ: what plans cost that leave the last one.
+        control_cost: γ / λ: the cost of plans that deviate from the last one.
         margin: [m] within which a contact is counted.
         weights: (7,) see `cost.WEIGHTS`.
         out: (N, H, 2).
@@ -98,7 +98,7 @@ def control(
     tried, base, mean = np.empty((samples, steps, 2)), np.empty((steps, 2)), np.empty((steps, 2))
     cost, weight = np.empty(samples), np.empty(samples)
     sigma, bottom, top = np.empty(2), np.empty(2), np.empty(2)
-    p, u, r, what = (
+    p, u, r, kinds = (
         np.empty((most, 2)),
         np.empty((most, 2)),
         np.empty(most),
@@ -111,7 +111,7 @@ def control(
         x, y, me, last = here[i, 0], here[i, 1], body[i], plan[i, 0]
         way = me[2] * tick * steps + me[0] + weights[4]
         n = gathered(
-            i, x, y, way, tick * steps, position, velocity, radius, kind, count[i], p, u, r, what
+            i, x, y, way, tick * steps, position, velocity, radius, kind, count[i], p, u, r, kinds
         )
         edge_distances(x, y, start[i], end[i], edges[i], far)
         sigma[0], sigma[1] = spread[0] * me[2], spread[1] * me[3]
@@ -124,12 +124,12 @@ def control(
             if k == 0:
                 tried[k] = base
             elif k == 1:
-                tried[k] = 0.0  # an addition: standing is always weighed
+                tried[k] = 0.0  # an addition: standing still is always a sample
             else:
                 disturbed(base, noise[i, k], sigma, bottom, top, tried[k])
             cost[k], touches = cost_of(
                 tried[k], tick, x, y, heading[i], last, gx, gy, final, me, margin,
-                p, u, r, what, n, start[i], end[i], far, edges[i], weights,
+                p, u, r, kinds, n, start[i], end[i], far, edges[i], weights,
             )  # fmt: skip
             cost[k] += control_cost * temperature * leaving(base, tried[k], sigma)
             if cost[k] < cost[best]:
@@ -139,7 +139,7 @@ def control(
         averaged(weight, tried, mean)
         _, touches = cost_of(
             mean, tick, x, y, heading[i], last, gx, gy, final, me, margin,
-            p, u, r, what, n, start[i], end[i], far, edges[i], weights,
+            p, u, r, kinds, n, start[i], end[i], far, edges[i], weights,
         )  # fmt: skip
-        # an addition: the mean of ways round both sides of something leads into it
+        # an addition: the mean of paths around both sides of an obstacle leads into it
         out[i] = tried[best] if touches and not all_touch else mean

@@ -12,11 +12,11 @@ from benchnav.kernels import kernel
 
 @kernel
 def weigh(cost: FloatArray, temperature: float, out: FloatArray) -> float:
-    """Fill ``out`` (K,) with exp(−cost / λ) / Σ; returns −λ log mean exp(−cost / λ).
+    """Fill ``out`` (K,) with exp(−cost / λ) / Σ; return −λ log mean exp(−cost / λ).
 
-    That is the free energy; λ is ``temperature``. As it falls to 0 the best sample takes all,
-    and the free energy falls to its cost; as it rises, weights become equal and the free
-    energy the mean cost.
+    The result is the free energy; λ is ``temperature``. If it falls to 0, the best sample gets all
+    weight, and the free energy falls to its cost; if it rises, weights become equal and the free
+    energy approaches the mean cost.
     """
     least = cost[0]
     for k in range(len(cost)):
@@ -33,7 +33,7 @@ def weigh(cost: FloatArray, temperature: float, out: FloatArray) -> float:
 
 @kernel
 def moved_on(plan: FloatArray, share: float, out: FloatArray) -> None:
-    """``out`` (H, 2): the plan (H, 2) begun ``share`` of a step later; its end is held."""
+    """Set ``out`` (H, 2) to the plan (H, 2) advanced by ``share`` of a step; its end is held."""
     last = len(plan) - 1
     for t in range(len(plan)):
         at = min(t + share, float(last))
@@ -48,10 +48,10 @@ def disturbed(
     plan: FloatArray, noise: FloatArray, spread: FloatArray, low: FloatArray, high: FloatArray,
     out: FloatArray,
 ) -> None:  # fmt: skip
-    """``out`` (H, 2): the plan plus noise, within limits.
+    """Set ``out`` (H, 2) to the plan plus noise, within limits.
 
-    The noise (M, 2), standard normal, holds at M knots and runs straight between them: not
-    from the paper, whose noise is new at every step and shakes what it drives.
+    The noise (M, 2), standard normal, is given at M knots and linear between them. This is an
+    addition to the paper, whose noise is new at every step and makes the motion shaky.
     """
     steps, knots = len(plan), len(noise)
     for t in range(steps):

@@ -1,4 +1,4 @@
-"""What the ORCA navigator and the ORCA controller share: limits per row, and the kernel's call."""
+"""The common part of the ORCA navigator and controller: limits per row, and the kernel call."""
 
 from collections.abc import Iterable, Iterator, Sequence
 
@@ -6,18 +6,21 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import AnyArray, FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.navigator import PluginConfig
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.randomness.agent_streams import canonical_order
-from benchnav.navigation.row_table import RowTable
-from benchnav.sensors.readings import Edges, Neighbours
+from benchnav.navigation import (
+    Briefing,
+    Edges,
+    Neighbours,
+    Observation,
+    PluginConfig,
+    RowTable,
+    canonical_order,
+)
 from benchnav.threads import run_rows
 
 from .kernel import OWN, avoid, prepare
 
-LEAST_MARGIN = 1e-3  # [m] among edges: without any, rounding is a contact
-LEAST = 64  # agents below which a second thread costs more than it saves
+LEAST_MARGIN = 1e-3  # [m] at edges: without a margin, rounding causes contacts
+LEAST = 64  # with fewer agents, a second thread costs more than it saves
 
 
 class OrcaConfig(PluginConfig):
@@ -54,10 +57,10 @@ class Avoidance:
 
     def __init__(self, config: OrcaConfig) -> None:
         self.config = config
-        self._told = RowTable()
+        self._table = RowTable()
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
-        """Take radii, limits and the symmetry-breaking offsets of the worlds ``rows`` (N,)."""
+        """Store radii, limits and the symmetry-breaking offsets of the worlds ``rows`` (N,)."""
         for row, briefing in zip(rows, briefings, strict=True):
             count = len(briefing)
             offset = np.empty((count, 2))
@@ -67,21 +70,21 @@ class Avoidance:
             own[:, 1] = briefing.max_speed
             own[:, 2] = briefing.preferred_speed
             own[:, 3] = briefing.dt
-            self._told.put(int(row), own=own, offset=offset * self.config.perturbation)
+            self._table.put(int(row), own=own, offset=offset * self.config.perturbation)
 
     def velocity(
         self, observation: Observation, target: FloatArray, clearance: FloatArray | None = None
     ) -> FloatArray:
-        """(B, A, 2) velocity [m/s] near the one that leads to ``target`` (B, A, 2) [m].
+        """Return the velocity (B, A, 2) [m/s] near the one that leads to ``target`` (B, A, 2) [m].
 
-        The margin among edges is at most ``clearance`` (B, A) [m], but for `LEAST_MARGIN`.
+        The margin at edges is at most ``clearance`` (B, A) [m], but at least `LEAST_MARGIN`.
         """
         worlds, agents = observation.active.shape
         rows = worlds * agents
-        told, offset = (
-            self._told.take(name, observation.rows, agents) for name in ("own", "offset")
+        limits, offset = (
+            self._table.take(name, observation.rows, agents) for name in ("own", "offset")
         )
-        whole = (observation.position, observation.velocity, target, told, offset)
+        whole = (observation.position, observation.velocity, target, limits, offset)
         own, answer = np.empty((rows, OWN)), np.zeros((rows, 2))
         run_rows(prepare, rows, *_flat(rows, whole), own, least=LEAST)
         config = self.config
@@ -97,25 +100,25 @@ class Avoidance:
 
 
 def _flat(rows: int, arrays: Iterable[AnyArray]) -> Iterator[AnyArray]:
-    """Each (B, A, …) as contiguous (rows, …)."""
+    """Yield each array (B, A, …) as contiguous (rows, …)."""
     for array in arrays:
         yield np.ascontiguousarray(array).reshape(rows, *array.shape[2:])
 
 
 def _sensed(observation: Observation) -> tuple[AnyArray, ...]:
-    """Neighbours and edges as the kernel takes them."""
+    """Return neighbours and edges as kernel arguments."""
     shape = observation.active.shape
-    seen = observation.neighbours or no_neighbours(*shape)
+    near = observation.neighbours or no_neighbours(*shape)
     sides = observation.edges or no_edges(*shape)
     return (
-        seen.position, seen.velocity, seen.radius, seen.kind, seen.count,
+        near.position, near.velocity, near.radius, near.kind, near.count,
         sides.start, sides.end, sides.before, sides.after,
         sides.start_convex, sides.end_convex, sides.count,
     )  # fmt: skip
 
 
 def no_neighbours(worlds: int, agents: int) -> Neighbours:
-    """Nobody in sight."""
+    """Return readings without any neighbour."""
     at = (worlds, agents, 0)
     return Neighbours(
         np.zeros((*at, 2)), np.zeros((*at, 2)), np.zeros(at), np.zeros(at, np.int8),
@@ -124,7 +127,7 @@ def no_neighbours(worlds: int, agents: int) -> Neighbours:
 
 
 def no_edges(worlds: int, agents: int) -> Edges:
-    """Nothing solid in sight."""
+    """Return readings without any edge."""
     at = (worlds, agents, 0)
     start, end, before, after = (np.zeros((*at, 2)) for _ in range(4))
     convex = np.zeros(at, np.bool_)

@@ -4,18 +4,15 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.controller import Controller, Guide
-from benchnav.navigation.navigator import Need, PluginConfig
-from benchnav.navigation.observation import Observation
+from benchnav.navigation import Briefing, Controller, Guide, Need, Observation, PluginConfig
 
 from .avoidance import Avoidance, OrcaConfig
 
 
 class OrcaController(Controller):
-    """Optimal reciprocal collision avoidance, preferring to go to the guide's target.
+    """Optimal reciprocal collision avoidance with the guide's target as preferred direction.
 
-    Among edges it keeps no more than its path leaves.
+    At edges it keeps no more distance than its path does.
     """
 
     Config = OrcaConfig

@@ -1,7 +1,7 @@
 """Half-planes of permitted velocities: one for each neighbour, one for each edge of a solid.
 
 A half-plane is (x, y, dx, dy): a point on its boundary [m/s] and the unit
-direction of the boundary; permitted is what lies to the left of it. Positions
+direction of the boundary; velocities to the left of it are permitted. Positions
 are relative to the agent. Formulas: van den Berg, Guy, Lin and Manocha 2011,
 "Reciprocal n-body collision avoidance", sections 4 (agents) and 5.4 (obstacles).
 """
@@ -12,7 +12,7 @@ from benchnav.kernels import kernel
 
 from .shadow import edge_shadow
 
-COVERED = 1e-5  # [m/s] an edge this little outside an earlier half-plane adds nothing
+COVERED = 1e-5  # [m/s] an edge that exceeds an earlier half-plane by less adds nothing
 
 HalfPlane = tuple[float, float, float, float]
 
@@ -22,12 +22,12 @@ def neighbour_half_plane(
     px: float, py: float, vx: float, vy: float, ux: float, uy: float,
     reach: float, rate: float, step_rate: float, share: float,
 ) -> HalfPlane:  # fmt: skip
-    """The half-plane that a neighbour leaves to an agent.
+    """Return the half-plane of an agent's permitted velocities beside a neighbour.
 
     (px, py) is the neighbour's position relative to the agent [m], (vx, vy) the
     agent's velocity relative to the neighbour and (ux, uy) its own [m/s]; reach
     is the sum of the radii [m], rate 1 / time horizon [1/s], step_rate 1 / decision
-    step [1/s] (the horizon once discs overlap), and share how much of the change
+    step [1/s] (the horizon once discs overlap), and share the part of the change that
     the agent makes: 0.5 beside an agent that does the same, 1 beside a mover.
     """
     distance2 = px * px + py * py
@@ -54,7 +54,7 @@ def neighbour_half_plane(
 def _normal(
     wx: float, wy: float, w: float, px: float, py: float, distance2: float
 ) -> tuple[float, float]:
-    """W / |w|; not from the paper: straight away where w is zero, and +x where that is too."""
+    """Return w / |w|; an addition: straight away if w is zero, and +x if that is zero too."""
     if w > 0.0:
         return wx / w, wy / w
     if distance2 > 0.0:
@@ -70,7 +70,7 @@ def edge_half_plane(
     a_convex: bool, b_convex: bool,
     vx: float, vy: float, radius: float, rate: float,
 ) -> tuple[bool, HalfPlane]:  # fmt: skip
-    """(True, half-plane) that an edge from a to b leaves, or (False, …) where it leaves all.
+    """Return (True, half-plane) of an edge from a to b, or (False, …) if it permits all.
 
     a and b are relative to the agent [m], the solid is on the left of ab, and
     is convex in a and in b or not; before and after are the unit directions of
@@ -89,7 +89,7 @@ def edge_half_plane(
     if along < 0.0 and ax * ax + ay * ay <= radius2:
         return a_convex, _corner(ax, ay)
     if along > 1.0 and bx * bx + by * by <= radius2:
-        # where b's other edge faces the agent too, that edge answers for b
+        # if b's other edge faces the agent too, that edge covers b
         return b_convex and bx * after_y - by * after_x >= 0.0, _corner(bx, by)
     if across * across > radius2:
         side = 0
@@ -99,7 +99,7 @@ def edge_half_plane(
         side = 1
     else:
         return True, (0.0, 0.0, -ex, -ey)
-    if side < 0:  # seen so obliquely that a alone matters
+    if side < 0:  # at such an oblique angle only a matters
         bx, by, b_convex, after_x, after_y = ax, ay, a_convex, ex, ey
     elif side > 0:
         ax, ay, a_convex, before_x, before_y = bx, by, b_convex, ex, ey
@@ -113,9 +113,9 @@ def edge_half_plane(
 
 @kernel
 def _corner(x: float, y: float) -> HalfPlane:
-    """No nearer to a corner that is touched."""
+    """Return the half-plane that forbids to approach a touched corner."""
     length = math.sqrt(x * x + y * y)
-    if length == 0.0:  # upon the corner itself no way out is better than another
+    if length == 0.0:  # on the corner itself all directions are equally good
         return 0.0, 0.0, 1.0, 0.0
     return 0.0, 0.0, -y / length, x / length
 
@@ -124,7 +124,7 @@ def _corner(x: float, y: float) -> HalfPlane:
 def covers(
     half_plane: HalfPlane, ax: float, ay: float, bx: float, by: float, radius: float, rate: float
 ) -> bool:
-    """True where the half-plane forbids already whatever the edge from a to b would."""
+    """Whether the half-plane already forbids all velocities that the edge from a to b would."""
     x, y, dx, dy = half_plane
     margin = rate * radius - COVERED
     return (rate * ax - x) * dy - (rate * ay - y) * dx >= margin and (

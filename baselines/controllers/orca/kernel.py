@@ -1,7 +1,7 @@
 """Optimal reciprocal collision avoidance for every agent of a batch.
 
-Rows N are (world, agent) pairs, run by `benchnav.threads.run_rows`; each depends
-on nothing but itself. Arrays are plain arguments, because Numba counts references
+Rows N are (world, agent) pairs, run by `benchnav.threads.run_rows`, and independent of
+each other. Arrays are plain arguments, because Numba counts references
 to the members of a tuple on every access.
 """
 
@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from benchnav.arena.solid import Kind
+from benchnav.arena import Kind
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.kernels import kernel
 
@@ -17,17 +17,17 @@ from .half_plane import covers, edge_half_plane, neighbour_half_plane
 from .program import least_excess, nearest_permitted
 
 _MOVER = int(Kind.DYNAMIC)
-OWN = 9  # columns of an agent's own state: x, y, vx, vy, wanted vx, vy, radius, limit, 1 / step
+OWN = 9  # columns: x, y, vx, vy, preferred vx, preferred vy, radius, speed limit, 1 / step
 
 
 @kernel
 def prepare(
     low: int, high: int, position: FloatArray, velocity: FloatArray, target: FloatArray,
-    told: FloatArray, offset: FloatArray, own: FloatArray,
+    limits: FloatArray, offset: FloatArray, own: FloatArray,
 ) -> None:  # fmt: skip
     """Fill rows low … high - 1 of ``own`` (N, 9), see `OWN`.
 
-    Wanted is the velocity straight to the target, not past it within a step.
+    The preferred velocity leads straight to the target, not past it within a step.
 
     Args:
         low: first row.
@@ -35,22 +35,22 @@ def prepare(
         position: (N, 2) [m].
         velocity: (N, 2) [m/s].
         target: (N, 2) [m].
-        told: (N, 4) radius [m], speed limit, preferred speed [m/s], step [s].
+        limits: (N, 4) radius [m], speed limit, preferred speed [m/s], step [s].
         offset: (N, 2) error of both velocities, as a share of the speeds.
         own: (N, 9).
     """
     for i in range(low, high):
-        step = told[i, 3] if told[i, 3] > 0.0 else 1.0
+        step = limits[i, 3] if limits[i, 3] > 0.0 else 1.0
         dx, dy = target[i, 0] - position[i, 0], target[i, 1] - position[i, 1]
         distance = math.sqrt(dx * dx + dy * dy)
-        speed = min(told[i, 2], distance / step)
+        speed = min(limits[i, 2], distance / step)
         scale = speed / distance if distance > 0.0 else 0.0
         own[i, 0], own[i, 1] = position[i, 0], position[i, 1]
-        own[i, 2] = velocity[i, 0] + told[i, 2] * offset[i, 0]
-        own[i, 3] = velocity[i, 1] + told[i, 2] * offset[i, 1]
+        own[i, 2] = velocity[i, 0] + limits[i, 2] * offset[i, 0]
+        own[i, 3] = velocity[i, 1] + limits[i, 2] * offset[i, 1]
         own[i, 4] = scale * dx + speed * offset[i, 0]
         own[i, 5] = scale * dy + speed * offset[i, 1]
-        own[i, 6], own[i, 7], own[i, 8] = told[i, 0], told[i, 1], 1.0 / step
+        own[i, 6], own[i, 7], own[i, 8] = limits[i, 0], limits[i, 1], 1.0 / step
 
 
 @kernel
@@ -59,7 +59,7 @@ def edge_rows(
     start: FloatArray, end: FloatArray, before: FloatArray, after: FloatArray,
     start_convex: BoolArray, end_convex: BoolArray, count: int, planes: FloatArray,
 ) -> int:  # fmt: skip
-    """Write the half-planes of agent i's edges; returns how many."""
+    """Write the half-planes of agent i's edges; return their number."""
     n = 0
     for k in range(count):
         ax, ay = start[i, k, 0] - px, start[i, k, 1] - py
@@ -95,7 +95,7 @@ def avoid(
 ) -> None:  # fmt: skip
     """Write new velocities [m/s] into rows low … high - 1 of ``answer`` (N, 2).
 
-    Rows of agents that are not active are left alone.
+    Rows of inactive agents are not changed.
 
     Args:
         low: first row.
@@ -114,9 +114,9 @@ def avoid(
         start_convex: (N, E).
         end_convex: (N, E).
         edge_count: (N,) valid edges.
-        most: neighbours that are used.
-        margin: by which every disc is taken to be larger [m] among neighbours.
-        edge_margin: (N,) the same of the agent's own disc among edges [m].
+        most: largest number of neighbours to use.
+        margin: [m] added to every disc beside neighbours.
+        edge_margin: (N,) [m] added to the agent's own disc at edges.
         rate: 1 / time horizon for neighbours [1/s].
         edge_rate: 1 / time horizon for edges [1/s].
         answer: (N, 2).

@@ -4,18 +4,16 @@ from collections.abc import Sequence
 from typing import ClassVar
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.navigator import Navigator, Need, PluginConfig
-from benchnav.navigation.observation import Observation
+from benchnav.navigation import Briefing, Navigator, Need, Observation, PluginConfig
 
 from .avoidance import Avoidance, OrcaConfig
 
 
 class Orca(Navigator):
-    """Optimal reciprocal collision avoidance, preferring to go straight at the goal.
+    """Optimal reciprocal collision avoidance with the goal as preferred direction.
 
     Agents share the effort with agents; beside a dynamic obstacle, which never
-    yields, they take all of it. A unicycle tracks the velocity as the simulator
+    yields, they make all of it. A unicycle tracks the velocity as the simulator
     defines.
     """
 

@@ -1,8 +1,8 @@
-"""The velocity nearest to the wanted one within half-planes and the speed limit.
+"""The velocity nearest to the preferred one within half-planes and the speed limit.
 
-Randomised incremental linear programming (de Berg et al. 2008, chapter 4) as van
-den Berg et al. 2011, section 5, use it; half-planes come in a fixed order
-(nearest first), so that nothing is drawn. Rows of ``planes`` are half-planes.
+Randomised incremental linear programming (de Berg et al. 2008, chapter 4) as in van
+den Berg et al. 2011, section 5; half-planes come in a fixed order
+(nearest first), so there is no randomness. Rows of ``planes`` are half-planes.
 """
 
 import math
@@ -15,7 +15,7 @@ PARALLEL = 1e-5  # sine of the angle below which two boundaries count as paralle
 
 @kernel
 def excess(planes: FloatArray, i: int, x: float, y: float) -> float:
-    """How far [m/s] (x, y) lies outside half-plane i; negative inside."""
+    """Return how far [m/s] (x, y) lies outside half-plane i; negative inside."""
     out: float = planes[i, 2] * (planes[i, 1] - y) - planes[i, 3] * (planes[i, 0] - x)
     return out
 
@@ -24,7 +24,7 @@ def excess(planes: FloatArray, i: int, x: float, y: float) -> float:
 def on_boundary(
     planes: FloatArray, i: int, speed: float, wx: float, wy: float, farthest: bool
 ) -> tuple[bool, float, float]:
-    """(feasible, best point) on boundary i within half-planes 0 … i - 1 and the speed limit.
+    """Return (feasible, best point) on boundary i in half-planes 0 … i - 1 and the speed limit.
 
     Best is nearest to w, or ``farthest`` in the direction w.
     """
@@ -60,7 +60,7 @@ def on_boundary(
 def nearest_permitted(
     planes: FloatArray, n: int, speed: float, wx: float, wy: float, farthest: bool
 ) -> tuple[int, float, float]:
-    """(n, velocity) within all of the first n half-planes, or (first one that fails, velocity).
+    """Return (n, velocity) within the first n half-planes, or (first that fails, velocity).
 
     Nearest to w, or ``farthest`` in the unit direction w.
     """
@@ -85,7 +85,7 @@ def least_excess(
     planes: FloatArray, n: int, fixed: int, first: int, speed: float, x: float, y: float,
     projected: FloatArray,
 ) -> tuple[float, float]:  # fmt: skip
-    """The velocity whose greatest excess over half-planes fixed … n - 1 is smallest.
+    """Return the velocity with the smallest maximal excess over half-planes fixed … n - 1.
 
     Half-planes 0 … fixed - 1 (edges) stay hard. ``first`` is the one that
     failed at velocity (x, y); ``projected`` is scratch, as large as ``planes``.
@@ -96,7 +96,7 @@ def least_excess(
             m = _bisectors(planes, fixed, i, projected)
             wx, wy = -planes[i, 3], planes[i, 2]
             reached, bx, by = nearest_permitted(projected, m, speed, wx, wy, True)
-            if reached == m:  # fails by rounding alone: then what was found stays
+            if reached == m:  # it fails only by rounding: keep the result
                 x, y = bx, by
             worst = excess(planes, i, x, y)
     return x, y
@@ -104,7 +104,7 @@ def least_excess(
 
 @kernel
 def _bisectors(planes: FloatArray, fixed: int, i: int, projected: FloatArray) -> int:
-    """Where half-plane i is exceeded no less than each earlier one; returns how many rows."""
+    """Write where half-plane i is exceeded no less than each earlier one; return the row count."""
     for j in range(fixed):
         for k in range(4):
             projected[j, k] = planes[j, k]

@@ -1,4 +1,4 @@
-"""The velocities that lead into an edge: a cut-off capsule and the two legs behind it."""
+"""The velocities that lead into an edge: a truncated capsule and the two legs behind it."""
 
 import math
 
@@ -14,17 +14,17 @@ def edge_shadow(
     a_convex: bool, b_convex: bool, corner: bool,
     vx: float, vy: float, radius: float, rate: float,
 ) -> tuple[bool, HalfPlane]:  # fmt: skip
-    """The half-plane at that point of the shadow's boundary which is nearest to v.
+    """Return the half-plane at the point of the shadow's boundary that is nearest to v.
 
-    ``corner`` says that a and b are one point. Legs run along the neighbouring
-    edge where they would otherwise run into the solid; v beyond such a leg is
-    that edge's business, and this edge adds nothing.
+    ``corner``: a and b are one point. Legs run along the neighbouring
+    edge where they would otherwise run into the solid; v beyond such a leg belongs to
+    that edge, and this edge adds nothing.
     """
     left_x, left_y, left_foreign = _leg(
         ax, ay, a_convex, -ex, -ey, -before_x, -before_y, radius, 1.0
     )
     right_x, right_y, right_foreign = _leg(bx, by, b_convex, ex, ey, after_x, after_y, radius, -1.0)
-    lx, ly = vx - rate * ax, vy - rate * ay  # v as seen from both ends of the cut-off
+    lx, ly = vx - rate * ax, vy - rate * ay  # v relative to both ends of the cut-off
     rx, ry = vx - rate * bx, vy - rate * by
     span = rate * ((bx - ax) * ex + (by - ay) * ey)
     t = lx * ex + ly * ey
@@ -52,7 +52,7 @@ def _leg(
     x: float, y: float, convex: bool, ex: float, ey: float, fx: float, fy: float,
     radius: float, turn: float,
 ) -> tuple[float, float, bool]:  # fmt: skip
-    """(unit direction, foreign) of the leg at a corner.
+    """Return (unit direction, foreign) of the leg at a corner.
 
     (ex, ey) runs along the edge itself and (fx, fy) along its neighbour, both
     away from the shadow; ``turn`` is 1 for the left leg and -1 for the right one.
@@ -70,7 +70,7 @@ def _leg(
 
 @kernel
 def _arc(x: float, y: float, wx: float, wy: float, radius: float, rate: float) -> HalfPlane:
-    """Tangent to the cut-off arc about a corner, beside w (never zero there)."""
+    """Return the tangent to the cut-off arc around a corner, beside w (never zero there)."""
     w = math.sqrt(wx * wx + wy * wy)
     nx, ny = wx / w, wy / w
     return rate * (x + radius * nx), rate * (y + radius * ny), ny, -nx
@@ -78,7 +78,7 @@ def _arc(x: float, y: float, wx: float, wy: float, radius: float, rate: float) -
 
 @kernel
 def _straight(x: float, y: float, dx: float, dy: float, radius: float, rate: float) -> HalfPlane:
-    """Parallel to a leg or to the edge, a radius to the left of it."""
+    """Return the line parallel to a leg or to the edge, one radius to the left of it."""
     return rate * (x - radius * dy), rate * (y + radius * dx), dx, dy
 
 

@@ -8,12 +8,16 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.controller import Controller, Guide
-from benchnav.navigation.navigator import Need, PluginConfig
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.randomness.agent_streams import canonical_order
-from benchnav.navigation.row_table import RowTable
+from benchnav.navigation import (
+    Briefing,
+    Controller,
+    Guide,
+    Need,
+    Observation,
+    PluginConfig,
+    RowTable,
+    canonical_order,
+)
 from benchnav.threads import run_rows
 
 from ...common.kernel_inputs import bodies_of, flat, sensed
@@ -21,7 +25,7 @@ from .kernel import social_force
 
 
 class SocialForceConfig(PluginConfig):
-    """Parameters of the social force model; those of the paper unless another is said."""
+    """Parameters of the social force model; values of the paper unless noted."""
 
     relaxation: float = Field(0.5, gt=0, description="[s] τ, of the speed")
     pedestrians: float = Field(2.1, ge=0, description="[m²/s²] V⁰ of the potential of a neighbour")
@@ -55,26 +59,26 @@ class SocialForceConfig(PluginConfig):
 
 
 class SocialForce(Controller):
-    """The social force model, with the guide's target as the place where each agent wants to be."""
+    """The social force model, with the guide's target as the desired place of each agent."""
 
     Config = SocialForceConfig
     needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
-        self._told = RowTable()
+        self._table = RowTable()
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):
             push = np.empty((len(briefing), 2))
             push[canonical_order(briefing)] = briefing.rng.standard_normal(push.shape)
             push *= self.config.fluctuation
-            self._told.put(int(row), body=bodies_of(briefing), push=push)
+            self._table.put(int(row), body=bodies_of(briefing), push=push)
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
         worlds, agents = observation.active.shape
         rows, c = worlds * agents, self.config
-        body, push = (self._told.take(name, observation.rows, agents) for name in ("body", "push"))
+        body, push = (self._table.take(name, observation.rows, agents) for name in ("body", "push"))
         position, velocity, radius, _, count, *edges = sensed(observation)
         arrays = (
             observation.active, observation.position, observation.velocity, guide.target, body,

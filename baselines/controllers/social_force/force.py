@@ -2,25 +2,25 @@
 
 Formulas and numbers of equations: Helbing and Molnár 1995, "Social force model for
 pedestrian dynamics", Physical Review E 51, 4282. Positions are relative to the agent
-where nothing else is said. What is not from the paper says so.
+unless noted. Comments mark additions to the paper.
 """
 
 import math
 
 from benchnav.arrays import FloatArray
-from benchnav.geometry.capsule import nearest_on_segment
+from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel
 
-LEAST = 1e-3  # [m] distances count as this at least: at the foci the gradient has no limit
-NONE = 1e-9  # [m] a semi-minor axis below this is none
-SAME = 1e-18  # [m²] nearest points this near are one corner, seen on both of its edges
+LEAST = 1e-3  # [m] lower bound of distances: at the foci the gradient has no limit
+NONE = 1e-9  # [m] a smaller semi-minor axis counts as zero
+SAME = 1e-18  # [m²] closer nearest points are one corner, found on both of its edges
 
 
 @kernel
 def pedestrian_force(
     rx: float, ry: float, sx: float, sy: float, strength: float, reach: float
 ) -> tuple[float, float]:
-    """−∇V(b) [m/s²] at r from a pedestrian whose next step is s [m] (Eqs. 3 and 4).
+    """Return −∇V(b) [m/s²] at r from a pedestrian whose next step is s [m] (Eqs. 3 and 4).
 
     V = strength · exp(−b / reach) [m²/s²], where b is the semi-minor axis of the ellipse
     through r with foci at the pedestrian and at the end of its step:
@@ -41,9 +41,9 @@ def pedestrian_force(
 
 @kernel
 def sight(fx: float, fy: float, ex: float, ey: float, cosine: float, behind: float) -> float:
-    """The weight of a force f on one who wants to go along the unit vector e (Eqs. 8 and 9).
+    """Return the weight of a force f on an agent with desired direction e (Eqs. 8 and 9).
 
-    1 where the source of the force, at −f, is within the angle of sight; ``behind`` elsewhere.
+    It is 1 if the source of the force, at −f, is within the angle of sight, else ``behind``.
     """
     inside = -(fx * ex + fy * ey) >= math.sqrt(fx * fx + fy * fy) * cosine
     return 1.0 if inside else behind
@@ -54,10 +54,10 @@ def edge_point(
     x: float, y: float, ax: float, ay: float, bx: float, by: float,
     before_x: float, before_y: float, after_x: float, after_y: float,
 ) -> tuple[bool, float, float]:  # fmt: skip
-    """(counts, x, y): the edge's point nearest to (x, y); it counts where no other edge is nearer.
+    """Return (counts, x, y): the edge's point nearest to (x, y); whether no other edge is nearer.
 
-    Each border of the paper acts from its nearest point; a border here is a loop of edges,
-    and it acts from every point of it that is nearest among those next to it.
+    In the paper, each border acts from its nearest point; a border here is a loop of edges,
+    and it acts from every local minimum of the distance along the loop.
     """
     px, py = nearest_on_segment(x, y, ax, ay, bx, by)
     if px == ax and py == ay:
@@ -70,11 +70,11 @@ def edge_point(
 @kernel
 def border_force(
     x: float, y: float, excess: float, start: FloatArray, end: FloatArray, before: FloatArray,
-    after: FloatArray, edges: int, strength: float, reach: float, seen: FloatArray,
+    after: FloatArray, edges: int, strength: float, reach: float, points: FloatArray,
 ) -> tuple[float, float]:  # fmt: skip
-    """The sum over borders of −∇U, U = strength · exp(−distance / reach) (Eq. 5).
+    """Return the sum over borders of −∇U, U = strength · exp(−distance / reach) (Eq. 5).
 
-    ``excess`` [m] is taken off the distance; ``seen`` (E, 2) is scratch.
+    ``excess`` [m] is subtracted from the distance; ``points`` (E, 2) is scratch.
     """
     fx, fy, n = 0.0, 0.0, 0
     for k in range(edges):
@@ -83,10 +83,10 @@ def border_force(
             before[k, 0], before[k, 1], after[k, 0], after[k, 1],
         )  # fmt: skip
         for j in range(n):
-            gx, gy = px - seen[j, 0], py - seen[j, 1]
+            gx, gy = px - points[j, 0], py - points[j, 1]
             counts = counts and gx * gx + gy * gy > SAME
         if counts:
-            seen[n, 0], seen[n, 1] = px, py
+            points[n, 0], points[n, 1] = px, py
             n += 1
             dx, dy = x - px, y - py
             distance = max(math.sqrt(dx * dx + dy * dy), LEAST)

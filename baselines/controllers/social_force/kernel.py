@@ -1,6 +1,6 @@
 """The social force model for every agent of a batch, see `force` for its source.
 
-Rows N are (world, agent) pairs; each depends on nothing but itself.
+Rows N are (world, agent) pairs and independent of each other.
 """
 
 import math
@@ -25,13 +25,13 @@ def social_force(
 ) -> None:  # fmt: skip
     """Write velocities [m/s] after a step into rows low … high - 1 of ``answer`` (N, 2).
 
-    A step is cut into ticks: forces are taken anew at each, with the neighbours moved on at
+    A step is divided into ticks: forces are computed at each, with the neighbours moved on at
     their velocities. Within a tick the relaxation towards the desired velocity is exact.
 
     Args:
         low: first row.
         high: one past the last row.
-        active: (N,) rows that are not are left alone.
+        active: (N,) rows to write.
         here: (N, 2) [m].
         moving: (N, 2) velocity [m/s].
         target: (N, 2) [m].
@@ -54,12 +54,12 @@ def social_force(
         borders: U⁰ [m²/s²].
         border_range: R [m].
         cosine: of half the angle of sight.
-        behind: c, the weight of what is out of sight.
+        behind: c, the weight of sources out of sight.
         top: largest speed, as a multiple of the preferred one.
         tick: [s] at most.
         answer: (N, 2).
     """
-    seen = np.empty((start.shape[1], 2))
+    points = np.empty((start.shape[1], 2))
     for i in range(low, high):
         if not active[i]:
             continue
@@ -76,7 +76,7 @@ def social_force(
             desired = min(preferred, distance / step) if step > 0.0 else preferred
             fx, fy = border_force(
                 x, y, body[i, 0] - border_body, start[i], end[i], before[i], after[i], edges[i],
-                borders, border_range, seen,
+                borders, border_range, points,
             )  # fmt: skip
             for j in range(count[i]):
                 ux, uy = velocity[i, j, 0], velocity[i, j, 1]

@@ -1,1 +1,1 @@
-"""Tabular Q-learning (Watkins & Dayan 1992): over what is sensed, and over an arena's cells."""
+"""Tabular Q-learning (Watkins & Dayan 1992): over sensor readings, and over an arena's cells."""

@@ -1,4 +1,4 @@
-"""A grid of cells over a known arena: which moves between neighbouring centres are free."""
+"""A grid of cells over a known arena, with the free moves between neighbouring centres."""
 
 import math
 from dataclasses import dataclass
@@ -6,30 +6,30 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.geometry.capsule_grid import CapsuleGrid, capsule_grid, is_clear
-from benchnav.geometry.sweep import inside_solid, solid_index
+from benchnav.geometry import CapsuleGrid, inside_solid, is_clear, solid_index
+from benchnav.geometry.capsule_grid import capsule_grid
 from benchnav.kernels import kernel
-from benchnav.navigation.map import Map
+from benchnav.navigation import Map
 
 STEPS = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)])
-SKIN = 1e-6  # [m] taken off the radius: an agent may stand in contact, give or take rounding
-_MOST = 200_000  # cells
+SKIN = 1e-6  # [m] subtracted from the radius: an agent may be in contact, up to rounding
+_MAX_CELLS = 200_000
 
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """N cells, row by row, and where the eight moves lead from each."""
+    """N cells, row by row, and the cells that the eight moves lead to."""
 
     centre: FloatArray  # (N, 2) [m]
-    after: IntArray  # (N, 8) the cell that a move leads to; -1: the disc cannot go there
+    after: IntArray  # (N, 8) the cell that a move leads to; -1: the move is not free
     cost: FloatArray  # (8,) [m] length of the moves
     side: float  # [m]
-    grid: CapsuleGrid  # what stands there, grown by the disc
+    grid: CapsuleGrid  # the obstacles, grown by the disc
 
     def joined(self, place: FloatArray, reach: float) -> IntArray:
-        """Cells with a way out whose centres lie within ``reach`` [m] of a place, nearest first.
+        """Return cells with a move and a centre within ``reach`` [m] of a place, nearest first.
 
-        Between the place and the centre the disc can go straight.
+        The disc can move straight between the place and the centre.
         """
         away = np.sqrt(np.sum((self.centre - place) ** 2, axis=1))
         near = np.flatnonzero((away <= reach) & (self.after >= 0).any(axis=1))
@@ -40,12 +40,12 @@ class Cells:
 
 
 def lay_cells(map: Map, side: float, radius: float, clearance: float) -> Cells:
-    """Cells of ``side`` [m] over the map's bounds, for a disc; larger ones in a huge arena.
+    """Return cells of ``side`` [m] over the map's bounds, for a disc; larger ones in a huge arena.
 
-    ``clearance`` [m] is kept on the moves, not on the way to the first cell.
+    ``clearance`` [m] is kept on the moves, not on the motion to the first cell.
     """
     low, high = np.array(map.bounds[:2]), np.array(map.bounds[2:])
-    side = max(side, math.sqrt(float(np.prod(high - low)) / _MOST))
+    side = max(side, math.sqrt(float(np.prod(high - low)) / _MAX_CELLS))
     nx, ny = (int(n) for n in np.maximum(np.ceil((high - low) / side - 1e-9), 1))
     corner = 0.5 * (low + high) - 0.5 * side * np.array([nx, ny])
     index = np.arange(nx * ny)
@@ -62,7 +62,7 @@ def lay_cells(map: Map, side: float, radius: float, clearance: float) -> Cells:
 def _free(
     grid: CapsuleGrid, capsules: FloatArray, first: IntArray, outside: IntArray, centre: FloatArray
 ) -> BoolArray:
-    """(N,) True where the disc can stand."""
+    """Whether the disc is free at each centre, (N,)."""
     free = np.zeros(len(centre), np.bool_)
     for n in range(len(centre)):
         x, y = centre[n, 0], centre[n, 1]
@@ -74,7 +74,7 @@ def _free(
 def _after(
     grid: CapsuleGrid, centre: FloatArray, free: BoolArray, steps: IntArray, nx: int, ny: int
 ) -> IntArray:
-    """(N, 8) as in `Cells`; a motion and its reverse are one question."""
+    """Return (N, 8) as in `Cells`; a motion and its reverse are tested once."""
     after = np.full((nx * ny, 8), -1)
     for n in range(nx * ny):
         for m in range(4):

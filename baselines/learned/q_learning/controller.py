@@ -1,13 +1,13 @@
-"""The table as a controller: it is shown waypoints in place of its goal."""
+"""The table as a controller, with waypoints in place of its goal."""
 
-from benchnav.navigation.navigator import PluginConfig
+from benchnav.navigation import PluginConfig
 
 from ...common.policy_runner import PilotedController
 from .table_pilot import QLearningConfig, TablePilot
 
 
 class QLearningController(PilotedController):
-    """The table of `q-learning`, shown the guide's target as its goal."""
+    """The table of `q-learning`, with the guide's target as its goal."""
 
     Config = QLearningConfig
 

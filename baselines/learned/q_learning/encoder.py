@@ -1,21 +1,21 @@
-"""What an agent senses, as the number of one of finitely many situations.
+"""Sensor readings of an agent as the number of one of finitely many situations.
 
-Seven rays, 30° apart over the front half, count by the time that the agent at its
-preferred speed takes to what they meet. A mover is taken nearer by what it comes closer
-meanwhile, and what lies behind the goal is not in the way of it.
+Seven rays, 30° apart over the front half, count by the time in which the agent at its
+preferred speed reaches the objects that they hit. A mover counts as nearer by the distance that
+it approaches meanwhile; obstacles behind the goal do not count.
 """
 
 import math
 
 import numpy as np
 
-from benchnav.arena.solid import Kind
+from benchnav.arena import Kind
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
-from benchnav.geometry.rotation import angle_of, cos_sin
+from benchnav.geometry import angle_of, cos_sin
 from benchnav.kernels import kernel
-from benchnav.navigation.observation import Observation
+from benchnav.navigation import Observation
 
-ENCODER = "q-7rays-1"  # rises when a situation's number comes to mean something else
+ENCODER = "q-7rays-1"  # must change if the meaning of a situation's number changes
 DIRECTIONS = np.array([-90.0, -60.0, -30.0, 0.0, 30.0, 60.0, 90.0])  # [deg] from the heading
 LEVELS = (9, 2, 5, 4, 4, 3, 3, 4)  # bearing, far, ahead, 30° left, right, aside left, right, mover
 SITUATIONS = math.prod(LEVELS)
@@ -31,14 +31,17 @@ _LEAD = 0.6  # [s] for which a mover is taken to come on
 
 
 def pick_rays(angle: FloatArray) -> IntArray:
-    """(7,) index of the ray (R,) [rad] nearest to each of `DIRECTIONS`, the first of equals."""
+    """Return the index (7,) of the ray (R,) [rad] nearest to each of `DIRECTIONS`.
+
+    Of equally near rays, it is the first.
+    """
     apart = np.abs(angle[None, :] - np.deg2rad(DIRECTIONS)[:, None])
     nearest: IntArray = np.argmin(np.round(apart, 9), axis=1).astype(np.int64)
     return nearest
 
 
 def situations(observation: Observation, speed: FloatArray, tolerance: FloatArray) -> IntArray:
-    """(B, A) the situation of every agent; 0 where it is not active.
+    """Return the situation (B, A) of every agent; 0 if it is inactive.
 
     Args:
         observation: with rays.
@@ -75,9 +78,9 @@ def encode(
             nearest, mover = _WARY, 0
             for k in range(7):
                 r = pick[k]
-                d, met = distance[b, i, r], kind[b, i, r]
-                way[k] = seconds(gx, gy, angle[r], d, met, approach[b, i, r], tolerance[b, i], pace)
-                if met in (_AGENT, _MOVER) and way[k] < nearest:
+                d, hit = distance[b, i, r], kind[b, i, r]
+                way[k] = seconds(gx, gy, angle[r], d, hit, approach[b, i, r], tolerance[b, i], pace)
+                if hit in (_AGENT, _MOVER) and way[k] < nearest:
                     nearest, mover = way[k], 1 + (k > 1) + (k > 4)
             far = 1 if gx * gx + gy * gy > (_NEAR * pace) ** 2 else 0
             out[b, i] = number(angle_of(gx, gy), far, way, mover)
@@ -85,23 +88,23 @@ def encode(
 
 @kernel
 def seconds(
-    gx: float, gy: float, angle: float, distance: float, met: int, approach: float,
+    gx: float, gy: float, angle: float, distance: float, hit: int, approach: float,
     tolerance: float, pace: float,
 ) -> float:  # fmt: skip
-    """Time [s] along a ray to what it meets; inf where the goal (gx, gy) [m] is reached before."""
+    """Return the time [s] along a ray to its hit; inf if the goal (gx, gy) [m] is nearer."""
     c, s = cos_sin(angle)
     along, across = gx * c + gy * s, gy * c - gx * s
     half = tolerance * tolerance - across * across
     if along > 0.0 and half > 0.0 and along - math.sqrt(half) <= distance:
         return math.inf
-    if met == _MOVER:
+    if hit == _MOVER:
         distance -= _LEAD * max(approach, 0.0)
     return distance / pace
 
 
 @kernel
 def number(bearing: float, far: int, way: FloatArray, mover: int) -> int:
-    """The mixed-radix number of a situation, digits as in `LEVELS`."""
+    """Return the mixed-radix number of a situation, digits as in `LEVELS`."""
     code = level(bearing, _BEARING)
     code = code * 2 + far
     code = code * 5 + level(way[3], _AHEAD)
@@ -114,7 +117,7 @@ def number(bearing: float, far: int, way: FloatArray, mover: int) -> int:
 
 @kernel
 def level(value: float, edges: FloatArray) -> int:
-    """How many of the rising ``edges`` the value has reached."""
+    """Return how many of the ascending ``edges`` the value has reached."""
     n = 0
     for k in range(len(edges)):
         n += value >= edges[k]

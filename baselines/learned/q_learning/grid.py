@@ -1,4 +1,4 @@
-"""Q-learning over the cells of a known arena: what it has learned holds for that arena alone."""
+"""Q-learning over the cells of a known arena: the result is valid for that arena only."""
 
 from collections.abc import Sequence
 from typing import ClassVar
@@ -7,25 +7,29 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import Navigator, Need, PluginConfig
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.randomness.agent_streams import agent_streams
+from benchnav.navigation import (
+    Briefing,
+    Map,
+    Navigator,
+    Need,
+    Observation,
+    PluginConfig,
+    agent_streams,
+)
 
 from ...common.approach import approach
 from .cells import Cells, lay_cells
 from .grid_learner import Schooling, follow, learn
 
-_GOAL = -1  # instead of a cell to go to
+_GOAL = -1  # target instead of a cell
 
 
 class QLearningGrid(Navigator):
     """Learns cell × move values to each goal before it starts, and follows them greedily.
 
-    It goes from cell centre to cell centre and knows nothing of what moves. Where the map's
-    revision rises it learns everything anew; where the map stays stale it does not.
-    Without a way over the cells it heads straight for the goal.
+    It moves from cell centre to cell centre and ignores movers. If the map's
+    revision rises, it learns again; if the map stays stale, it does not.
+    Without a path over the cells it heads straight for the goal.
     """
 
     class Config(PluginConfig):
@@ -51,14 +55,14 @@ class QLearningGrid(Navigator):
         for row, briefing in zip(rows, briefings, strict=True):
             self._rows[int(row)] = state = _Row(briefing, self.config)
             if briefing.map is not None:
-                everybody = np.arange(len(briefing))
-                state.learn(briefing.map, briefing.start, everybody)
+                all_agents = np.arange(len(briefing))
+                state.learn(briefing.map, briefing.start, all_agents)
 
     def act(self, observation: Observation) -> FloatArray:
         command = np.zeros((*observation.active.shape, 2))
         for world, row in enumerate(observation.rows):
             state, map = self._rows[int(row)], observation.maps[world]
-            count = len(state.told)
+            count = len(state.briefing)
             place = observation.position[world, :count]
             if map is not None and map.revision != state.revision:
                 state.learn(map, place, np.flatnonzero(observation.active[world, :count]))
@@ -67,23 +71,23 @@ class QLearningGrid(Navigator):
 
 
 class _Row:
-    """One world: what its agents learned, and where each is going."""
+    """One world: the learned values of its agents, and their targets."""
 
-    def __init__(self, told: Briefing, config: QLearningGrid.Config) -> None:
-        self.told, self.config = told, config
+    def __init__(self, briefing: Briefing, config: QLearningGrid.Config) -> None:
+        self.briefing, self.config = briefing, config
         self.revision = -1
-        self.going = np.full(len(told), _GOAL)  # (A,) cell
-        self._streams = agent_streams(told)
+        self.going = np.full(len(briefing), _GOAL)  # (A,) cell
+        self._streams = agent_streams(briefing)
         self._policy: dict[int, tuple[Cells, IntArray]] = {}  # agent → cell after each cell
 
     def learn(self, map: Map, place: FloatArray, agents: IntArray) -> None:
-        """Learn anew on ``map`` for agents that are at ``place`` (A, 2) [m]."""
+        """Learn again on ``map`` for agents at ``place`` (A, 2) [m]."""
         self.revision = map.revision
         laid: dict[tuple[float, float], Cells] = {}
         for agent in agents.tolist():
             self.going[agent] = _GOAL
             self._policy.pop(agent, None)
-            radius, wanted = float(self.told.radius[agent]), self.config.clearance
+            radius, wanted = float(self.briefing.radius[agent]), self.config.clearance
             for clearance in dict.fromkeys((wanted, 0.5 * wanted, 0.0)):
                 key = (radius, clearance)
                 if key not in laid:
@@ -92,10 +96,10 @@ class _Row:
                     break
 
     def _learn_agent(self, cells: Cells, place: FloatArray, agent: int) -> bool:
-        """False where no way is found."""
-        goal, tolerance = self.told.goal[agent], self.told.goal_tolerance
+        """Learn for one agent; return whether a path was found."""
+        goal, tolerance = self.briefing.goal[agent], self.briefing.goal_tolerance
         ends = cells.joined(goal, max(1.5 * cells.side, tolerance))
-        begin = cells.joined(place, max(3.0 * cells.side, float(self.told.radius[agent])))
+        begin = cells.joined(place, max(3.0 * cells.side, float(self.briefing.radius[agent])))
         if not len(ends) or not len(begin):
             return False
         c = self.config
@@ -112,9 +116,9 @@ class _Row:
         return True
 
     def velocity(self, place: FloatArray) -> FloatArray:
-        """(A, 2) [m/s] towards the centre that each goes to, the next one where it is reached."""
-        aim = self.told.goal.copy()
-        speed, dt = self.told.preferred_speed, self.told.dt
+        """Return velocities (A, 2) [m/s] towards target centres, the next ones where reached."""
+        aim = self.briefing.goal.copy()
+        speed, dt = self.briefing.preferred_speed, self.briefing.dt
         for agent, (cells, after) in self._policy.items():
             reach = max(0.5 * float(speed[agent]) * dt, 1e-3)
             for _ in range(3):
@@ -126,5 +130,5 @@ class _Row:
                 if offset @ offset > reach * reach:
                     break
                 self.going[agent] = after[cell]
-                aim[agent] = self.told.goal[agent]
+                aim[agent] = self.briefing.goal[agent]
         return approach(place, aim, speed, np.full(len(speed), dt))

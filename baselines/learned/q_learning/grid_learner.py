@@ -1,9 +1,9 @@
 """Tabular Q-learning over cell × move, towards one goal (Watkins & Dayan 1992).
 
-Rewards are minus the metres of a move, nothing is discounted, and a move leads where the
-map says. Values start at minus the way over empty cells, which is what shaping by that
-potential would do (Wiewiora 2003, JAIR 19), and never too low: so the greedy policy tries
-what it does not know (Sutton & Barto 2018, section 2.6).
+Rewards are minus the metres of a move, without discount, and a move leads where the
+map says. Values start at minus the distance over empty cells, which is equivalent to shaping by
+that potential (Wiewiora 2003, JAIR 19), and are never too low: so the greedy policy tries
+unknown moves (Sutton & Barto 2018, section 2.6).
 """
 
 from dataclasses import dataclass
@@ -18,41 +18,51 @@ from .cells import Cells
 
 @dataclass(frozen=True)
 class Schooling:
-    """How it learns."""
+    """The parameters of learning."""
 
     decisions: int  # moves tried in all
-    explore: float  # share of moves that are any instead of the best
+    explore: float  # share of random moves instead of the best
     rate: float  # step size
 
 
 def learn(
-    cells: Cells, ends: IntArray, goal: FloatArray, start: int, how: Schooling,
+    cells: Cells, ends: IntArray, goal: FloatArray, start: int, schooling: Schooling,
     rng: np.random.Generator,
 ) -> FloatArray:  # fmt: skip
-    """(N, 8) learned values; -inf where there is no such move.
+    """Return learned values (N, 8); -inf if there is no such move.
 
     Args:
-        cells: where it can go.
+        cells: the arena.
         ends: cells in which an episode ends with success.
         goal: (2,) [m].
         start: cell in which every other episode begins; the rest begin anywhere.
-        how: its parameters.
+        schooling: its parameters.
         rng: of exploration.
     """
     values, over = first_values(cells, goal), np.zeros(len(cells.centre), np.bool_)
     over[ends] = True
     values[over] = 0.0
     usable = np.flatnonzero((cells.after >= 0).any(axis=1))
-    count = how.decisions // 4 + 1
+    count = schooling.decisions // 4 + 1
     begin = np.where(np.arange(count) % 2 == 0, start, rng.choice(usable, count))
-    noise = rng.random(how.decisions)
+    noise = rng.random(schooling.decisions)
     longest = 4 * (len(usable) + 1)
-    episodes(values, cells.after, cells.cost, over, begin, noise, how.explore, how.rate, longest)
+    episodes(
+        values,
+        cells.after,
+        cells.cost,
+        over,
+        begin,
+        noise,
+        schooling.explore,
+        schooling.rate,
+        longest,
+    )
     return values
 
 
 def first_values(cells: Cells, goal: FloatArray) -> FloatArray:
-    """(N, 8) minus the metres of the move and of the way from there over empty cells to ``goal``.
+    """Return minus the metres (N, 8) of the move and of the path over empty cells to ``goal``.
 
     A goal cell's centre may lie a side and a half off the goal on either axis.
     """
@@ -67,7 +77,7 @@ def episodes(
     values: FloatArray, after: IntArray, cost: FloatArray, over: BoolArray, begin: IntArray,
     noise: FloatArray, explore: float, rate: float, longest: int,
 ) -> None:  # fmt: skip
-    """Episodes that begin in ``begin`` (E,), until the ``noise`` (T,) of their moves is used up."""
+    """Run episodes that begin in ``begin`` (E,), until the ``noise`` (T,) of moves is used up."""
     used = 0
     for e in range(len(begin)):
         cell = begin[e]
@@ -89,7 +99,7 @@ def episodes(
 
 @kernel
 def _best(values: FloatArray) -> int:
-    """The first of the highest."""
+    """Return the first of the highest values."""
     best = 0
     for m in range(1, len(values)):
         if values[m] > values[best]:
@@ -99,7 +109,7 @@ def _best(values: FloatArray) -> int:
 
 @kernel
 def follow(values: FloatArray, after: IntArray, over: BoolArray, start: int) -> int:
-    """Moves of the greedy policy from ``start`` to an end; -1 where it does not get there."""
+    """Return the greedy policy's number of moves from ``start`` to an end; -1 if it fails."""
     cell = start
     for k in range(len(values)):
         if over[cell]:

@@ -1,8 +1,8 @@
 """The update of tabular Q-learning for many transitions at once.
 
 Watkins & Dayan (1992), "Q-learning", Machine Learning 8: Q(s, a) moves towards
-r + γ max Q(s', ·), or towards r where the episode ended. Transitions of one step that
-share (s, a) count by the mean of their targets (not from the source), which makes the
+r + γ max Q(s', ·), or towards r if the episode ended. Transitions of one step that
+share (s, a) count by the mean of their targets (an addition), which makes the
 result independent of their order.
 """
 
@@ -15,11 +15,11 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 
 @dataclass
 class Learner:
-    """A table of values and how often each was updated."""
+    """A table of values, and the number of updates of each."""
 
     values: FloatArray  # (S, U)
     discount: float  # γ, per decision
-    visits: IntArray = field(init=False)  # (S, U) transitions seen
+    visits: IntArray = field(init=False)  # (S, U) number of transitions
 
     def __post_init__(self) -> None:
         self.visits = np.zeros(self.values.shape, np.int64)
@@ -32,12 +32,12 @@ class Learner:
 
         Args:
             state: (N,) situation before.
-            action: (N,) what was done.
-            reward: (N,) what it brought.
+            action: (N,) the chosen move.
+            reward: (N,) of the move.
             after: (N,) situation afterwards.
-            ended: (N,) True where nothing follows.
+            ended: (N,) whether the attempt ended.
             rate: step size for one transition; n of them move the value by 1 - (1 - rate)^n,
-                and the first of all by everything.
+                and the first transition sets the value.
         """
         target = reward + self.discount * np.where(ended, 0.0, self.values[after].max(axis=1))
         cell, where = np.unique(state * self.values.shape[1] + action, return_inverse=True)
@@ -52,7 +52,7 @@ class Learner:
 def chosen(
     values: FloatArray, state: IntArray, explore: float, rng: np.random.Generator
 ) -> IntArray:
-    """(N,) the greedy action in each state, or with probability ``explore`` any."""
+    """Return the greedy action (N,) in each state, or a random one with probability ``explore``."""
     best = values[state].argmax(axis=1)
     anything = rng.integers(values.shape[1], size=len(state))
     return np.where(rng.random(len(state)) < explore, anything, best)

@@ -1,16 +1,16 @@
-"""A table over what is sensed, learned beforehand."""
+"""A table over sensor readings, learned beforehand."""
 
-from benchnav.navigation.navigator import PluginConfig
+from benchnav.navigation import PluginConfig
 
 from ...common.policy_runner import PilotedNavigator
 from .table_pilot import QLearningConfig, TablePilot
 
 
 class QLearning(PilotedNavigator):
-    """Looks up the best of fifteen moves for the situation that seven rays and the goal make.
+    """Looks up the best of fifteen moves for the situation of seven rays and the goal.
 
     Tabular Q-learning (Watkins & Dayan 1992; Sutton & Barto 2018, section 6.5): no memory,
-    no map, and no command between those of the table.
+    no map, and only the commands of the table.
     """
 
     Config = QLearningConfig

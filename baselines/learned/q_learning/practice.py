@@ -1,39 +1,39 @@
-"""Worlds in which the table acts and learns, each starting over when nobody is left in it."""
+"""Training worlds of the table; each restarts if no agent is active in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from benchnav.arena.world import Afterwards, ContactRule, World
+from benchnav.arena import Afterwards, ContactRule, World
 from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.episode.episode import Status
+from benchnav.episode import Status
 from benchnav.sensors.sense import RAYS, ray_angles, sense
 from benchnav.world.simulation import Simulation
 
 from .encoder import encode, pick_rays
 from .learner import Learner, chosen
-from .moves import MOST_TURN, twists
+from .moves import MAX_TURN, twists
 
 _ACTIVE, _ARRIVED, _ENDED = int(Status.ACTIVE), int(Status.ARRIVED), int(Status.ENDED)
 
 
 @dataclass(frozen=True)
 class Reward:
-    """What counts, per decision."""
+    """The terms of the reward, per decision."""
 
     arrival: float = 1.0
     hit: float = -3.0
-    metre: float = 0.03  # [1/m] nearer to the goal
+    metre: float = 0.03  # [1/m] of approach to the goal
     decision: float = -0.004
     turning: float = -0.002  # at the full turn rate
 
 
 class Practice:
-    """B worlds of which every agent is driven by the table.
+    """B worlds in which the table drives every agent.
 
-    Contacts must end an attempt and make the agent vanish: then agents, bodies and clocks
-    are all that there is to put back when a world starts over.
+    Contacts must end an attempt and make the agent vanish: then a restart only has to reset agents,
+    bodies and clocks.
     """
 
     def __init__(self, worlds: Sequence[World], reward: Reward) -> None:
@@ -43,10 +43,9 @@ class Practice:
         if sensor is None or rules.contact != ContactRule.END or rules.on_end != Afterwards.VANISH:
             raise ValueError("The worlds to train in must have rays, and a contact must end all.")
         self._fresh = s.agents.copy(), s.bodies.copy(), s.records.copy()
-        self._ended = np.zeros(3, np.int64)  # agents that arrived, hit something, did neither
         self._pick = pick_rays(ray_angles(sensor))
         self._speed = s.agents["preferred_speed"].copy()
-        self._turn = np.minimum(s.agents["max_turn_rate"], MOST_TURN)
+        self._turn = np.minimum(s.agents["max_turn_rate"], MAX_TURN)
         self._tolerance = np.full((s.B, s.A), worlds[0].rules.goal_tolerance)
         self._index = np.broadcast_to(np.arange(s.A), (s.B, s.A))
         self._twist = np.ones((s.B, s.A), np.bool_)
@@ -55,7 +54,7 @@ class Practice:
         self, learner: Learner, decisions: int, explore: float, rate: float,
         rng: np.random.Generator,
     ) -> int:  # fmt: skip
-        """Act and learn for so many decisions. Returns from how many transitions."""
+        """Act and learn for ``decisions`` decisions. Return the number of transitions."""
         active, state, steps = self._active(), self._situations(), 0
         for _ in range(decisions):
             move = np.zeros(active.shape, np.int64)
@@ -73,20 +72,11 @@ class Practice:
         return steps
 
     def restart(self, patience: int) -> None:
-        """Start worlds over in which nobody is active, or that took ``patience`` decisions."""
+        """Restart worlds without an active agent, or after ``patience`` decisions."""
         s = self.simulation
         over = np.flatnonzero(~self._active().any(axis=1) | (s.steps_done >= patience))
-        status = s.status[over][s.agents["evaluated"][over]]
-        arrived, hit = int((status == _ARRIVED).sum()), int((status == _ENDED).sum())
-        self._ended += (arrived, hit, status.size - arrived - hit)
         for live, fresh in zip((s.agents, s.bodies, s.records), self._fresh, strict=True):
             live[over] = fresh[over]
-
-    def outcome(self) -> tuple[float, float]:
-        """Shares of the agents that arrived and that hit something, since this was last asked."""
-        arrived, hit, _ = self._ended / max(int(self._ended.sum()), 1)
-        self._ended[:] = 0
-        return float(arrived), float(hit)
 
     def _active(self) -> BoolArray:
         s = self.simulation
@@ -99,7 +89,7 @@ class Practice:
         return distance
 
     def _reward(self, away: FloatArray, command: FloatArray) -> FloatArray:
-        """(B, A) for the decision that began ``away`` (B, A) [m] from the goals."""
+        """Return the reward (B, A) of a decision that began ``away`` (B, A) [m] from the goals."""
         s, r = self.simulation, self.reward
         turned = np.abs(command[..., 1]) / self._turn
         reward = r.decision + r.turning * turned + r.metre * (away - self._distance())

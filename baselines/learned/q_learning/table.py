@@ -1,4 +1,4 @@
-"""What training leaves: a value of every move that was tried in every situation that was met."""
+"""The result of training: a value for every tried move in every visited situation."""
 
 import json
 from collections.abc import Mapping
@@ -15,20 +15,20 @@ from .encoder import ENCODER, SITUATIONS
 from .learner import Learner
 from .moves import MOVES
 
-_UNKNOWN = len(MOVES) - 1  # in a situation that was never met: stand and turn
+_UNKNOWN = len(MOVES) - 1  # in a situation without a value: stand and turn
 
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Values of the M situations that were met."""
+    """The values of the M visited situations."""
 
-    situation: IntArray  # (M,) rising
+    situation: IntArray  # (M,) ascending
     values: FloatArray  # (M, U), float32 in the file; -inf: never tried
     about: dict[str, str]  # encoder, moves, seed, steps, seconds
 
     @classmethod
     def of(cls, learner: Learner, **about: object) -> "Table":
-        """What was learned, and facts ``about`` the training."""
+        """Return the learned values, with facts ``about`` the training."""
         met = np.flatnonzero(learner.visits.any(axis=1))
         values = np.where(learner.visits[met] > 0, learner.values[met], -np.inf)
         facts = {"encoder": ENCODER, "moves": _moves(), **about}
@@ -36,7 +36,7 @@ class Table:
         return cls(met.astype(np.int64), rounded, {k: str(v) for k, v in facts.items()})
 
     def policy(self) -> IntArray:
-        """(S,) the best move of every situation."""
+        """Return the best move (S,) of every situation."""
         best = np.full(SITUATIONS, _UNKNOWN)
         best[self.situation] = self.values.argmax(axis=1)
         return best
@@ -52,10 +52,10 @@ def save(path: Path, table: Table) -> None:
 
 
 def load(path: Path) -> Table:
-    """The table in a file.
+    """Return the table in a file.
 
     Raises:
-        PluginError: there is none, it is cut short, or it is of another kind.
+        PluginError: there is none, it is truncated, or it is of another kind.
     """
     file = read_tensors(path)
     _check_facts(path, file.about)
@@ -72,15 +72,15 @@ def _moves() -> str:
 def _wrong(path: Path, got: str) -> PluginError:
     return PluginError(
         "The table of q-learning must be a file that"
-        f" 'python -m benchnav_baselines.learned.q_learning.train' wrote. Got {got}: {path}."
+        f" 'benchnav train' wrote with the trainer q-learning. Got {got}: {path}."
     )
 
 
 def _check_facts(path: Path, about: Mapping[str, str]) -> None:
-    """The metadata must be of this encoder and these moves."""
-    for name, wanted in (("encoder", ENCODER), ("moves", _moves())):
-        if about.get(name) != wanted:
-            raise _wrong(path, f"the {name} {about.get(name)!r} instead of {wanted!r}")
+    """Raise PluginError unless the metadata is of this encoder and these moves."""
+    for name, expected in (("encoder", ENCODER), ("moves", _moves())):
+        if about.get(name) != expected:
+            raise _wrong(path, f"the {name} {about.get(name)!r} instead of {expected!r}")
 
 
 def _array(path: Path, file: TensorFile, name: str, kind: type) -> AnyArray:

@@ -1,4 +1,4 @@
-"""The table at work in many rows."""
+"""The table as a pilot of many rows."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,14 +7,11 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.navigator import Need, PluginConfig, Training
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.row_table import RowTable
+from benchnav.navigation import Briefing, Need, Observation, PluginConfig, RowTable, Training
 
 from ...common.policy_runner import Pilot
 from .encoder import situations
-from .moves import MOST_TURN, twists
+from .moves import MAX_TURN, twists
 from .table import load
 
 SHIPPED = Path(__file__).parent / "weights" / "leaders.safetensors"
@@ -34,7 +31,7 @@ class TablePilot(Pilot):
     def __init__(self, config: QLearningConfig) -> None:
         table = load(SHIPPED if config.table is None else config.table)
         self._policy, self._about = table.policy(), table.about
-        self._told = RowTable()
+        self._table = RowTable()
 
     @property
     def needs(self) -> frozenset[Need]:
@@ -50,20 +47,20 @@ class TablePilot(Pilot):
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):
-            self._told.put(
+            self._table.put(
                 int(row),
                 speed=briefing.preferred_speed,
-                turn=np.minimum(briefing.max_turn_rate, MOST_TURN),
+                turn=np.minimum(briefing.max_turn_rate, MAX_TURN),
                 tolerance=np.full(len(briefing), briefing.goal_tolerance),
             )
 
-    def tolerance(self, seen: Observation) -> FloatArray:
-        return self._kept("tolerance", seen)
+    def tolerance(self, observation: Observation) -> FloatArray:
+        return self._kept("tolerance", observation)
 
-    def twists(self, seen: Observation, tolerance: FloatArray) -> FloatArray:
-        speed, turn = self._kept("speed", seen), self._kept("turn", seen)
-        return twists(self._policy[situations(seen, speed, tolerance)], speed, turn)
+    def twists(self, observation: Observation, tolerance: FloatArray) -> FloatArray:
+        speed, turn = self._kept("speed", observation), self._kept("turn", observation)
+        return twists(self._policy[situations(observation, speed, tolerance)], speed, turn)
 
-    def _kept(self, name: str, seen: Observation) -> FloatArray:
-        values: FloatArray = self._told.take(name, seen.rows, seen.active.shape[1])
+    def _kept(self, name: str, observation: Observation) -> FloatArray:
+        values: FloatArray = self._table.take(name, observation.rows, observation.active.shape[1])
         return values

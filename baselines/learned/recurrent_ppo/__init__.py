@@ -1,1 +1,1 @@
-"""RecurrentPPO with collision prediction: recipes, training, and the navigators that ship."""
+"""RecurrentPPO with collision prediction: recipes, training, and the shipped navigators."""

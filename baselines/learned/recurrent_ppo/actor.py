@@ -1,6 +1,6 @@
-"""The trained policy's mean action, the same bits for every batch size and order of agents.
+"""The trained policy's mean action, with the same bits for every batch size and order of agents.
 
-Matrix products of a library choose their order of summation by the size of the batch;
+The summation order of a library's matrix product depends on the size of the batch;
 here each agent's sums run over the inputs in order. Neither torch nor an extra is needed.
 """
 
@@ -19,7 +19,7 @@ _BLOCK = 4  # agents that share a pass over the weights
 
 @dataclass(frozen=True, eq=False)
 class Lstm:
-    """One layer; gates in torch's order: input, forget, cell, output."""
+    """One LSTM layer; gates in torch's order: input, forget, cell, output."""
 
     weight: Float32Array  # (D + H, 4 H): of the input, then of the hidden state
     bias: Float32Array  # (4 H,) both of torch's
@@ -27,7 +27,7 @@ class Lstm:
 
 @dataclass(frozen=True, eq=False)
 class Dense:
-    """One layer."""
+    """One dense layer."""
 
     weight: Float32Array  # (D, H)
     bias: Float32Array  # (H,)
@@ -50,16 +50,16 @@ class Actor:
 
     @property
     def layers(self) -> list[Lstm | Dense]:
-        """All of them, from the observation to the action."""
+        """All layers, from the observation to the action."""
         return [*self.lstm, *self.dense, self.output]
 
     @property
     def state_size(self) -> int:
-        """Numbers of memory per agent: hidden and cell of every layer."""
+        """The number of memory values per agent: hidden and cell state of every layer."""
         return sum(2 * (len(layer.bias) // 4) for layer in self.lstm)
 
     def decide(self, x: Float32Array, state: Float32Array) -> Float32Array:
-        """(N, 2) mean actions of observations (N, D); advances ``state`` (N, state_size)."""
+        """Return mean actions (N, 2) of observations (N, D); advance ``state`` (N, state_size)."""
         first = 0
         for layer in self.lstm:
             size = len(layer.bias) // 4
@@ -79,7 +79,7 @@ def _count(tensors: Mapping[str, Float32Array], kind: str) -> int:
 
 
 def affine(x: Float32Array, weight: Float32Array, bias: Float32Array) -> Float32Array:
-    """Of x (N, D) · weight (D, H) + bias (H,): each row summed over D in order."""
+    """Return x (N, D) · weight (D, H) + bias (H,): each row summed over D in order."""
     missing = -len(x) % _BLOCK
     padded = np.concatenate([x, np.zeros((missing, x.shape[1]), np.float32)])
     out = np.empty((len(padded), len(bias)), np.float32)

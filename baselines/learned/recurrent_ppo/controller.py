@@ -1,15 +1,15 @@
-"""The learned navigators as controllers: the policy follows waypoints in place of its goal."""
+"""The learned navigators as controllers, with waypoints in place of their goals."""
 
 from typing import ClassVar
 
-from benchnav.navigation.navigator import PluginConfig
+from benchnav.navigation import PluginConfig
 
 from ...common.policy_runner import PilotedController
 from .policy_at_work import PolicyConfig, pilot_of
 
 
 class RecurrentPPOController(PilotedController):
-    """The policy of `recurrent-ppo`, shown the guide's target as its goal (`..waypoint`)."""
+    """The policy of `recurrent-ppo`, with the guide's target as its goal (`..waypoint`)."""
 
     Config = PolicyConfig
     shipped: ClassVar[str] = "recurrent-ppo.safetensors"
@@ -20,6 +20,6 @@ class RecurrentPPOController(PilotedController):
 
 
 class RecurrentPPOPlusController(RecurrentPPOController):
-    """The policy of `recurrent-ppo-plus`, shown the guide's target as its goal."""
+    """The policy of `recurrent-ppo-plus`, with the guide's target as its goal."""
 
     shipped: ClassVar[str] = "recurrent-ppo-plus.safetensors"

@@ -1,8 +1,8 @@
-"""What an agent does that stands where it cannot get on: it tries another way for a while.
+"""Detours of agents that make no progress: they try another way for a while.
 
-Foresight stops who would collide, and a policy that was never stopped while it learned may
-insist. After `patience` the agent drives where there is room, rather towards its goal than
-away from it, and then lets the policy try again from there.
+Foresight stops agents that would collide, and a policy that was never stopped in training may
+insist. After `patience` the agent drives where there is free space, preferably towards its goal,
+and then lets the policy try again from there.
 """
 
 import math
@@ -10,78 +10,77 @@ import math
 import numpy as np
 
 from benchnav.arrays import AnyArray, FloatArray, IntArray
-from benchnav.envs.encoders.encoder import Bodies
-from benchnav.geometry.capsule import nearest_on_segment
+from benchnav.envs import Bodies
+from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.row_table import RowTable
+from benchnav.navigation import Briefing, Observation, RowTable
 
-PLACE = 0.5  # [m] within which an agent has not got on
-LASTS = 2.0  # [s] of a first detour; each further one from about there lasts so much longer,
-MOST = 4  # up to so many times
-NEAR = 2.0  # [m] within which the place of the last detour is about there
-ROOM = 3.0  # [m] of a clear way beyond which more of it is no better
-STRIDE = 0.1  # [m] between the places on a way that are tested
-MARGIN = 0.05  # [m] that the way must be clear beyond touching; twice as much beside others
+PLACE = 0.5  # [m] an agent that stays within this distance makes no progress
+LASTS = 2.0  # [s] of a first detour; each further one near it lasts longer by this time,
+MAX_FACTOR = 4  # up to this multiple
+NEAR = 2.0  # [m] distance within which a detour is near the last one
+ROOM = 3.0  # [m] of a clear way, beyond which more is no better
+STRIDE = 0.1  # [m] between tested positions on a way
+MARGIN = 0.05  # [m] of clearance beyond touching; twice as much beside agents and movers
 COURSES = 24
-AGAIN = 2.0  # [m] of room that the last course must have more to be taken again
+AGAIN = 2.0  # [m] of additional space that the last course needs to be chosen again
 _X, _Y, _WAITED, _LEFT, _COURSE, _TRIES, _LAST_X, _LAST_Y = range(8)
 
 
 class Detours:
-    """How long each agent has stood, and who is on a detour.
+    """The standing times of agents, and their detours.
 
     Args:
-        patience: [s] that an agent stands before it tries another way.
+        patience: [s] of standing before an agent tries another way.
     """
 
     def __init__(self, patience: float) -> None:
         self.patience = patience
         self._kept = RowTable()
 
-    def reset(self, row: int, told: Briefing) -> None:
-        """Everybody of the world ``row`` is about to begin."""
-        state = np.zeros((len(told), 8))
-        state[:, _X : _Y + 1] = told.start
+    def reset(self, row: int, briefing: Briefing) -> None:
+        """Reset all agents of the world ``row``."""
+        state = np.zeros((len(briefing), 8))
+        state[:, _X : _Y + 1] = briefing.start
         state[:, _LAST_X:] = math.inf
-        self._kept.put(row, state=state, dt=np.full(len(told), told.dt))
+        self._kept.put(row, state=state, dt=np.full(len(briefing), briefing.dt))
 
-    def steer(self, seen: Observation, bodies: Bodies, command: FloatArray) -> None:
-        """Replace the twists ``command`` (B, A, 2) of who is on a detour.
+    def steer(self, observation: Observation, bodies: Bodies, command: FloatArray) -> None:
+        """Replace the twists ``command`` (B, A, 2) of agents on a detour.
 
         Args:
-            seen: with neighbours and edges.
+            observation: with neighbours and edges.
             bodies: of the agents.
             command: twists [m/s, rad/s].
         """
-        near, edges = seen.neighbours, seen.edges
+        near, edges = observation.neighbours, observation.edges
         assert near is not None  # noqa: S101 - declared by the pilot
         assert edges is not None  # noqa: S101
-        agents = seen.active.shape[1]
-        state = self._kept.take("state", seen.rows, agents)
-        dt = self._kept.take("dt", seen.rows, agents)
+        agents = observation.active.shape[1]
+        state = self._kept.take("state", observation.rows, agents)
+        dt = self._kept.take("dt", observation.rows, agents)
 
         def flat(array: AnyArray) -> AnyArray:
             return array.reshape(-1, *array.shape[2:])
 
         _detour(
-            np.flatnonzero(seen.active), self.patience, flat(dt), flat(seen.position),
-            flat(seen.heading), flat(seen.goal), flat(bodies.radius), flat(bodies.max_speed),
-            flat(bodies.max_turn_rate), flat(near.position), flat(near.radius), flat(near.count),
+            np.flatnonzero(observation.active), self.patience, flat(dt), flat(observation.position),
+            flat(observation.heading), flat(observation.goal), flat(bodies.radius),
+            flat(bodies.max_speed), flat(bodies.max_turn_rate),
+            flat(near.position), flat(near.radius), flat(near.count),
             flat(edges.start), flat(edges.end), flat(edges.count), flat(state), flat(command),
         )  # fmt: skip
-        self._kept.write("state", seen.rows, state)
+        self._kept.write("state", observation.rows, state)
 
 
 @kernel
 def _detour(
-    who: IntArray, patience: float, dt: FloatArray, position: FloatArray, heading: FloatArray,
+    indices: IntArray, patience: float, dt: FloatArray, position: FloatArray, heading: FloatArray,
     goal: FloatArray, radius: FloatArray, max_speed: FloatArray, max_turn: FloatArray,
     other: FloatArray, other_radius: FloatArray, others: IntArray, first: FloatArray,
     second: FloatArray, edges: IntArray, state: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    for i in who:
+    for i in indices:
         x, y, s = position[i, 0], position[i, 1], state[i]
         if s[_LEFT] <= 0.0:
             if math.hypot(x - s[_X], y - s[_Y]) > PLACE:
@@ -90,7 +89,7 @@ def _detour(
             if s[_WAITED] <= patience:
                 continue
             again = math.hypot(x - s[_LAST_X], y - s[_LAST_Y]) < NEAR
-            s[_TRIES] = min(s[_TRIES] + 1.0, float(MOST)) if again else 1.0
+            s[_TRIES] = min(s[_TRIES] + 1.0, float(MAX_FACTOR)) if again else 1.0
             s[_LAST_X], s[_LAST_Y] = x, y
             s[_COURSE] = _course(
                 x, y, math.atan2(goal[i, 1] - y, goal[i, 0] - x), s[_COURSE], again, radius[i],
@@ -110,7 +109,7 @@ def _course(
     x: float, y: float, ahead: float, last: float, again: bool, radius: float, other: FloatArray,
     other_radius: FloatArray, others: int, first: FloatArray, second: FloatArray, edges: int,
 ) -> float:  # fmt: skip
-    """[rad] that of 24 courses which has most room, and leads rather to the goal ``ahead``."""
+    """Return the best of 24 courses [rad] by free space and direction to the goal ``ahead``."""
     best, chosen = -math.inf, ahead
     for k in range(COURSES):
         course = ahead + 2.0 * math.pi * k / COURSES
@@ -129,7 +128,7 @@ def _room(
     x: float, y: float, course: float, radius: float, other: FloatArray, other_radius: FloatArray,
     others: int, first: FloatArray, second: FloatArray, edges: int,
 ) -> float:  # fmt: skip
-    """[m] of a straight way on which nothing that is seen now is touched."""
+    """Return the length [m] of a straight way without contact, by the current readings."""
     for step in range(round(ROOM / STRIDE)):
         way = STRIDE * (step + 1)
         px, py = x + way * math.cos(course), y + way * math.sin(course)

@@ -1,10 +1,10 @@
-"""Looks ahead before a learned command is obeyed, and corrects it where it would collide.
+"""Collision prediction: corrects a learned command that would collide.
 
-What stands is predicted to stand and everybody to keep their velocity (the assumption of
-velocity obstacles, Eq. 22); a dynamic obstacle may also turn back at once, which is
-weighed less. A twist is held for a while, 0.3 s or longer where that is safer, and its
-course then kept. A twist of a small lattice replaces the learned one where the sum of its
-danger and of its difference is less. The constants were tuned by hand: some 80 settings,
+Static obstacles are predicted to stay, and all others to keep their velocity (the assumption of
+velocity obstacles, Eq. 22); a dynamic obstacle may also turn back at once, with a lower
+weight. A twist is held for a while, 0.3 s or longer where that is safer, and then the
+course is kept. A twist of a small lattice replaces the learned one if the sum of its
+danger and of its difference is smaller. The constants were tuned by hand: some 80 settings,
 each on 20 to 1,500 validation worlds of `leaders/…`, `corridor/bidirectional` and
 `crowd/circle-crossing`.
 """
@@ -13,50 +13,51 @@ import math
 
 import numpy as np
 
-from benchnav.arena.solid import Kind
+from benchnav.arena import Kind
 from benchnav.arrays import ByteArray, FloatArray, IntArray
-from benchnav.envs.encoders.encoder import Bodies
-from benchnav.geometry.capsule import nearest_on_segment
+from benchnav.envs import Bodies
+from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel
-from benchnav.navigation.observation import Observation
+from benchnav.navigation import Observation
 
-HORIZON = 2.0  # [s] looked ahead at agents and dynamic obstacles
-FIXED = 1.5  # [s] at what stands, and at obstacles that turn back
+HORIZON = 2.0  # [s] of prediction for agents and dynamic obstacles
+FIXED = 1.5  # [s] for static obstacles, and for obstacles that turn back
 HELD = 0.3  # [s] that a twist is held, once or several times, before the course is kept
-TICK = 0.1  # [s] between positions that are tested
-MARGIN = 0.05  # [m] kept beyond touching; twice as much from dynamic obstacles
-HIT = 4.0  # danger of touching something at the end of the horizon,
-SOONER = 8.0  # and so much more if at once
-BACK = 4.0  # danger of touching at once what would have to turn back for that
+TICK = 0.1  # [s] between tested positions
+MARGIN = 0.05  # [m] of clearance beyond touching; twice as much from dynamic obstacles
+HIT = 4.0  # danger of a contact at the end of the horizon,
+SOONER = 8.0  # and the additional danger of an immediate contact
+BACK = 4.0  # danger of an immediate contact with an obstacle that would have to turn back
 SPEEDS = 5
 TURNS = 9
 _MOVER = int(Kind.DYNAMIC)
 
 
 def foresee(
-    seen: Observation,
+    observation: Observation,
     bodies: Bodies,
     command: FloatArray,
     tolerance: FloatArray,
     hold: float = HELD,
 ) -> FloatArray:
-    """The twists ``command`` (B, A, 2), corrected where they would collide.
+    """Return the twists ``command`` (B, A, 2), corrected where they would collide.
 
     Args:
-        seen: with neighbours and edges.
+        observation: with neighbours and edges.
         bodies: of the agents.
         command: twists [m/s, rad/s].
-        tolerance: (B, A) [m] of the goal; nothing behind the goal matters.
-        hold: [s] that a twist may be held at most; multiples of `HELD` up to it are tried.
+        tolerance: (B, A) [m] of the goal; obstacles behind the goal do not matter.
+        hold: [s] largest duration of a twist; multiples of `HELD` up to it are tried.
     """
-    assert seen.neighbours is not None  # noqa: S101 - declared by the encoder
-    assert seen.edges is not None  # noqa: S101
+    assert observation.neighbours is not None  # noqa: S101 - declared by the encoder
+    assert observation.edges is not None  # noqa: S101
     out = command.reshape(-1, 2).copy()
     agents = len(out)
-    near, edges = seen.neighbours, seen.edges
+    near, edges = observation.neighbours, observation.edges
     _correct(
-        np.flatnonzero(seen.active), seen.position.reshape(agents, 2), seen.heading.reshape(agents),
-        seen.goal.reshape(agents, 2), tolerance.reshape(agents), bodies.radius.reshape(agents),
+        np.flatnonzero(observation.active), observation.position.reshape(agents, 2),
+        observation.heading.reshape(agents), observation.goal.reshape(agents, 2),
+        tolerance.reshape(agents), bodies.radius.reshape(agents),
         bodies.max_speed.reshape(agents), bodies.max_turn_rate.reshape(agents),
         near.position.reshape(agents, -1, 2), near.velocity.reshape(agents, -1, 2),
         near.radius.reshape(agents, -1), near.kind.reshape(agents, -1), near.count.reshape(agents),
@@ -68,13 +69,13 @@ def foresee(
 
 @kernel
 def _correct(
-    who: IntArray, position: FloatArray, heading: FloatArray, goal: FloatArray,
+    indices: IntArray, position: FloatArray, heading: FloatArray, goal: FloatArray,
     tolerance: FloatArray, radius: FloatArray, max_speed: FloatArray, max_turn: FloatArray,
     other: FloatArray, velocity: FloatArray, other_radius: FloatArray, kind: ByteArray,
     others: IntArray, first: FloatArray, second: FloatArray, edges: IntArray, holds: int,
     out: FloatArray,
 ) -> None:  # fmt: skip
-    for i in who:
+    for i in indices:
         v, w = out[i, 0], out[i, 1]
         best = _danger(
             v, w, position[i], heading[i], goal[i], tolerance[i], radius[i], other[i], velocity[i],
@@ -105,7 +106,7 @@ def _danger(
     radius: float, other: FloatArray, velocity: FloatArray, other_radius: FloatArray,
     kind: ByteArray, others: int, first: FloatArray, second: FloatArray, edges: int, holds: int,
 ) -> float:  # fmt: skip
-    """Of a twist, held as long as is safest."""
+    """Return the danger of a twist, held for the safest duration."""
     least = math.inf
     for k in range(1, holds + 1):
         least = min(
@@ -126,7 +127,7 @@ def _danger_held(
     radius: float, other: FloatArray, velocity: FloatArray, other_radius: FloatArray,
     kind: ByteArray, others: int, first: FloatArray, second: FloatArray, edges: int, held: float,
 ) -> float:  # fmt: skip
-    """Of a twist: 0 where it touches nothing before the horizon or the goal."""
+    """Return the danger of a twist: 0 without contact before the horizon or the goal."""
     x, y, angle = position[0], position[1], heading
     back = 0.0
     for k in range(round(HORIZON / TICK)):

@@ -1,17 +1,17 @@
-"""Navigators whose weights were learned: the paper's, and one that is free to see more."""
+"""Navigators with learned weights: the paper's, and one with more sensors."""
 
 from typing import ClassVar
 
-from benchnav.navigation.navigator import PluginConfig
+from benchnav.navigation import PluginConfig
 
 from ...common.policy_runner import PilotedNavigator
 from .policy_at_work import DriverConfig, pilot_of
 
 
 class RecurrentPPO(PilotedNavigator):
-    """The paper's method: PPO with LSTM, 7 forward rays, and velocity obstacles of what they meet.
+    """The paper's method: PPO with LSTM, 7 forward rays, and velocity obstacles of their hits.
 
-    The policy sees by its rays alone, and what they meet is all that corrects it.
+    The policy senses by its rays only, and only what they hit corrects it.
     Deterministic: the mean of the Gaussian over (forward speed, turn rate).
     """
 
@@ -24,6 +24,6 @@ class RecurrentPPO(PilotedNavigator):
 
 
 class RecurrentPPOPlus(RecurrentPPO):
-    """RecurrentPPO that sees all round, told its neighbours' velocities, and steers smoothly."""
+    """RecurrentPPO with a view all round and neighbours' velocities, which steers smoothly."""
 
     shipped: ClassVar[str] = "recurrent-ppo-plus.safetensors"

@@ -1,4 +1,4 @@
-"""The policy at work in many rows."""
+"""The policy as a pilot of many rows."""
 
 import math
 from collections.abc import Sequence
@@ -9,15 +9,11 @@ from typing import Any
 import numpy as np
 from pydantic import Field
 
-from benchnav.arena.sensing import Sensing
+from benchnav.arena import Sensing
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.envs.encoders.catalogue import encoder
-from benchnav.envs.encoders.encoder import Bodies
+from benchnav.envs import Bodies, encoder
 from benchnav.envs.encoders.paper import RANGE, RAYS
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.navigator import Need, PluginConfig, Training
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.row_table import RowTable
+from benchnav.navigation import Briefing, Need, Observation, PluginConfig, RowTable, Training
 
 from ...common.policy_runner import Pilot
 from .actor import Actor
@@ -31,7 +27,7 @@ _LIMITS = ("radius", "max_speed", "max_turn_rate")
 
 
 class PolicyConfig(PluginConfig):
-    """Which weights, and whether to look ahead."""
+    """The choice of weights, and of foresight."""
 
     weights: str = Field("", description="file that `benchnav train` wrote; its own if empty")
     foresight: bool = Field(True, description="correct twists that would collide")
@@ -41,7 +37,7 @@ class PolicyConfig(PluginConfig):
 
 
 class DriverConfig(PolicyConfig):
-    """The same for who finds the way alone."""
+    """The same, for an agent without a path to follow."""
 
     patience: float = Field(
         4.0, ge=0, description="[s] of standing after which to try another way; 0: never"
@@ -49,17 +45,17 @@ class DriverConfig(PolicyConfig):
 
 
 class PolicyPilot(Pilot):
-    """The actor with its encoder, and what each agent remembers.
+    """The actor with its encoder, and the memory of each agent.
 
     Deterministic: the mean of the Gaussian over (forward speed, turn rate).
 
     Args:
-        weights: file that `benchnav train` wrote.
+        weights: file of `benchnav train`.
         foresight: correct twists that would collide.
-        hold: [s] that a twist may be held at most.
+        hold: [s] largest duration of a twist.
         patience: [s] of standing after which to try another way; 0: never.
 
-    Who sees by rays looks ahead with what these meet.
+    A policy with rays predicts collisions only with what its rays hit.
     """
 
     def __init__(self, weights: Path, foresight: bool, hold: float, patience: float = 0.0) -> None:
@@ -107,14 +103,14 @@ class PolicyPilot(Pilot):
                 if part is not None:
                     part.reset(int(row), briefing)
 
-    def tolerance(self, seen: Observation) -> FloatArray:
-        return self._told("tolerance", seen)
+    def tolerance(self, observation: Observation) -> FloatArray:
+        return self._limit("tolerance", observation)
 
-    def twists(self, seen: Observation, tolerance: FloatArray) -> FloatArray:
-        active, rows = seen.active, seen.rows
-        radius, speed, turn = (self._told(name, seen) for name in _LIMITS)
+    def twists(self, observation: Observation, tolerance: FloatArray) -> FloatArray:
+        active, rows = observation.active, observation.rows
+        radius, speed, turn = (self._limit(name, observation) for name in _LIMITS)
         bodies = Bodies(radius, speed, turn)
-        encoded = self._encoder.encode(seen, bodies)
+        encoded = self._encoder.encode(observation, bodies)
         memory = self._kept.take("memory", rows, active.shape[1]).copy()
         now = memory[active]
         action = np.clip(self._actor.decide(encoded[active], now).astype(float), -1.0, 1.0)
@@ -124,28 +120,28 @@ class PolicyPilot(Pilot):
         command[active] = action
         command[..., 0] = 0.5 * (command[..., 0] + 1.0) * speed
         command[..., 1] *= turn
-        return self._corrected(seen, bodies, command, tolerance)
+        return self._corrected(observation, bodies, command, tolerance)
 
     def _corrected(
-        self, seen: Observation, bodies: Bodies, command: FloatArray, tolerance: FloatArray
+        self, observation: Observation, bodies: Bodies, command: FloatArray, tolerance: FloatArray
     ) -> FloatArray:
-        if seen.neighbours is None or seen.edges is None:
+        if observation.neighbours is None or observation.edges is None:
             return command
         if self._sightings is not None:
-            seen = self._sightings.limit(seen, bodies.radius)
+            observation = self._sightings.limit(observation, bodies.radius)
         if self._detours is not None:
-            self._detours.steer(seen, bodies, command)
+            self._detours.steer(observation, bodies, command)
         if not self._foresight:
             return command
-        return foresee(seen, bodies, command, tolerance, self._hold)
+        return foresee(observation, bodies, command, tolerance, self._hold)
 
-    def _told(self, name: str, seen: Observation) -> FloatArray:
-        values: FloatArray = self._kept.take(name, seen.rows, seen.active.shape[1])
+    def _limit(self, name: str, observation: Observation) -> FloatArray:
+        values: FloatArray = self._kept.take(name, observation.rows, observation.active.shape[1])
         return values
 
 
 def pilot_of(config: Any, shipped: str) -> PolicyPilot:
-    """By a `PolicyConfig` or `DriverConfig`; ``shipped`` are its weights where it names none."""
+    """Return the pilot of a configuration; ``shipped`` are the weights if it names none."""
     path = Path(config.weights) if config.weights else SHIPPED / shipped
     return PolicyPilot(path, config.foresight, config.hold, getattr(config, "patience", 0.0))
 
@@ -156,5 +152,5 @@ def _read(path: Path, changed: int) -> tuple[Actor, dict[str, Any]]:
 
 
 def _loaded(path: Path) -> tuple[Actor, dict[str, Any]]:
-    """Read once per state of the file."""
+    """Read a file once per state of the file."""
     return _read(path, path.stat().st_mtime_ns if path.is_file() else 0)

@@ -1,9 +1,9 @@
-"""What the rays meet, and what of it stays in mind: what may be foreseen by who sees by rays.
+"""The objects that rays hit, and their memory: the input of foresight for agents with rays.
 
-The disc of a thick ray comes to rest on something: an agent or obstacle counts as met if it
-is there, and so does an edge. Others are told with their velocity (as Eq. 22 of the paper
-takes it) and remembered for a while as if they kept it, for seven rays lose from sight what
-passes between them.
+The disc of a thick ray stops at an object: an agent or obstacle at that place counts as hit, and
+so does an edge. Agents and movers are reported with their velocity (as Eq. 22 of the paper
+uses it) and remembered for a while as if they kept it, because seven rays lose sight of objects
+that pass between them.
 """
 
 import math
@@ -11,72 +11,73 @@ from dataclasses import replace
 
 import numpy as np
 
-from benchnav.arena.solid import Kind
+from benchnav.arena import Kind
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
-from benchnav.geometry.capsule import nearest_on_segment
+from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.row_table import RowTable
-from benchnav.sensors.readings import Edges, Neighbours
+from benchnav.navigation import Briefing, Edges, Neighbours, Observation, RowTable
 
-MEMORY = 2.0  # [s] for which somebody is remembered
-SLACK = 0.05  # [m] by which a ray's disc may be away from what it met
-SAME = 0.8  # [m] within which somebody remembered is somebody met
-MOST = 16  # others that an agent keeps in mind
+MEMORY = 2.0  # [s] for which an agent or mover is remembered
+SLACK = 0.05  # [m] largest distance of a ray's disc from the object that it hit
+SAME = 0.8  # [m] within which a remembered object and a hit object are the same
+MAX_OTHERS = 16  # agents and movers that an agent remembers
 _X, _Y, _U, _V, _RADIUS, _KIND, _AGE = range(7)
 
 _WALL, _STATIC = int(Kind.WALL), int(Kind.STATIC)
 
 
 class Sightings:
-    """What each agent has met with its rays."""
+    """The objects that each agent has hit with its rays."""
 
     def __init__(self) -> None:
         self._kept = RowTable()
 
-    def reset(self, row: int, told: Briefing) -> None:
-        """Nothing was met in the world ``row`` yet."""
-        nobody = np.zeros((len(told), MOST, 7))
-        nobody[..., _AGE] = math.inf
-        self._kept.put(row, met=nobody, dt=np.full(len(told), told.dt))
+    def reset(self, row: int, briefing: Briefing) -> None:
+        """Forget all objects in the world ``row``."""
+        empty = np.zeros((len(briefing), MAX_OTHERS, 7))
+        empty[..., _AGE] = math.inf
+        self._kept.put(row, met=empty, dt=np.full(len(briefing), briefing.dt))
 
-    def limit(self, seen: Observation, radius: FloatArray) -> Observation:
-        """The same view, with the others and edges alone that the rays (B, A) met.
+    def limit(self, observation: Observation, radius: FloatArray) -> Observation:
+        """Return the observation with only those neighbours and edges that the rays (B, A) hit.
 
         Args:
-            seen: with rays, neighbours and edges.
+            observation: with rays, neighbours and edges.
             radius: (B, A) [m] of the agents, and of the discs of their rays.
         """
-        rays, near, edges = seen.rays, seen.neighbours, seen.edges
+        rays, near, edges = observation.rays, observation.neighbours, observation.edges
         assert rays is not None  # noqa: S101 - declared by the pilot
         assert near is not None  # noqa: S101
         assert edges is not None  # noqa: S101
-        agents = seen.active.shape[1]
-        met = self._kept.take("met", seen.rows, agents)
+        agents = observation.active.shape[1]
+        met = self._kept.take("met", observation.rows, agents)
         touched = np.zeros(edges.start.shape[:3], dtype=np.bool_)
 
         def flat(array: AnyArray) -> AnyArray:
             return array.reshape(-1, *array.shape[2:])
 
-        who = np.flatnonzero(seen.active)
-        position, heading, reach = flat(seen.position), flat(seen.heading), flat(radius)
+        indices = np.flatnonzero(observation.active)
+        position, heading, reach = (
+            flat(observation.position),
+            flat(observation.heading),
+            flat(radius),
+        )
         distance, kinds = flat(rays.distance), flat(rays.kind)
         _meet(
-            who, position, heading, reach, rays.angle, distance, kinds, flat(near.position),
+            indices, position, heading, reach, rays.angle, distance, kinds, flat(near.position),
             flat(near.velocity), flat(near.radius), flat(near.kind), flat(near.count),
-            flat(self._kept.take("dt", seen.rows, agents)), flat(met),
+            flat(self._kept.take("dt", observation.rows, agents)), flat(met),
         )  # fmt: skip
         _touch(
-            who, position, heading, reach, rays.angle, distance, kinds, flat(edges.start),
+            indices, position, heading, reach, rays.angle, distance, kinds, flat(edges.start),
             flat(edges.end), flat(edges.count), flat(touched),
         )  # fmt: skip
-        self._kept.write("met", seen.rows, met)
-        return replace(seen, neighbours=_others(met), edges=_chosen(edges, touched))
+        self._kept.write("met", observation.rows, met)
+        return replace(observation, neighbours=_others(met), edges=_chosen(edges, touched))
 
 
 def _others(met: FloatArray) -> Neighbours:
-    """Everybody in mind."""
+    """Return the remembered agents and movers."""
     return Neighbours(
         met[..., _X : _Y + 1].copy(), met[..., _U : _V + 1].copy(), met[..., _RADIUS].copy(),
         met[..., _KIND].astype(np.uint8), np.isfinite(met[..., _AGE]).sum(axis=-1),
@@ -84,7 +85,7 @@ def _others(met: FloatArray) -> Neighbours:
 
 
 def _chosen(edges: Edges, which: BoolArray) -> Edges:
-    """Some of the edges, still nearest first."""
+    """Return some of the edges, still nearest first."""
     order = np.argsort(~which, axis=-1, kind="stable")
     index = order[..., None]
 
@@ -99,19 +100,19 @@ def _chosen(edges: Edges, which: BoolArray) -> Edges:
 
 @kernel
 def _meet(
-    who: IntArray, position: FloatArray, heading: FloatArray, radius: FloatArray,
+    indices: IntArray, position: FloatArray, heading: FloatArray, radius: FloatArray,
     angle: FloatArray, distance: FloatArray, ray_kind: ByteArray, other: FloatArray,
     velocity: FloatArray, other_radius: FloatArray, kind: ByteArray, others: IntArray,
     dt: FloatArray, met: FloatArray,
 ) -> None:  # fmt: skip
-    """Bring what is in mind, ``met`` (N, MOST, 7), up to date: who is met now comes first."""
-    for i in who:
+    """Update the memory ``met`` (N, MAX_OTHERS, 7): objects hit now come first."""
+    for i in indices:
         old = met[i].copy()
         met[i, :, _AGE] = math.inf
         n = 0
         for j in range(others[i]):
             for r in range(len(angle)):
-                if ray_kind[i, r] != kind[i, j] or n == MOST:
+                if ray_kind[i, r] != kind[i, j] or n == MAX_OTHERS:
                     continue
                 course = heading[i] + angle[r]
                 dx = position[i, 0] + distance[i, r] * math.cos(course) - other[i, j, 0]
@@ -124,9 +125,9 @@ def _meet(
                     n += 1
                     break
         fresh = n
-        for m in range(MOST):
+        for m in range(MAX_OTHERS):
             age = old[m, _AGE] + dt[i]
-            if n == MOST or age > MEMORY + 1e-9:
+            if n == MAX_OTHERS or age > MEMORY + 1e-9:
                 continue
             x, y = old[m, _X] + dt[i] * old[m, _U], old[m, _Y] + dt[i] * old[m, _V]
             known = False
@@ -141,12 +142,12 @@ def _meet(
 
 @kernel
 def _touch(
-    who: IntArray, position: FloatArray, heading: FloatArray, radius: FloatArray,
+    indices: IntArray, position: FloatArray, heading: FloatArray, radius: FloatArray,
     angle: FloatArray, distance: FloatArray, ray_kind: ByteArray, first: FloatArray,
     second: FloatArray, edges: IntArray, touched: BoolArray,
 ) -> None:  # fmt: skip
-    """``touched`` (N, E): on which edges a ray's disc came to rest."""
-    for i in who:
+    """Set ``touched`` (N, E): the edges at which a ray's disc stopped."""
+    for i in indices:
         for r in range(len(angle)):
             if ray_kind[i, r] != _WALL and ray_kind[i, r] != _STATIC:
                 continue

@@ -1,4 +1,4 @@
-"""Weights on disk: safetensors with what is needed to use and to judge them; no pickle."""
+"""Weights on disk: safetensors with the data needed to use and judge them; no pickle."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.envs.encoders.catalogue import ENCODERS, encoder
+from benchnav.envs import ENCODERS, encoder
 from benchnav.errors import PluginError
 
 from ...common.tensor_file import read_tensors, write_tensors
@@ -16,15 +16,15 @@ FORMAT = "benchnav-actor-1"
 
 
 def write_weights(path: Path, tensors: Mapping[str, Float32Array], about: dict[str, Any]) -> None:
-    """Atomically. ``about`` holds plain data and must name the encoder."""
+    """Write a file atomically. ``about`` holds plain data and must name the encoder."""
     arrays = {name: np.ascontiguousarray(tensor) for name, tensor in tensors.items()}
     write_tensors(path, arrays, {"format": FORMAT, **about})
 
 
 def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
-    """The actor in a file, and what the file says about it.
+    """Return the actor in a file, and the file's facts about it.
 
-    Raises PluginError where the file is missing, cut short, foreign, or not of one piece.
+    Raises PluginError if the file is missing, truncated, foreign, or inconsistent.
     """
     file = read_tensors(path)
     about = {**file.about, "sha256": file.sha256}
@@ -34,7 +34,9 @@ def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
             f" Got the format {about.get('format')!r} instead."
         )
     if not isinstance(about.get("progress"), dict):
-        raise PluginError(f"{path}: must say what it learned from (`progress`). It does not.")
+        raise PluginError(
+            f"{path}: must have the facts of its training (`progress`). They are missing."
+        )
     name = about.get("encoder")
     if name not in ENCODERS:
         raise PluginError(f"{path}: made for the encoder {name!r}, which does not exist.")
@@ -55,9 +57,9 @@ def _fitting(path: Path, tensors: Mapping[str, Float32Array], size: int, name: s
         _demand(path, f"lstm{k}", layer.weight.shape, (width + hidden, len(layer.bias)), name)
         _demand(path, f"lstm{k}", layer.bias.shape, (4 * hidden,), name)
         width = hidden
-    for what, dense in [*((f"dense{k}", d) for k, d in enumerate(actor.dense)),
+    for layer_name, dense in [*((f"dense{k}", d) for k, d in enumerate(actor.dense)),
                         ("output", actor.output)]:  # fmt: skip
-        _demand(path, what, dense.weight.shape, (width, len(dense.bias)), name)
+        _demand(path, layer_name, dense.weight.shape, (width, len(dense.bias)), name)
         width = len(dense.bias)
     _demand(path, "output", (width,), (2,), name)
     for key, tensor in tensors.items():
@@ -68,9 +70,11 @@ def _fitting(path: Path, tensors: Mapping[str, Float32Array], size: int, name: s
     return actor
 
 
-def _demand(path: Path, what: str, got: tuple[int, ...], want: tuple[int, ...], name: str) -> None:
+def _demand(
+    path: Path, layer_name: str, got: tuple[int, ...], want: tuple[int, ...], name: str
+) -> None:
     if tuple(got) != want:
         raise PluginError(
-            f"{path}: {what} must have the shape {want} for the encoder {name!r}."
+            f"{path}: {layer_name} must have the shape {want} for the encoder {name!r}."
             f" Got {tuple(got)} instead."
         )

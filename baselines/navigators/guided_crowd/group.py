@@ -1,13 +1,12 @@
-"""Which member follows whose path, and where in the corridor it goes."""
+"""Groups: the leader that each member follows, and its place in the corridor."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from benchnav.arena.agents import Role
+from benchnav.arena import Role
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.randomness.agent_streams import canonical_order
+from benchnav.navigation import Briefing, canonical_order
 
 from .guiding_path import GuidingPath
 from .march import advanced, direction
@@ -15,17 +14,17 @@ from .march import advanced, direction
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """A leader and those who follow its way: the leader itself is one of them."""
+    """A leader and its followers; the leader is a member, too."""
 
     leader: int  # place among the agents of the briefing
-    members: IntArray  # (N,) rising
+    members: IntArray  # (N,) ascending
 
 
 def groups_of(briefing: Briefing, leaders: IntArray) -> list[Group]:
-    """One group for each of ``leaders`` (L,): who rehearsed, or has the role.
+    """Return one group for each of ``leaders`` (L,).
 
-    A leader follows its own way. Others follow the leader of their team whose start and goal
-    are nearest to theirs; who has none in the team follows nobody.
+    A leader follows its own path. Others follow the leader of their team whose start and goal
+    are nearest to theirs; an agent without a leader in its team is in no group.
     """
     order = np.argsort(canonical_order(briefing))  # ties must not depend on the numbering
     leaders = leaders[np.argsort(order[leaders])]
@@ -39,9 +38,9 @@ def groups_of(briefing: Briefing, leaders: IntArray) -> list[Group]:
 
 
 def leaders_in(briefing: Briefing) -> IntArray:
-    """(L,) who rehearsed, or who has the role where nobody did."""
+    """Return the agents (L,) that rehearsed, or without rehearsals those with the role leader."""
     if briefing.rehearsals:
-        return np.unique(np.concatenate([told.agent for told in briefing.rehearsals]))
+        return np.unique(np.concatenate([r.agent for r in briefing.rehearsals]))
     return np.flatnonzero(briefing.role == int(Role.LEADER))
 
 
@@ -54,9 +53,9 @@ def _apart(briefing: Briefing, agent: int, others: IntArray) -> FloatArray:
 
 
 def places_in_corridor(path: GuidingPath, start: FloatArray, spread: float) -> FloatArray:
-    """(N,) [m] to the left of the path: where members stand at the start, seen along it.
+    """Return the places (N,) [m] of members to the left of the path at the start.
 
-    Where somebody stands farther aside than ``spread`` [m], all move together in
+    If a member is farther aside than ``spread`` [m], all places shrink in
     proportion, so that their order is kept.
     """
     reach = min(2.0 * spread, path.length)
@@ -68,11 +67,11 @@ def places_in_corridor(path: GuidingPath, start: FloatArray, spread: float) -> F
 
 
 def turn_offs(path: GuidingPath, goal: FloatArray, leaving: float) -> FloatArray:
-    """(N,) [m] arc length at which each member leaves the path for its own ``goal`` (N, 2).
+    """Return the arc length (N,) [m] at which each member leaves the path for its ``goal`` (N, 2).
 
-    ``leaving`` [m] before the place that is nearest to the goal. Looked for on the stretch
-    that is no farther from the path's end, along it, than twice the way from there to the
-    goal: the nearest place lies there, and what the path passed by long before does not.
+    It is ``leaving`` [m] before the point nearest to the goal. The search covers the stretch
+    that is no farther from the path's end, along it, than twice the distance from there to the
+    goal: the nearest point lies there, and points that the path passed long before do not.
     """
     way, along = path.points, path.arc
     found = np.empty(len(goal))
@@ -84,7 +83,7 @@ def turn_offs(path: GuidingPath, goal: FloatArray, leaving: float) -> FloatArray
 
 
 def misfit(path: GuidingPath, briefing: Briefing, leader: int) -> tuple[float, float]:
-    """[m] between the path's and the leader's start, and between their ends."""
+    """Return the distances [m] between the starts, and the ends, of the path and the leader."""
     here = path.points[0] - briefing.start[leader]
     there = path.points[-1] - briefing.goal[leader]
     return float(np.hypot(*here)), float(np.hypot(*there))

@@ -1,4 +1,4 @@
-"""A guiding path: a leader's recorded trajectory, simplified, with what it was chosen for."""
+"""A guiding path: a leader's recorded trajectory, simplified, with the data of its selection."""
 
 import math
 from collections.abc import Sequence
@@ -7,54 +7,54 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
-from benchnav.navigation.rehearsal import Rehearsal
+from benchnav.navigation import Rehearsal
 
-STILL = 1e-3  # [m] a step that is shorter has no direction
+STILL = 1e-3  # [m] a shorter step has no direction
 
 
 @dataclass(frozen=True, eq=False)
 class GuidingPath:
-    """Where a leader went without a collision, fastest."""
+    """The fastest trajectory of a leader without a collision."""
 
     points: FloatArray  # (W, 2) [m], no two in succession equal
     duration: float  # [s] until the leader arrived
-    turning: float  # [rad] that it turned in all
+    turning: float  # [rad] total change of direction
     radius: float  # [m] of the leader
-    rehearsals: int  # out of which it was chosen
-    succeeded: int  # of them without a collision
+    rehearsals: int  # among which it was chosen
+    succeeded: int  # rehearsals without a collision
 
     @property
     def length(self) -> float:
-        """[m]"""
+        """Length of the path [m]."""
         return float(self.arc[-1])
 
     @property
     def arc(self) -> FloatArray:
-        """(W,) [m] length of the path up to each point."""
+        """Length (W,) [m] of the path up to each point."""
         return arc_length(self.points)
 
 
 def best_path(
     rehearsals: Sequence[Rehearsal], agent: int, radius: float, tolerance: float, hits: bool = False
 ) -> GuidingPath | None:
-    """The best trajectory of the leader ``agent``; None where it arrived in no rehearsal.
+    """Return the best trajectory of the leader ``agent``; None if it arrived in no rehearsal.
 
-    The one that took the shortest time; of several, that which turns least; of several, the
-    first. Only those without a collision, unless ``hits`` and there is none.
+    It is the fastest one; of several, the one that turns least; of several, the
+    first. Only trajectories without a collision count, unless ``hits`` is set and there is none.
 
     Args:
-        rehearsals: what the runner granted.
-        agent: place of the leader among the agents of the briefing.
+        rehearsals: granted by the runner.
+        agent: index of the leader among the agents of the briefing.
         radius: of the leader [m].
-        tolerance: [m] by which the path may leave the trajectory.
-        hits: take one with a collision where there is none without.
+        tolerance: largest distance [m] of the path from the trajectory.
+        hits: accept a trajectory with a collision if there is none without.
     """
-    tries = [_Try(told, int(k)) for told in rehearsals for k in np.flatnonzero(told.agent == agent)]
-    clean = [one for one in tries if one.arrived and not one.collided]
-    chosen = clean or ([one for one in tries if one.arrived] if hits else [])
+    tries = [_Try(r, int(k)) for r in rehearsals for k in np.flatnonzero(r.agent == agent)]
+    clean = [t for t in tries if t.arrived and not t.collided]
+    chosen = clean or ([t for t in tries if t.arrived] if hits else [])
     if not chosen:
         return None
-    best = min(chosen, key=lambda one: (one.duration, one.turning))
+    best = min(chosen, key=lambda t: (t.duration, t.turning))
     points = distinct(simplified(best.way, tolerance))
     if len(points) < 2:
         return None
@@ -64,16 +64,16 @@ def best_path(
 class _Try:
     """One leader in one rehearsal."""
 
-    def __init__(self, told: Rehearsal, leader: int) -> None:
-        self.way = told.trajectory(leader)
-        self.duration = float(told.arrival[leader])
+    def __init__(self, rehearsal: Rehearsal, leader: int) -> None:
+        self.way = rehearsal.trajectory(leader)
+        self.duration = float(rehearsal.arrival[leader])
         self.arrived = not math.isnan(self.duration)
-        self.collided = bool(told.collided[leader])
+        self.collided = bool(rehearsal.collided[leader])
         self.turning = turning(self.way)
 
 
 def turning(way: FloatArray) -> float:
-    """[rad] sum of the absolute changes of direction along ``way`` (N, 2)."""
+    """Return the sum [rad] of the absolute changes of direction along ``way`` (N, 2)."""
     step = np.diff(way, axis=0)
     step = step[np.hypot(*step.T) > STILL]
     if len(step) < 2:
@@ -83,7 +83,7 @@ def turning(way: FloatArray) -> float:
 
 
 def simplified(way: FloatArray, tolerance: float) -> FloatArray:
-    """(W, 2) points of ``way`` (N, 2), none of which it leaves by more than ``tolerance`` [m].
+    """Return points (W, 2) of ``way`` (N, 2) within ``tolerance`` [m] of it.
 
     D. Douglas and T. Peucker, "Algorithms for the reduction of the number of points
     required to represent a digitized line or its caricature", Cartographica 10 (1973).
@@ -105,7 +105,7 @@ def simplified(way: FloatArray, tolerance: float) -> FloatArray:
 
 
 def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatArray:
-    """(N,) [m] from points (N, 2) to the segment from start to end."""
+    """Return the distances (N,) [m] from points (N, 2) to the segment from start to end."""
     along = end - start
     length2 = float(along @ along)
     share = np.clip((points - start) @ along / length2, 0.0, 1.0) if length2 else np.zeros(1)
@@ -115,13 +115,13 @@ def _distances(points: FloatArray, start: FloatArray, end: FloatArray) -> FloatA
 
 
 def distinct(points: FloatArray) -> FloatArray:
-    """The points without those that repeat the one before."""
+    """Return the points without those equal to their predecessor."""
     new = np.ones(len(points), np.bool_)
     new[1:] = np.any(points[1:] != points[:-1], axis=1)
     return points[new]
 
 
 def arc_length(points: FloatArray) -> FloatArray:
-    """(W,) [m] length of the way up to each point (W, 2)."""
+    """Return the length (W,) [m] of the path up to each point (W, 2)."""
     step = np.diff(points, axis=0)
     return np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(step * step, axis=1)))])

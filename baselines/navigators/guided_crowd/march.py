@@ -1,21 +1,20 @@
-"""Where along its group's path each member is, and where it should go next.
+"""The position of each member along its group's path, and its next target.
 
-Rows N are (world, agent) pairs, run by `benchnav.threads.run_rows`; each depends on nothing
-but itself. Paths lie one behind another in flat arrays and are shared by their group.
+Rows N are (world, agent) pairs, run by `benchnav.threads.run_rows`, and independent of each
+other. Paths are concatenated in flat arrays; a group shares one.
 """
 
 import math
 
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
-from benchnav.geometry.capsule import nearest_on_segment
-from benchnav.geometry.sweep import segment_distance2
+from benchnav.geometry import nearest_on_segment, segment_distance2
 from benchnav.kernels import kernel
 
-FREE, BLOCKED, CUT_OFF = 0, 1, 2  # what a member met, as `march` reports it
-NEAR = 2  # lookaheads that are tried where the full one is hidden: a half, a quarter
+FREE, BLOCKED, CUT_OFF = 0, 1, 2  # obstacles that a member met, as `march` reports them
+NEAR = 2  # shorter lookaheads that are tried if the full one is hidden: a half, a quarter
 SIDES = 8  # places to either side of its own that a member tries
 FOLDS = 16  # half lookaheads that are added at most where the corridor folds
-CLOSE = 0.9  # of the radius that must be free of edges: those in the crowd lean on walls
+CLOSE = 0.9  # share of the radius that must be free of edges: in a crowd, members touch walls
 
 
 @kernel
@@ -31,25 +30,25 @@ def march(
     Args:
         low: first row.
         high: one past the last row.
-        active: (N,) others are left alone.
+        active: (N,) rows to update.
         position: (N, 2) [m].
         goal: (N, 2) [m] each member's own.
         radius: (N,) [m].
-        path: (N,) which path; -1: none, the target is the goal.
+        path: (N,) index of the path; -1: none, the target is the goal.
         offset: (N,) [m] place in the corridor, to the left of the path.
-        leave: (N,) [m] arc length from which on a member heads for its own goal.
+        leave: (N,) [m] arc length at which a member heads for its own goal.
         first: (P+1,) where each path begins in the next two.
         point: (W, 2) [m].
         arc: (W,) [m] length of the path up to each point.
         lookahead: [m] between a member's place on the path and its target's.
-        spread: [m] half width of the corridor; farther aside only round what blocks it.
+        spread: [m] half width of the corridor; farther aside only around obstacles.
         edge_start: (N, E, 2) [m] edges of walls and obstacles that are sensed.
         edge_end: (N, E, 2) [m].
         edge_count: (N,).
         progress: (N,) [m] updated.
         target: (N, 2) [m] written.
-        met: (N,) written: `FREE`, `BLOCKED` (something stands on the path ahead) or
-            `CUT_OFF` (something stands between a member that left the path and its goal).
+        met: (N,) written: `FREE`, `BLOCKED` (an obstacle is on the path ahead) or
+            `CUT_OFF` (an obstacle is between a member that left the path and its goal).
     """
     for i in range(low, high):
         if not active[i]:
@@ -74,7 +73,7 @@ def march(
             way, along, here, x, y, radius[i], offset[i], spread, lookahead, start, end, count
         )
         if here + lookahead < along[-1] or math.hypot(tx - x, ty - y) > 0.1 * lookahead:
-            target[i, 0], target[i, 1] = tx, ty  # else it stands where the corridor ends
+            target[i, 0], target[i, 1] = tx, ty  # otherwise it waits where the corridor ends
 
 
 @kernel
@@ -83,10 +82,10 @@ def aim(
     offset: float, spread: float, lookahead: float,
     start: FloatArray, end: FloatArray, count: int,
 ) -> tuple[float, float]:  # fmt: skip
-    """The place ahead, nearest to the member's own in the corridor, that it can go to straight.
+    """Return the reachable place ahead, nearest to the member's own place in the corridor.
 
-    Places inside the corridor come first, then those beside it (round something that stands
-    on the path), then nearer ones; the path itself where none is clear.
+    Places inside the corridor come first, then those beside it (around an obstacle
+    on the path), then nearer ones; the path itself if none is clear.
     """
     ahead = far_enough(way, along, here, x, y, offset, lookahead)
     for _ in range(NEAR + 1):
@@ -110,10 +109,10 @@ def far_enough(
     way: FloatArray, along: FloatArray, here: float, x: float, y: float, offset: float,
     lookahead: float,
 ) -> float:  # fmt: skip
-    """The least lookahead [m] at which the place in the corridor lies ahead of the member.
+    """Return the smallest lookahead [m] at which the place in the corridor is ahead of the member.
 
-    On the inner side of a bend the corridor folds: places that follow each other on the
-    path lie in one spot, and a member would stand there for ever.
+    On the inner side of a bend the corridor folds: successive places along the
+    path coincide, and a member would stand there for ever.
     """
     ahead = lookahead
     for _ in range(FOLDS):
@@ -131,9 +130,9 @@ def far_enough(
 def advanced(
     way: FloatArray, along: FloatArray, low: float, high: float, x: float, y: float
 ) -> float:
-    """Arc length between low and high [m] at which the path is nearest to (x, y), the first such.
+    """Return the arc length in low … high [m] where the path is nearest to (x, y), the first such.
 
-    Progress so never falls, and does not jump to where the path passes by again later on.
+    So progress never decreases, and does not jump to a later part of the path that is close.
     """
     best, found = math.inf, low
     for k in range(segment(along, low), len(along) - 1):
@@ -152,7 +151,7 @@ def advanced(
 
 @kernel
 def segment(along: FloatArray, s: float) -> int:
-    """The segment of arc length s, by halving."""
+    """Return the segment of arc length s, by bisection."""
     low, high = 0, len(along) - 1
     while high - low > 1:
         middle = (low + high) // 2
@@ -165,7 +164,7 @@ def segment(along: FloatArray, s: float) -> int:
 
 @kernel
 def at(way: FloatArray, along: FloatArray, s: float) -> tuple[float, float]:
-    """The point at arc length s; the path's ends beyond them."""
+    """Return the point at arc length s; the path's ends beyond them."""
     if s <= 0.0:
         return way[0, 0], way[0, 1]
     if s >= along[-1]:
@@ -177,7 +176,7 @@ def at(way: FloatArray, along: FloatArray, s: float) -> tuple[float, float]:
 
 @kernel
 def direction(way: FloatArray, along: FloatArray, s: float, half: float) -> tuple[float, float]:
-    """Unit direction of the chord from s - half to s + half: it turns smoothly at corners."""
+    """Return the unit direction of the chord from s - half to s + half, smooth at corners."""
     middle = min(max(s, 0.0), along[-1])
     ax, ay = at(way, along, middle - half)
     bx, by = at(way, along, middle + half)
@@ -193,7 +192,7 @@ def clear(
     start: FloatArray, end: FloatArray, count: int, ax: float, ay: float, bx: float, by: float,
     radius: float,
 ) -> bool:  # fmt: skip
-    """True where a disc that goes from a to b touches no edge that it does not touch at a."""
+    """Whether a disc that moves from a to b touches no edge except those that it touches at a."""
     for k in range(count):
         x0, y0, x1, y1 = start[k, 0], start[k, 1], end[k, 0], end[k, 1]
         qx, qy = nearest_on_segment(ax, ay, x0, y0, x1, y1)
@@ -209,7 +208,7 @@ def way_is_clear(
     way: FloatArray, along: FloatArray, low: float, high: float,
     start: FloatArray, end: FloatArray, count: int, radius: float,
 ) -> bool:  # fmt: skip
-    """True where the path keeps ``radius`` from all edges between arc lengths low and high."""
+    """Whether the path keeps ``radius`` from all edges between arc lengths low and high."""
     for k in range(segment(along, low), len(along) - 1):
         if along[k] > high:
             break

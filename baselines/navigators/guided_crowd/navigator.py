@@ -1,4 +1,4 @@
-"""The guided crowd: each group follows its leader's rehearsed way, and ORCA has priority."""
+"""The guided crowd: each group follows its leader's rehearsed path, and ORCA has priority."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Literal
@@ -7,11 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.navigator import Navigator, Need, PluginConfig
-from benchnav.navigation.observation import Observation
-from benchnav.navigation.plugin.configure import Spec
-from benchnav.navigation.row_table import RowTable
+from benchnav.navigation import Briefing, Navigator, Need, Observation, PluginConfig, RowTable, Spec
 from benchnav.threads import run_rows
 
 from ...controllers.orca.avoidance import LEAST, Avoidance, OrcaConfig, no_edges
@@ -60,11 +56,11 @@ class GuidedCrowdConfig(PluginConfig):
 
 
 class GuidedCrowd(Navigator):
-    """Members follow their leader's best rehearsed trajectory, spread over a corridor about it.
+    """Members follow their leader's best rehearsed trajectory, spread over a corridor around it.
 
-    Once ORCA predicts a collision, it decides; else the path does. The last stretch is
+    If ORCA predicts a collision, it decides; otherwise the path does. The last stretch leads
     straight to each member's own goal. `paths` are the guiding paths of each row, and
-    `remarks` say what went wrong with them.
+    `remarks` report problems with them.
     """
 
     Config = GuidedCrowdConfig
@@ -75,7 +71,7 @@ class GuidedCrowd(Navigator):
         self.paths: dict[int, dict[int, GuidingPath]] = {}  # row → leader → its path
         self._given = () if self.config.path is None else read_paths(self.config.path)
         self._avoidance = Avoidance(self.config.orca)
-        self._told = RowTable()
+        self._table = RowTable()
         self._state: dict[int, _Row] = {}
         self._flat = _Flat({})
 
@@ -115,7 +111,7 @@ class GuidedCrowd(Navigator):
                     state.paths[group.leader] = found
             state.team = briefing.team.copy()
             self.paths[int(row)] = state.paths
-            self._told.put(
+            self._table.put(
                 int(row), path=path + 1, offset=offset, leave=leave,
                 radius=briefing.radius, progress=np.zeros(count),
             )  # fmt: skip
@@ -124,23 +120,23 @@ class GuidedCrowd(Navigator):
     def act(self, observation: Observation) -> FloatArray:
         shape = observation.active.shape
         rows, agents, n = observation.rows, shape[1], shape[0] * shape[1]
-        told = {
-            name: np.ascontiguousarray(self._told.take(name, rows, agents)).reshape(n)
+        columns = {
+            name: np.ascontiguousarray(self._table.take(name, rows, agents)).reshape(n)
             for name in ("path", "offset", "leave", "radius", "progress")
         }
         base = np.array([self._flat.base[int(row)] for row in rows])
-        path = np.where(told["path"] > 0, told["path"] - 1 + np.repeat(base, agents), -1)
-        seen = observation.edges or no_edges(*shape)
+        path = np.where(columns["path"] > 0, columns["path"] - 1 + np.repeat(base, agents), -1)
+        edges = observation.edges or no_edges(*shape)
         target, met = observation.goal.reshape(n, 2).copy(), np.zeros(n, np.int8)
         run_rows(
             march, n, observation.active.reshape(n), observation.position.reshape(n, 2),
-            observation.goal.reshape(n, 2), told["radius"], path, told["offset"],
-            told["leave"], self._flat.first, self._flat.point, self._flat.arc,
-            self.config.lookahead, self.config.spread, seen.start.reshape(n, -1, 2),
-            seen.end.reshape(n, -1, 2), seen.count.reshape(n), told["progress"], target, met,
+            observation.goal.reshape(n, 2), columns["radius"], path, columns["offset"],
+            columns["leave"], self._flat.first, self._flat.point, self._flat.arc,
+            self.config.lookahead, self.config.spread, edges.start.reshape(n, -1, 2),
+            edges.end.reshape(n, -1, 2), edges.count.reshape(n), columns["progress"], target, met,
             least=LEAST,
         )  # fmt: skip
-        self._told.write("progress", rows, told["progress"].reshape(shape))
+        self._table.write("progress", rows, columns["progress"].reshape(shape))
         if met.any():
             self._note(observation, met.reshape(shape))
         return self._avoidance.velocity(observation, target.reshape(*shape, 2))
@@ -149,7 +145,7 @@ class GuidedCrowd(Navigator):
         return self._state[row].remarks()
 
     def _path(self, briefing: Briefing, group: Group, state: "_Row") -> GuidingPath | None:
-        """The path of a group: of the file, else of the rehearsals; None and a remark without."""
+        """Return the group's path, of the file or else of the rehearsals; None with a remark."""
         name = f"team {int(briefing.team[group.leader])}"
         if self._given:
             apart, best = min(
@@ -158,22 +154,22 @@ class GuidedCrowd(Navigator):
             )
             if max(apart) <= self.config.fit:
                 return self._given[best]
-            state.said.append(
+            state.messages.append(
                 f"no path of {self.config.path} leads from the start to the goal of the leader of"
                 f" {name}: the nearest begins {apart[0]:.1f} m and ends {apart[1]:.1f} m away"
             )
         if not briefing.rehearsals:
-            state.said.append(f"nothing was rehearsed for {name}: it goes straight at its goals")
+            state.messages.append(f"no rehearsal for {name}: it goes straight to its goals")
             return None
         radius, tolerance = float(briefing.radius[group.leader]), float(self.config.tolerance)
         hits = self.config.fallback == "collided"
         found = best_path(briefing.rehearsals, group.leader, radius, tolerance, hits)
         if found is None or not found.succeeded:
-            state.said.append(_unled(briefing, group.leader, name, found is not None))
+            state.messages.append(_unled(briefing, group.leader, name, found is not None))
         return found
 
     def _note(self, observation: Observation, met: np.ndarray) -> None:
-        """Keep when and where a path was found blocked first, and how many were cut off."""
+        """Record when and where a path was first blocked, and how many members were cut off."""
         for b in np.flatnonzero(met.any(axis=1)):
             state = self._state[int(observation.rows[b])]
             for kind in (BLOCKED, CUT_OFF):
@@ -182,39 +178,39 @@ class GuidedCrowd(Navigator):
 
 
 class _Row:
-    """What is kept of one world."""
+    """The state of one world."""
 
     def __init__(self) -> None:
         self.paths: dict[int, GuidingPath] = {}  # leader → its path, in the order of the groups
-        self.said: list[str] = []
+        self.messages: list[str] = []
         self.team: IntArray = np.zeros(0, np.int64)
         self._met: dict[tuple[int, int], tuple[float, set[int]]] = {}
 
     def meet(self, kind: int, agent: int, time: float) -> None:
-        """A member met what the path did not foresee."""
+        """Record a member that met an unexpected obstacle."""
         key = kind, int(self.team[agent])
         self._met.setdefault(key, (time, set()))[1].add(agent)
 
     def remarks(self) -> list[str]:
-        """Everything there is to tell."""
-        lines = list(self.said)
+        """Return all remarks."""
+        lines = list(self.messages)
         for (kind, team), (time, members) in sorted(self._met.items()):
-            who = f"{len(members)} of team {team}"
+            subject = f"{len(members)} of team {team}"
             if kind == BLOCKED:
                 lines.append(
-                    f"something stands on the guiding path of team {team} that did not when it was"
-                    f" rehearsed: {who} met it, first at t = {time:g} s, and went round it"
+                    f"an obstacle is on the guiding path of team {team} that was not there in the"
+                    f" rehearsal: {subject} met it, first at t = {time:g} s, and went around it"
                 )
             else:
                 lines.append(
-                    f"something stands between the end of the guiding path and the goals of {who},"
-                    f" who met it first at t = {time:g} s"
+                    f"an obstacle is between the guiding path's end and the goals of {subject},"
+                    f" which met it first at t = {time:g} s"
                 )
         return lines
 
 
 class _Flat:
-    """The paths of all rows one behind another, as the kernel takes them."""
+    """The concatenated paths of all rows, as input of the kernel."""
 
     def __init__(self, paths: dict[int, list[GuidingPath]]) -> None:
         every = [path for own in paths.values() for path in own]
@@ -226,13 +222,11 @@ class _Flat:
 
 
 def _unled(briefing: Briefing, leader: int, name: str, follows: bool) -> str:
-    """That a leader never succeeded, why, and what its group does."""
-    place = [
-        (told, k) for told in briefing.rehearsals for k in np.flatnonzero(told.agent == leader)
-    ]
-    hit = sum(bool(told.collided[k]) for told, k in place)
-    late = sum(bool(np.isnan(told.arrival[k]) and not told.collided[k]) for told, k in place)
-    then = "follows a trajectory with a collision" if follows else "goes straight at its goals"
+    """Return a remark on a leader without success: the reasons, and the behaviour of its group."""
+    place = [(r, k) for r in briefing.rehearsals for k in np.flatnonzero(r.agent == leader)]
+    hit = sum(bool(r.collided[k]) for r, k in place)
+    late = sum(bool(np.isnan(r.arrival[k]) and not r.collided[k]) for r, k in place)
+    then = "follows a trajectory with a collision" if follows else "goes straight to its goals"
     return (
         f"the leader of {name} succeeded in none of {len(place)} rehearsals ({hit} with a"
         f" collision, {late} not arrived): its group {then}"

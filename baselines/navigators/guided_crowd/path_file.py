@@ -1,4 +1,4 @@
-"""Guiding paths in a JSON file: to be looked at, used again, or drawn.
+"""Guiding paths in a JSON file, to view, reuse or draw them.
 
 {"format": "benchnav guiding paths", "version": 1, "paths": [
   {"points": [[x, y], …], "duration": s, "turning": rad, "radius": m,
@@ -19,7 +19,7 @@ from benchnav.system.plain_file import read_file
 
 from .guiding_path import GuidingPath, arc_length, distinct
 
-MOST_BYTES = 256 << 20
+MAX_BYTES = 256 << 20
 Number = Annotated[float, Field(allow_inf_nan=False)]
 
 
@@ -60,34 +60,39 @@ def write_paths(file: Path | str, paths: Sequence[GuidingPath]) -> None:
 
 
 def read_paths(file: Path | str) -> tuple[GuidingPath, ...]:
-    """The guiding paths in ``file``.
+    """Return the guiding paths in ``file``.
 
-    Raises InputError where it cannot be read or holds something else.
+    Raises InputError if it cannot be read or has other content.
     """
     rule = f"{file} must be a file of guiding paths, as write_paths writes it."
     try:
-        raw = read_file(Path(file), MOST_BYTES)
-        if len(raw) > MOST_BYTES:
-            raise InputError(f"{rule} It has more than {MOST_BYTES} bytes.")
-        said = _File.model_validate_json(raw)
+        raw = read_file(Path(file), MAX_BYTES)
+        if len(raw) > MAX_BYTES:
+            raise InputError(f"{rule} It has more than {MAX_BYTES} bytes.")
+        content = _File.model_validate_json(raw)
     except OSError as error:
-        raise InputError(f"{rule} The system says: {error.strerror}.") from error
+        raise InputError(f"{rule} It cannot be read: {error.strerror}.") from error
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))
         raise InputError(f"{rule} {place or 'It'}: {first['msg']}.") from None
-    return tuple(_path(k, path, rule) for k, path in enumerate(said.paths))
+    return tuple(_path(k, path, rule) for k, path in enumerate(content.paths))
 
 
-def _path(k: int, said: _Path, rule: str) -> GuidingPath:
-    points = distinct(np.array(said.points))
+def _path(k: int, content: _Path, rule: str) -> GuidingPath:
+    points = distinct(np.array(content.points))
     if len(points) < 2 or not arc_length(points)[-1] > 0.0:
-        raise InputError(f"{rule} paths.{k}.points: must lead somewhere.")
+        raise InputError(f"{rule} paths.{k}.points: must have different points.")
     return GuidingPath(
-        points, said.duration, said.turning, said.radius, said.rehearsals, said.succeeded
+        points,
+        content.duration,
+        content.turning,
+        content.radius,
+        content.rehearsals,
+        content.succeeded,
     )
 
 
 def fingerprint_of(file: Path | str) -> str:
-    """sha256 of the file."""
-    return hashlib.sha256(read_file(Path(file), MOST_BYTES)).hexdigest()
+    """Return the sha256 of the file."""
+    return hashlib.sha256(read_file(Path(file), MAX_BYTES)).hexdigest()

@@ -1,13 +1,12 @@
-"""Guiding paths out of the rehearsals that a run folder holds, and their picture."""
+"""Guiding paths from the rehearsals of a run folder, and their picture."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchnav.arena.solid import Kind
-from benchnav.arena.world import World
-from benchnav.episode.episode import Episode
+from benchnav.arena import Kind, World
+from benchnav.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.runner.rollouts.rehearsal import granted
 
@@ -18,24 +17,24 @@ if TYPE_CHECKING:
 
 
 def paths_of(rehearsals: Sequence[Episode], tolerance: float = 0.05) -> tuple[GuidingPath, ...]:
-    """The guiding paths out of the rehearsals of one world; leaders that never succeeded lack.
+    """Return the guiding paths from the rehearsals of one world, without unsuccessful leaders.
 
-    ``rehearsals`` are episodes as `benchnav.store.runs.reading.read_rehearsals` gives them, all of
+    ``rehearsals`` are episodes of `benchnav.store.runs.reading.read_rehearsals`, all of
     one navigator, scenario, track and seed.
     """
     agents = rehearsals[0].world.agents
-    told = [granted(episode, np.arange(len(agents))) for episode in rehearsals]
+    granted_rehearsals = [granted(episode, np.arange(len(agents))) for episode in rehearsals]
     found = [
-        best_path(told, int(agent), float(agents.radius[agent]), tolerance)
+        best_path(granted_rehearsals, int(agent), float(agents.radius[agent]), tolerance)
         for agent in np.flatnonzero(agents.evaluated)
     ]
     return tuple(path for path in found if path is not None)
 
 
 def draw_paths(paths: Sequence[GuidingPath], axes: "Axes", world: World | None = None) -> None:
-    """Draw guiding paths, each in a colour of its own, over the walls and obstacles of ``world``.
+    """Draw guiding paths, each in its own colour, over the walls and obstacles of ``world``.
 
-    Raises MissingExtraError where matplotlib is not installed.
+    Raises MissingExtraError if matplotlib is not installed.
     """
     try:
         from matplotlib.patches import Circle, Polygon

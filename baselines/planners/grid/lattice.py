@@ -1,17 +1,18 @@
-"""Which places of a lattice are free for a disc, and which steps between them."""
+"""The free places of a lattice for a disc, and the free steps between them."""
 
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from benchnav.arrays import AnyArray, FloatArray
-from benchnav.geometry.capsule_grid import CapsuleGrid, capsule_grid, is_clear
+from benchnav.arrays import AnyArray, Extent, FloatArray
+from benchnav.geometry import CapsuleGrid, is_clear
+from benchnav.geometry.capsule_grid import capsule_grid
 from benchnav.kernels import kernel
 from benchnav.threads import run_rows
 
 MAX_CELLS = 4_000_000
-# the eight steps, in turn counter-clockwise from +x; step (d + 4) % 8 leads back
+# the eight steps, counter-clockwise from +x; step (d + 4) % 8 is the reverse of step d
 _DX = np.array([1, 1, 0, -1, -1, -1, 0, 1])
 _DY = np.array([0, 1, 1, 1, 0, -1, -1, -1])
 
@@ -26,22 +27,22 @@ class Lattice(NamedTuple):
     solids: CapsuleGrid  # grown by the disc's radius
 
 
-def size_of(frame: tuple[float, float, float, float], cell: float) -> tuple[int, int]:
-    """(columns, rows) of a lattice over a frame xmin, ymin, xmax, ymax [m]."""
+def size_of(frame: Extent, cell: float) -> tuple[int, int]:
+    """Return (columns, rows) of a lattice over a frame xmin, ymin, xmax, ymax [m]."""
     x0, y0, x1, y1 = frame
     return math.ceil((x1 - x0) / cell) + 2, math.ceil((y1 - y0) / cell) + 2
 
 
 def lattice(
-    capsules: FloatArray, radius: float, cell: float, frame: tuple[float, float, float, float],
+    capsules: FloatArray, radius: float, cell: float, frame: Extent,
     corner: tuple[float, float],
 ) -> Lattice:  # fmt: skip
-    """The lattice over ``frame``, for a disc of ``radius`` [m] among capsules (P, 5).
+    """Return the lattice over ``frame``, for a disc of ``radius`` [m] among capsules (P, 5).
 
-    ``corner`` [m] is a corner of four cells, so that half a cell from it is a place.
+    ``corner`` [m] is a corner of four cells, so places lie half a cell from it.
     A step is one of eight and is exact: the disc touches nothing along it. None cuts a
-    corner: a diagonal one needs both places beside it to be free. A place deep inside a
-    solid counts as free, though no step leads there.
+    corner: a diagonal step needs both places beside it to be free. A place deep inside a
+    solid counts as free, although no step leads there.
     """
     nx, ny = size_of(frame, cell)
     x = corner[0] + (math.floor((frame[0] - corner[0]) / cell) + 0.5) * cell
@@ -70,7 +71,7 @@ def _forward(
     low: int, high: int, solids: CapsuleGrid, x: float, y: float, cell: float, free: AnyArray,
     half: AnyArray,
 ) -> None:  # fmt: skip
-    """Bits 0 to 3 of the steps that lead right or up."""
+    """Set bits 0 to 3 for the steps that lead right or up."""
     ny, nx = free.shape
     for j in range(low, high):
         for i in range(nx):
@@ -102,15 +103,15 @@ def _both_ways(low: int, high: int, half: AnyArray, moves: AnyArray) -> None:
 
 @kernel
 def step(d: int) -> tuple[int, int]:
-    """(columns, rows) that step d leads."""
+    """Return (columns, rows) of step d."""
     return _DX[d], _DY[d]
 
 
 @kernel
 def joined(grid: Lattice, px: float, py: float, rings: int) -> tuple[AnyArray, FloatArray]:
-    """Places around p that the disc may go to straight, and how far [m] they are.
+    """Return the places around p that the disc can reach straight, and their distances [m].
 
-    One ring are the corners of the square of places that p lies in; every further one
+    One ring consists of the corners of the square of places around p; every further ring
     adds a row or column on each side.
     """
     ny, nx = grid.moves.shape

@@ -5,18 +5,16 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from pydantic import Field
 
-from benchnav.arrays import FloatArray
-from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import PluginConfig
-from benchnav.navigation.planner import UNSOLVED
+from benchnav.arrays import Extent, FloatArray
+from benchnav.navigation import UNSOLVED, Map, PluginConfig
 
 from ...common.clearance_planner import ClearanceConfig, free_goal
-from ...common.disc_planner import DiscPlanner, Frame, Query, frame_of
+from ...common.disc_planner import DiscPlanner, Query, frame_of
 from .lattice import MAX_CELLS, Lattice, joined, lattice, size_of
 from .search import Ends, search
 
-_RINGS = (1, 3)  # places that ends are joined to: the square around them, or what is near
-_Key = tuple[float, float, Frame]  # inflation [m], cell [m], frame
+_RINGS = (1, 3)  # rings of places to which ends are connected, tried in this order
+_Key = tuple[float, float, Extent]  # inflation [m], cell [m], frame
 
 
 class GridConfig(ClearanceConfig):
@@ -32,7 +30,7 @@ class GridConfig(ClearanceConfig):
 
 
 class GridPlanner(DiscPlanner):
-    """Places and steps of a disc on a grid, made once for a map and a radius."""
+    """Places and steps of a disc on a grid, computed once for a map and a radius."""
 
     any_angle: bool
 
@@ -112,7 +110,7 @@ class ThetaStar(GridPlanner):
 
 
 def straightened(path: FloatArray) -> FloatArray:
-    """The same path (W, 2) without repeated waypoints and those on a straight piece."""
+    """Return the same path (W, 2) without repeated waypoints and those on a straight piece."""
     moved = np.any(path[1:] != path[:-1], axis=1)
     path = path[np.concatenate([[True], moved])]
     way = np.diff(path, axis=0)

@@ -1,8 +1,8 @@
 """A* and Theta* on a lattice.
 
 Theta*: A. Nash, K. Daniel, S. Koenig and A. Felner, "Theta*: any-angle path planning on
-grids", AAAI 2007 (basic Theta*). Not from there: sight is the exact swept test of the
-disc, and start and goal need not be places of the lattice but are joined to some.
+grids", AAAI 2007 (basic Theta*). Additions: line of sight is the exact swept test of the
+disc, and start and goal need not be places of the lattice but are connected to some.
 """
 
 import math
@@ -11,23 +11,23 @@ from typing import NamedTuple
 import numpy as np
 
 from benchnav.arrays import AnyArray, FloatArray, IntArray
-from benchnav.geometry.capsule_grid import doubled, is_clear
+from benchnav.geometry import doubled, is_clear
 from benchnav.geometry.heap import pop, push
 from benchnav.kernels import kernel
 
 from .lattice import Lattice, step
 
-_NONE, _START = -2, -1  # parents that are no places
+_NONE, _START = -2, -1  # parents that are not places
 
 
 class Ends(NamedTuple):
-    """Start and goal, and the places that each is joined to."""
+    """Start and goal, and the places to which each is connected."""
 
     sx: float  # [m]
     sy: float
     gx: float
     gy: float
-    first: IntArray  # places, rising
+    first: IntArray  # places, ascending
     first_length: FloatArray  # [m]
     last: IntArray
     last_length: FloatArray
@@ -35,10 +35,10 @@ class Ends(NamedTuple):
 
 @kernel
 def search(grid: Lattice, ends: Ends, any_angle: bool) -> tuple[FloatArray, int]:
-    """(path (W, 2) [m] from start to goal, lines of sight asked for); (0, 2) if there is none.
+    """Return (path (W, 2) [m] from start to goal, number of sight tests); (0, 2) if there is none.
 
-    Without ``any_angle`` it is A* with the octile distance, and the shortest path that
-    consists of steps.
+    Without ``any_angle`` it is A* with the octile distance, and the result is the shortest path
+    of steps.
     """
     size = grid.moves.size
     nx = grid.moves.shape[1]
@@ -46,7 +46,7 @@ def search(grid: Lattice, ends: Ends, any_angle: bool) -> tuple[FloatArray, int]
     done = np.zeros(size, np.bool_)
     key, item, waiting = np.empty(1024), np.empty(1024, np.int64), 0
     slack = _slack(grid, ends, any_angle)
-    best, end, seen = math.inf, _NONE, 0
+    best, end, tests = math.inf, _NONE, 0
     for k in range(len(ends.first)):
         n = ends.first[k]
         cost[n], parent[n] = ends.first_length[k], _START
@@ -62,7 +62,7 @@ def search(grid: Lattice, ends: Ends, any_angle: bool) -> tuple[FloatArray, int]
                 total, via = cost[n] + ends.last_length[k], n
                 if any_angle:
                     px, py, far = _point(grid, ends, cost, parent[n])
-                    seen += 1
+                    tests += 1
                     if is_clear(grid.solids, px, py, ends.gx, ends.gy):
                         total = far + _distance(px, py, ends.gx, ends.gy)
                         via = parent[n]
@@ -80,8 +80,8 @@ def search(grid: Lattice, ends: Ends, any_angle: bool) -> tuple[FloatArray, int]
                 px, py, far = _point(grid, ends, cost, parent[n])
                 mx, my, _ = _point(grid, ends, cost, m)
                 direct = far + _distance(px, py, mx, my)
-                if direct < cost[m]:  # where it is not, sight would change nothing
-                    seen += 1
+                if direct < cost[m]:  # otherwise, the test would change nothing
+                    tests += 1
                     if is_clear(grid.solids, px, py, mx, my):
                         through, via = direct, parent[n]
             if through < cost[m]:
@@ -90,7 +90,7 @@ def search(grid: Lattice, ends: Ends, any_angle: bool) -> tuple[FloatArray, int]
                     key, item = doubled(key.reshape(-1, 1)).ravel(), _doubled(item)
                 bound = through + _ahead(grid, ends, m, any_angle, slack)
                 waiting = push(key, item, waiting, bound, m)
-    return _path(grid, ends, cost, parent, end), seen
+    return _path(grid, ends, cost, parent, end), tests
 
 
 @kernel
@@ -102,7 +102,7 @@ def _doubled(item: IntArray) -> IntArray:
 
 @kernel
 def _point(grid: Lattice, ends: Ends, cost: FloatArray, n: int) -> tuple[float, float, float]:
-    """x, y [m] of a place or the start, and what it costs [m] to be there."""
+    """Return x, y [m] of a place or the start, and the cost [m] to reach it."""
     if n == _START:
         return ends.sx, ends.sy, 0.0
     nx = grid.moves.shape[1]
@@ -122,7 +122,7 @@ def _octile(px: float, py: float, qx: float, qy: float) -> float:
 
 @kernel
 def _slack(grid: Lattice, ends: Ends, any_angle: bool) -> float:
-    """[m] by which the last motion, which is no step, may be shorter than its octile distance."""
+    """Return by how much [m] the last motion, not a step, may undercut its octile distance."""
     slack = 0.0
     if not any_angle:
         for k in range(len(ends.last)):
@@ -134,7 +134,7 @@ def _slack(grid: Lattice, ends: Ends, any_angle: bool) -> float:
 
 @kernel
 def _ahead(grid: Lattice, ends: Ends, n: int, any_angle: bool, slack: float) -> float:
-    """A path from place n to the goal is at least this long [m]."""
+    """Return a lower bound [m] of a path from place n to the goal."""
     nx = grid.moves.shape[1]
     x, y = grid.x + (n % nx) * grid.cell, grid.y + (n // nx) * grid.cell
     if any_angle:

@@ -1,4 +1,4 @@
-"""Free space of a disc's centre as polygons that lie wholly within it."""
+"""The free space of a disc's centre, as polygons that lie completely within it."""
 
 import math
 from typing import Any
@@ -6,21 +6,19 @@ from typing import Any
 import numpy as np
 import shapely
 
-from benchnav.arrays import FloatArray
-from benchnav.geometry.sweep import inside_solid, solid_index
-from benchnav.navigation.map import Map
+from benchnav.arrays import Extent, FloatArray
+from benchnav.geometry import inside_solid, solid_index
+from benchnav.navigation import Map
 
-_GRID = 1e-9  # [m] to which corners are rounded: no sides so short that triangles have no area
+_GRID = 1e-9  # [m] to which corners are rounded: no side is so short that triangles have no area
 
 
-def free_polygons(
-    map: Map, inflation: float, frame: tuple[float, float, float, float], segments: int
-) -> list[Any]:
-    """Shapely polygons of where the disc may be within a frame, apart or touching at points.
+def free_polygons(map: Map, inflation: float, frame: Extent, segments: int) -> list[Any]:
+    """Return shapely polygons of the disc's free space in a frame; they touch at points at most.
 
     Args:
-        map: what stands.
-        inflation: [m] by which that grows.
+        map: the obstacles.
+        inflation: [m] growth of the obstacles.
         frame: xmin, ymin, xmax, ymax [m].
         segments: sides of a polygon for a quarter of a circle; every side touches it.
     """
@@ -28,7 +26,7 @@ def free_polygons(
     blocked = shapely.union_all(grown, grid_size=_GRID)
     free = shapely.difference(shapely.box(*frame), blocked, grid_size=_GRID)
     parts = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon"]
-    # what no edge reaches lies within a solid or outside all of them, as a whole
+    # an area that no edge reaches lies either within a solid or outside all of them
     index = (map.capsules, *solid_index(map.solids))
     places = [part.representative_point() for part in parts]
     return [
@@ -39,10 +37,10 @@ def free_polygons(
 
 
 def capsule_polygons(capsules: FloatArray, inflation: float, segments: int) -> FloatArray:
-    """(P, 4 segments, 2) [m] corners of polygons around capsules (P, 5) that have grown.
+    """Return corners (P, 4 segments, 2) [m] of polygons around grown capsules (P, 5).
 
-    Every side touches the capsule: straight flanks stay where they are, arcs are
-    approximated from outside, by radius (1 / cos(π / (4 segments)) - 1) at most.
+    Every side touches the capsule: straight flanks keep their place, arcs are
+    approximated from outside, by at most radius (1 / cos(π / (4 segments)) - 1).
     """
     ends = capsules[:, :4].reshape(-1, 2, 2)
     along = ends[:, 1] - ends[:, 0]

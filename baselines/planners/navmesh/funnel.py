@@ -1,4 +1,4 @@
-"""The shortest path through a row of portals.
+"""The shortest path through a sequence of portals.
 
 Mikko Mononen, "Simple stupid funnel algorithm", 2010
 (https://digestingduck.blogspot.com/2010/03/simple-stupid-funnel-algorithm.html).
@@ -12,11 +12,11 @@ from benchnav.kernels import kernel
 
 @kernel
 def pulled(start: FloatArray, goal: FloatArray, doors: FloatArray) -> FloatArray:
-    """(W, 2) [m] the taut path from start (2,) to goal (2,) through portals (K, left right, 2).
+    """Return the taut path (W, 2) [m] from start to goal, (2,), by portals (K, left right, 2).
 
-    Left and right are seen on the way. The funnel has its apex at the last corner of the
-    path and its two edges at portal ends; it narrows from portal to portal, and where
-    one edge crosses the other, that one's end is the next corner.
+    Left and right are relative to the direction of travel. The funnel has its apex at the last
+    corner of the path and its two edges at portal ends. It narrows from portal to portal, and if
+    one edge crosses the other, the end of the other is the next corner.
     """
     count = len(doors)
     left, right = np.empty((count + 1, 2)), np.empty((count + 1, 2))
@@ -28,7 +28,7 @@ def pulled(start: FloatArray, goal: FloatArray, doors: FloatArray) -> FloatArray
     at_l, at_r = -1, -1  # the portals of the edges; the apex itself has -1
     k = 0
     while k <= count:
-        # an end that stays where it was crosses nothing, though apex and ends may be in one line
+        # an unchanged end crosses nothing, although apex and ends may be collinear
         if _same(edge_r, right[k]):
             at_r = k
         elif _turn(apex, edge_r, right[k]) >= 0.0:  # the right edge narrows
@@ -56,7 +56,7 @@ def pulled(start: FloatArray, goal: FloatArray, doors: FloatArray) -> FloatArray
 
 @kernel
 def _turn(a: FloatArray, b: FloatArray, c: FloatArray) -> float:
-    """Twice the area of abc: positive where c lies to the left of the way from a to b."""
+    """Return twice the area of abc: positive if c lies to the left of the line from a to b."""
     area: float = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     return area
 

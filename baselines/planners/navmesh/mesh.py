@@ -1,10 +1,10 @@
 """Triangles of free space, and the graph of places on their sides.
 
-A path is searched over sides (portals), because the way through a triangle depends
-on which of them it enters and leaves by. Where on a side it passes is settled later,
-by pulling a string; the search takes its midpoint, and, where a side is long, several
-places: with midpoints alone it takes detours around large triangles for shorter than
-they are, and may choose the wrong side of an obstacle.
+A path is searched over sides (portals), because the path through a triangle depends
+on the sides by which it enters and leaves. The exact point on a side follows later,
+by pulling a string; the search uses the midpoint, or on a long side several
+places. With midpoints alone it would take detours around large triangles for shorter than
+they are, and could choose the wrong side of an obstacle.
 """
 
 import math
@@ -20,8 +20,8 @@ from benchnav.kernels import kernel
 
 from .funnel import pulled
 
-_START, _GOAL = -1, -2  # nodes beside the places 0, 1, …
-_MOST = 16  # places on one side: a triangle has up to three times that squared ways through it
+_START, _GOAL = -1, -2  # nodes in addition to the places 0, 1, …
+_MAX_PLACES = 16  # on one side: a triangle has up to three times the square of this in links
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,22 +29,22 @@ class Mesh:
     """Triangles, counter-clockwise; their portals are the sides that two of them share."""
 
     corner: FloatArray  # (T, 3, 2) [m]
-    part: IntArray  # (T,) triangles with the same number are joined
+    part: IntArray  # (T,) triangles with the same number are connected
     sides: tuple[tuple[int, ...], ...]  # (T,) places on each triangle's portals
     place: FloatArray  # (S, 2) [m] where the search may pass a portal
-    portal: IntArray  # (S, 2, 2) by which triangle and side (k to k + 1): either way round
+    portal: IntArray  # (S, 2, 2) triangle and side (k to k + 1) on both sides of the portal
     graph: Any  # networkx.Graph over places, weights in metres
 
     def nearest(self, x: float, y: float, part: int = -1) -> tuple[int, float, float, float]:
-        """(triangle, its x, y, distance [m]) nearest to a point; -1 where there are none.
+        """Return (triangle, its x, y, distance [m]) nearest to a point; -1 if there are none.
 
-        With ``part``, only its triangles are looked at.
+        With ``part``, only triangles of that part count.
         """
         triangle, px, py, far = _nearest(self.corner, self.part, part, x, y)
         return int(triangle), float(px), float(py), float(far)
 
     def path(self, start: FloatArray, begin: int, goal: FloatArray, end: int) -> FloatArray:
-        """(W, 2) [m] the taut path from start in triangle ``begin`` to goal in ``end``.
+        """Return the taut path (W, 2) [m] from start in triangle ``begin`` to goal in ``end``.
 
         Both triangles must be of one part.
         """
@@ -52,7 +52,7 @@ class Mesh:
         return np.asarray(pulled(start, goal, doors))
 
     def _places(self, start: FloatArray, begin: int, goal: FloatArray, end: int) -> list[int]:
-        """Places that the shortest way through places passes, by A*."""
+        """Return the places that the shortest path over places passes, by A*."""
         if begin == end:
             return []
         import networkx
@@ -74,13 +74,13 @@ class Mesh:
         return list(nodes[1:-1])
 
     def _doors(self, places: list[int], begin: int, end: int) -> FloatArray:
-        """(K, 2, 2) [m] left and right ends of the portals passed, in order.
+        """Return left and right ends (K, 2, 2) [m] of the passed portals, in order.
 
-        Where a place only touches a portal (it lies on the straight way between two others
+        If a place only touches a portal (it lies on the straight line between two others
         of one triangle, or is the goal), the portal is not passed.
         """
         here = begin
-        passed: list[tuple[int, int]] = []  # triangle that is left, by which side
+        passed: list[tuple[int, int]] = []  # the triangle left, and its side
         for n in places:
             if here not in self.portal[n, :, 0]:
                 here, _ = passed.pop()
@@ -94,9 +94,9 @@ class Mesh:
 
 
 def mesh_of(polygons: list[Any], spacing: float) -> Mesh:
-    """The mesh of free polygons: their constrained Delaunay triangles, by shapely.
+    """Return the mesh of free polygons: their constrained Delaunay triangles, by shapely.
 
-    ``spacing`` [m] is the distance of places on a portal, at most; sixteen are the most.
+    ``spacing`` [m] is the largest distance of places on a portal; there are at most sixteen.
     """
     found = shapely.constrained_delaunay_triangles(np.array(polygons, object))
     rings = shapely.get_coordinates(shapely.get_parts(found)).reshape(-1, 4, 2)[:, :3]
@@ -122,7 +122,7 @@ def _counter_clockwise(rings: FloatArray) -> FloatArray:
 
 
 def _portals(corner: FloatArray) -> IntArray:
-    """(E, 2, 2) triangle and side, of both triangles at every side that two share."""
+    """Return triangle and side (E, 2, 2) of both triangles at every shared side."""
     _, vertex = np.unique(corner.reshape(-1, 2), axis=0, return_inverse=True)
     tail = vertex.reshape(-1, 3)
     head = np.roll(tail, -1, axis=1)
@@ -134,11 +134,11 @@ def _portals(corner: FloatArray) -> IntArray:
 
 
 def _places(corner: FloatArray, portal: IntArray, spacing: float) -> tuple[FloatArray, IntArray]:
-    """(S, 2) [m] places in the middle of equal shares of each portal; (S,) of which."""
+    """Return places (S, 2) [m] in the middle of equal shares of portals, and the portals (S,)."""
     triangle, side = portal[:, 0, 0], portal[:, 0, 1]
     tail, head = corner[triangle, side], corner[triangle, (side + 1) % 3]
-    wanted = np.ceil(np.hypot(*(head - tail).T) / spacing)
-    count = np.clip(wanted, 1, _MOST).astype(np.int64)
+    exact = np.ceil(np.hypot(*(head - tail).T) / spacing)
+    count = np.clip(exact, 1, _MAX_PLACES).astype(np.int64)
     of = np.repeat(np.arange(len(portal)), count)
     rank = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
     share = (rank + 0.5) / count[of]
@@ -146,7 +146,7 @@ def _places(corner: FloatArray, portal: IntArray, spacing: float) -> tuple[Float
 
 
 def load_networkx() -> Any:
-    """Return the module. Raise MissingExtraError where it is not installed."""
+    """Return the module. Raise MissingExtraError if it is not installed."""
     try:
         import networkx
     except ImportError:
@@ -155,13 +155,13 @@ def load_networkx() -> Any:
 
 
 def _graph(place: FloatArray, of: IntArray, sides: list[list[int]]) -> Any:
-    """Places of different portals of one triangle are joined by what lies between them."""
+    """Connect places on different portals of each triangle by their distance."""
     graph = load_networkx().Graph()
     graph.add_nodes_from(range(len(place)))
     at, which = place.tolist(), of.tolist()
-    for mine in sides:
-        for k, n in enumerate(mine):
-            for m in mine[:k]:
+    for own in sides:
+        for k, n in enumerate(own):
+            for m in own[:k]:
                 if which[n] != which[m]:
                     graph.add_edge(n, m, weight=math.dist(at[n], at[m]))
     return graph

@@ -5,25 +5,23 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from pydantic import Field
 
-from benchnav.arrays import FloatArray
-from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import PluginConfig
-from benchnav.navigation.planner import UNSOLVED
+from benchnav.arrays import Extent, FloatArray
+from benchnav.navigation import UNSOLVED, Map, PluginConfig
 
 from ...common.clearance_planner import ClearanceConfig
-from ...common.disc_planner import DiscPlanner, Frame, Query, frame_of
+from ...common.disc_planner import DiscPlanner, Query, frame_of
 from .free_polygon import free_polygons
 from .mesh import Mesh, load_networkx, mesh_of
 
-_AROUND = 1.0  # [m] of room around all that stands
+_AROUND = 1.0  # [m] of space around all obstacles
 
 
 class NavMesh(DiscPlanner):
-    """A* over the sides of free space's triangles (constrained Delaunay), a string pulled taut.
+    """A* over the sides of free space's triangles (constrained Delaunay), then a taut string.
 
-    The string is pulled by the funnel algorithm (Mononen 2010). The mesh is made once for
-    a map and a radius. The path is the shortest of its row of triangles, and clear of
-    obstacles, whose corners' arcs are approximated from outside; which row is found is not
+    The string is pulled by the funnel algorithm (Mononen 2010). The mesh is computed once for
+    a map and a radius. The path is the shortest of its sequence of triangles, and clear of
+    obstacles, whose corners' arcs are approximated from outside; the sequence found is not
     always the best.
     """
 
@@ -39,14 +37,14 @@ class NavMesh(DiscPlanner):
         )  # fmt: skip
 
     def __init__(self, config: PluginConfig | None = None) -> None:
-        """Raise MissingExtraError where networkx is not installed."""
+        """Raise MissingExtraError if networkx is not installed."""
         super().__init__(config)
         load_networkx()
-        self._meshes: WeakKeyDictionary[Map, dict[tuple[float, Frame], Mesh]]
+        self._meshes: WeakKeyDictionary[Map, dict[tuple[float, Extent], Mesh]]
         self._meshes = WeakKeyDictionary()
 
     def search(self, query: Query) -> tuple[FloatArray, int]:
-        """Ends that lie beside the mesh are joined to its nearest place, if the way is free."""
+        """Search; ends beside the mesh are connected to its nearest point if the motion is free."""
         mesh = self._mesh(query)
         x, y = query.start.tolist()
         begin, px, py, off = mesh.nearest(x, y)
@@ -73,6 +71,6 @@ class NavMesh(DiscPlanner):
 
 
 def _may_go(query: Query, x: float, y: float, px: float, py: float, off: float) -> bool:
-    """True where the disc may go straight from (x, y), ``off`` [m] the mesh, to p on it."""
+    """Whether the disc can move straight from (x, y), ``off`` [m] the mesh, to p on it."""
     free = query.checker
     return off == 0.0 or (free.point_is_free(x, y) and free.motion_is_free(x, y, px, py))

@@ -1,4 +1,4 @@
-"""When a search stops."""
+"""Termination conditions of a search."""
 
 import math
 from collections.abc import Callable
@@ -8,8 +8,8 @@ from time import perf_counter
 class Budget:
     """A termination condition that counts its calls, so that a search is reproducible.
 
-    It says stop after ``iterations`` calls, or ``improve`` calls after ``best_cost``
-    first was finite, or, where ``seconds`` are given, when they have passed.
+    It stops after ``iterations`` calls, or ``improve`` calls after ``best_cost``
+    first was finite, or, if ``seconds`` are given, when they have passed.
     """
 
     def __init__(self, iterations: int, improve: int = 0, seconds: float | None = None) -> None:

@@ -1,17 +1,25 @@
-"""An OMPL planner with each of two controllers, under names of their own."""
+"""An OMPL planner with each of two controllers, under separate names."""
 
 from pydantic import Field
 
-from benchnav.navigation.hierarchy.hierarchical import Hierarchical
+from benchnav.navigation import Hierarchical
 from benchnav.navigation.hierarchy.hierarchical_config import GuidedConfig, PartSpec
 
 from ...controllers.orca.avoidance import OrcaConfig
 
 
-class OmplPure(Hierarchical):
-    """An OMPL planner, and path following alone: nothing that moves is avoided."""
+class OmplConfig(GuidedConfig):
+    """Parameters, among them which of OMPL's planners plans."""
 
-    class Config(GuidedConfig):
+    planner: PartSpec = Field(
+        "ompl.rrt-connect", validate_default=True, description="a planner: name or {type: name, …}"
+    )
+
+
+class OmplPure(Hierarchical):
+    """An OMPL planner with path following only: moving obstacles are not avoided."""
+
+    class Config(OmplConfig):
         """Parameters."""
 
     def _controller(self) -> PartSpec:
@@ -19,9 +27,9 @@ class OmplPure(Hierarchical):
 
 
 class OmplOrca(Hierarchical):
-    """An OMPL planner, and optimal reciprocal collision avoidance along its path."""
+    """An OMPL planner with optimal reciprocal collision avoidance along its path."""
 
-    class Config(GuidedConfig):
+    class Config(OmplConfig):
         """Parameters."""
 
         orca: OrcaConfig = Field(OrcaConfig(), description="parameters of the controller")

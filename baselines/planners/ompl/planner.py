@@ -1,4 +1,4 @@
-"""What all planners of the Open Motion Planning Library share (Sucan, Moll & Kavraki 2012)."""
+"""The common part of planners of the Open Motion Planning Library (Sucan et al. 2012)."""
 
 from abc import abstractmethod
 
@@ -6,9 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray
-from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import PluginConfig
-from benchnav.navigation.planner import UNSOLVED, Plan
+from benchnav.navigation import UNSOLVED, Map, Plan, PluginConfig
 
 from ...common.clearance_planner import ClearanceConfig, ClearancePlanner, free_goal, problem
 from ...common.validity_checker import Checker, CheckerName, CountingChecker, checker_for
@@ -34,13 +32,13 @@ class OmplConfig(ClearanceConfig):
 
 
 class OmplPlanner(ClearancePlanner):
-    """What the planners share besides: straight paths, simplification, reasons."""
+    """Adds to an OMPL search: straight paths, simplification, reasons."""
 
     class Config(OmplConfig):
         """Parameters."""
 
     def __init__(self, config: PluginConfig | None = None) -> None:
-        """Raise MissingExtraError where OMPL is not installed."""
+        """Raise MissingExtraError if OMPL is not installed."""
         super().__init__(config)
         load()
 
@@ -57,9 +55,9 @@ class OmplPlanner(ClearancePlanner):
         tolerance: float,
         rng: np.random.Generator,
     ) -> Plan:
-        """As `Planner.plan`. A path that is free straight is answered without a search.
+        """Plan like `Planner.plan`. A free straight motion is the path, without a search.
 
-        Where the goal is blocked, the path ends at a free place within the tolerance of it.
+        If the goal is blocked, the path ends at a free place within the tolerance of it.
         """
         if wrong := problem(start, goal, radius, tolerance):
             return Plan(UNSOLVED, False, 0, wrong)
@@ -97,4 +95,4 @@ class OmplPlanner(ClearancePlanner):
         self, map: Map, start: FloatArray, goal: FloatArray, reach: float, checker: Checker,
         seed: int,
     ) -> FloatArray:  # fmt: skip
-        """A path (W, 2) for a disc of radius ``reach`` [m]; (0, 2) if none is found."""
+        """Return a path (W, 2) for a disc of radius ``reach`` [m]; (0, 2) if none is found."""

@@ -1,4 +1,4 @@
-"""The planners: each a class that says which of OMPL's it is, and its budget."""
+"""The OMPL planners: each class names its OMPL planner and its budget."""
 
 import math
 from hashlib import blake2b
@@ -8,16 +8,14 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from pydantic import Field
 
-from benchnav.arrays import FloatArray
-from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import PluginConfig
-from benchnav.navigation.planner import UNSOLVED
+from benchnav.arrays import Extent, FloatArray
+from benchnav.navigation import UNSOLVED, Map, PluginConfig
 
 from ...common.validity_checker import Checker
 from .budget import Budget
 from .planner import MOST_SEED, OmplConfig, OmplPlanner
 from .roadmap import Roadmap, grow
-from .search import Bounds, Query, search
+from .search import Query, search
 
 
 class RangeConfig(OmplConfig):
@@ -29,7 +27,7 @@ class RangeConfig(OmplConfig):
 
 
 class TreePlanner(OmplPlanner):
-    """Grows trees from the start, the goal, or both, for each query anew."""
+    """Grows new trees from the start, the goal, or both, for each query."""
 
     ompl_name: str
 
@@ -51,8 +49,8 @@ class TreePlanner(OmplPlanner):
     def _planner(self, geometric: Any, information: Any) -> Any:
         return getattr(geometric, self.ompl_name)(information)
 
-    def _range(self, reach: float, bounds: Bounds) -> float | None:
-        """[m] of the longest motion; None leaves it to OMPL."""
+    def _range(self, reach: float, bounds: Extent) -> float | None:
+        """Return the longest motion [m]; None leaves it to OMPL."""
         longest: float | None = self.config.range
         return longest
 
@@ -78,8 +76,8 @@ class RRTConnect(TreePlanner):
 
     ompl_name = "RRTConnect"
 
-    def _range(self, reach: float, bounds: Bounds) -> float | None:
-        # OMPL's choice is a fifth of the diagonal; among walls such motions are hardly ever free
+    def _range(self, reach: float, bounds: Extent) -> float | None:
+        # OMPL's choice is a fifth of the diagonal; among walls such motions are rarely free
         x0, y0, x1, y1 = bounds
         longest: float | None = self.config.range
         return longest or max(4.0 * reach, 0.02 * math.hypot(x1 - x0, y1 - y0))
@@ -119,7 +117,7 @@ class BITStar(TreePlanner):
 
     ompl_name = "BITstar"
 
-    def _range(self, reach: float, bounds: Bounds) -> float | None:
+    def _range(self, reach: float, bounds: Extent) -> float | None:
         return None
 
     def _planner(self, geometric: Any, information: Any) -> Any:
@@ -134,8 +132,8 @@ class BITStar(TreePlanner):
 class PRM(OmplPlanner):
     """A probabilistic roadmap (Kavraki et al. 1996), grown by OMPL.
 
-    Where a roadmap does not connect a query, one of twice the size is asked. A shared
-    roadmap depends on the map and the radius alone, never on who asks first.
+    If a roadmap does not connect a query, one of twice the size is tried. A shared
+    roadmap depends on the map and the radius only, not on the first query.
     """
 
     class Config(OmplConfig):
@@ -180,14 +178,14 @@ class PRM(OmplPlanner):
 
 
 def geometry_seed(map: Map, reach: float) -> int:
-    """A seed that only what stands in the map, and the radius [m], decide."""
+    """Return a seed that depends only on the map's obstacles and the radius [m]."""
     numbers = np.concatenate([[reach], map.bounds, map.capsules.ravel()])
     digest = blake2b(numbers.tobytes(), digest_size=8).digest()
     return 1 + int.from_bytes(digest, "little") % MOST_SEED
 
 
-def around(bounds: Bounds, *places: FloatArray) -> Bounds:
-    """The bounds, enlarged to hold the places (2,)."""
+def around(bounds: Extent, *places: FloatArray) -> Extent:
+    """Return the bounds, enlarged to contain the places (2,)."""
     points = np.vstack([np.reshape(bounds, (2, 2)), *places])
     (x0, y0), (x1, y1) = points.min(axis=0).tolist(), points.max(axis=0).tolist()
     return x0, y0, x1, y1

@@ -1,8 +1,8 @@
-"""A probabilistic roadmap: grown by OMPL, asked here.
+"""A probabilistic roadmap: grown by OMPL, searched here.
 
 OMPL's own PRM polls its termination condition from a second thread while it solves,
 which deadlocks with a Python condition and is not reproducible with a timed one.
-Growing alone is both safe and reproducible, and a query is a search on a graph.
+Growing only is safe and reproducible, and a query is a graph search.
 """
 
 import heapq
@@ -11,25 +11,25 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchnav.arrays import FloatArray
+from benchnav.arrays import Extent, FloatArray
 
 from ...common.validity_checker import Checker
 from .budget import Budget
-from .search import Bounds, load, space_information
+from .search import load, space_information
 
-_TRIED = 60  # milestones, nearest first, to which a start or goal may be connected
-_JOINED = 12  # connections at which that stops
+_TRIED = 60  # milestones, nearest first, that may be connected to a start or goal
+_JOINED = 12  # number of connections after which this stops
 
 
 @dataclass(frozen=True, eq=False)
 class Roadmap:
-    """Milestones, and which straight motions between them are free."""
+    """Milestones, and the free straight motions between them."""
 
     points: FloatArray  # (N, 2) [m]
-    links: tuple[tuple[int, ...], ...]  # (N,) the milestones that each is joined to
+    links: tuple[tuple[int, ...], ...]  # (N,) the milestones connected to each milestone
 
     def path(self, start: FloatArray, goal: FloatArray, checker: Checker) -> FloatArray:
-        """The shortest path (W, 2) [m] through milestones; (0, 2) if there is none."""
+        """Return the shortest path (W, 2) [m] through milestones; (0, 2) if there is none."""
         ends = self._joined(goal, checker)
         begins = self._joined(start, checker) if ends else {}
         remaining = np.hypot(*(self.points - goal).T).tolist()
@@ -62,7 +62,7 @@ class Roadmap:
         return np.vstack([start, self.points[chain[::-1]], goal])
 
     def _joined(self, place: FloatArray, checker: Checker) -> dict[int, float]:
-        """Milestone → distance [m], of near ones that are free to go to straight."""
+        """Return milestone → distance [m] for near milestones that can be reached straight."""
         distance = np.hypot(*(self.points - place).T)
         found: dict[int, float] = {}
         for n in np.argsort(distance, kind="stable")[:_TRIED].tolist():
@@ -74,8 +74,8 @@ class Roadmap:
         return found
 
 
-def grow(checker: Checker, bounds: Bounds, seed: int, budget: Budget) -> Roadmap:
-    """A roadmap of the free plane within ``bounds``, the same for the same seed."""
+def grow(checker: Checker, bounds: Extent, seed: int, budget: Budget) -> Roadmap:
+    """Return a roadmap of the free plane within ``bounds``, equal for equal seeds."""
     base, geometric, util = load()
     util.RNG.setSeed(seed)
     information = space_information(base, bounds, checker)

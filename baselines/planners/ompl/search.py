@@ -1,8 +1,8 @@
 """One search by an OMPL planner, reproducible for its seed.
 
-OMPL's random numbers start from one process-wide seed: it is set before each fresh
-space and planner. Every OMPL object is made, used and dropped within a function,
-because what is still referenced at exit is reported as leaked.
+OMPL's random numbers start from one process-wide seed: it is set before each new
+space and planner. Every OMPL object is created, used and dropped within a function,
+because objects that exist at exit are reported as leaks.
 """
 
 from collections.abc import Callable
@@ -12,29 +12,28 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arrays import FloatArray
+from benchnav.arrays import Extent, FloatArray
 from benchnav.errors import MissingExtraError
 
 from ...common.validity_checker import Checker
 from .budget import Budget
 
-Bounds = tuple[float, float, float, float]  # xmin, ymin, xmax, ymax [m]
 Make = Callable[[Any, Any], Any]  # (ompl.geometric, space information) → planner
 
 
 @dataclass(frozen=True, eq=False)
 class Query:
-    """From where to where, in which part of the plane."""
+    """Start, goal and bounds of a plan."""
 
     start: FloatArray  # (2,) [m]
     goal: FloatArray  # (2,) [m]
-    bounds: Bounds
+    bounds: Extent
 
 
 def load() -> tuple[Any, Any, Any]:
-    """OMPL's modules base, geometric and util, silenced.
+    """Return OMPL's modules base, geometric and util, silenced.
 
-    Raises MissingExtraError where OMPL is not installed.
+    Raises MissingExtraError if OMPL is not installed.
     """
     try:
         from ompl import base, geometric, util
@@ -44,8 +43,8 @@ def load() -> tuple[Any, Any, Any]:
     return base, geometric, util
 
 
-def space_information(base: Any, bounds: Bounds, checker: Checker) -> Any:
-    """The plane within ``bounds``, in which ``checker`` says what is valid."""
+def space_information(base: Any, bounds: Extent, checker: Checker) -> Any:
+    """Return the plane within ``bounds``, with ``checker`` as the validity check."""
     space = base.RealVectorStateSpace(2)
     limits = base.RealVectorBounds(2)
     for axis in (0, 1):
@@ -60,7 +59,7 @@ def space_information(base: Any, bounds: Bounds, checker: Checker) -> Any:
 
 
 def search(make: Make, query: Query, checker: Checker, seed: int, budget: Budget) -> FloatArray:
-    """The path (W, 2) [m] that the planner finds within its budget; (0, 2) if none."""
+    """Return the path (W, 2) [m] that the planner finds within its budget; (0, 2) if none."""
     base, geometric, util = load()
     util.RNG.setSeed(seed)
     information = space_information(base, query.bounds, checker)
@@ -84,11 +83,11 @@ def search(make: Make, query: Query, checker: Checker, seed: int, budget: Budget
 
 @cache
 def _validator_class() -> Any:
-    """OMPL's validator of motions, as one call per motion instead of many sampled states."""
+    """Return OMPL's validator of motions, with one call per motion instead of sampled states."""
     base, _, _ = load()
 
     class SweptValidator(base.MotionValidator):  # type: ignore[misc, name-defined]  # a local module
-        """Asks a `Checker`."""
+        """Calls a `Checker`."""
 
         def __init__(self, information: Any, checker: Checker) -> None:
             super().__init__(information)

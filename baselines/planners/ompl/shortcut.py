@@ -1,4 +1,4 @@
-"""Makes a path shorter within what is free, without randomness."""
+"""Shorten a path within free space, without random numbers."""
 
 import math
 from itertools import pairwise
@@ -18,11 +18,11 @@ _GAIN = 1e-3  # a round that shortens by less than this share is the last
 
 
 def shortened(path: FloatArray, checker: Checker) -> FloatArray:
-    """A path (W', 2) between the same ends that is no longer than ``path`` (W, 2).
+    """Return a path (W', 2) between the same ends that is no longer than ``path`` (W, 2).
 
-    Skips waypoints where a straight motion is free, then makes the path taut: corners
-    are cut off as far as they can be, and waypoints are pulled towards the line between
-    their neighbours, while that gains something.
+    It skips waypoints if a straight motion is free, then makes the path taut: corners
+    are cut off as far as possible, and waypoints are pulled towards the line between
+    their neighbours, while that shortens the path.
     """
     points = _skipped([(float(x), float(y)) for x, y in path], checker, len(path))
     length = _length(points)
@@ -38,7 +38,7 @@ def shortened(path: FloatArray, checker: Checker) -> FloatArray:
 
 
 def _skipped(points: list[_Point], checker: Checker, most: int) -> list[_Point]:
-    """From each waypoint straight to the farthest of the next ``most`` that is free to reach."""
+    """Go from each waypoint straight to the farthest of the next ``most`` reachable ones."""
     kept, here, last = points[:1], 0, len(points) - 1
     while here < last:
         there = min(last, here + most)
@@ -50,7 +50,7 @@ def _skipped(points: list[_Point], checker: Checker, most: int) -> list[_Point]:
 
 
 def _cut(points: list[_Point], checker: Checker) -> list[_Point]:
-    """Each sharp corner replaced by the largest free chamfer of ½, ¼, … of its sides."""
+    """Replace each sharp corner by the largest free chamfer of ½, ¼, … of its sides."""
     result = points[:1]
     for corner, after in pairwise(points[1:]):
         before, share = result[-1], 1.0
@@ -69,7 +69,7 @@ def _cut(points: list[_Point], checker: Checker) -> list[_Point]:
 
 
 def _pulled(points: list[_Point], checker: Checker) -> list[_Point]:
-    """Each inner waypoint moved towards the line between its neighbours, as far as is free."""
+    """Move each inner waypoint towards the line between its neighbours, as far as it is free."""
     result = points[:1]
     for point, after in pairwise(points[1:]):
         before, share = result[-1], 1.0
@@ -89,7 +89,7 @@ def _between(a: _Point, b: _Point, share: float) -> _Point:
 
 
 def _foot(p: _Point, a: _Point, b: _Point) -> _Point:
-    """The point of the segment ab that is nearest to p."""
+    """Return the point of the segment ab that is nearest to p."""
     dx, dy = b[0] - a[0], b[1] - a[1]
     length2 = dx * dx + dy * dy
     along = (p[0] - a[0]) * dx + (p[1] - a[1]) * dy
@@ -97,7 +97,7 @@ def _foot(p: _Point, a: _Point, b: _Point) -> _Point:
 
 
 def _straightness(a: _Point, b: _Point, c: _Point) -> float:
-    """Cosine of the turn at b; 1 where it has none."""
+    """Return the cosine of the turn at b; 1 if there is none."""
     ux, uy, vx, vy = b[0] - a[0], b[1] - a[1], c[0] - b[0], c[1] - b[1]
     scale = math.hypot(ux, uy) * math.hypot(vx, vy)
     return (ux * vx + uy * vy) / scale if scale > 0.0 else 1.0

@@ -5,8 +5,7 @@ from typing import Annotated
 
 import typer
 
-from benchnav.cli.console import put, say
-from benchnav.text.plural import counted
+from benchnav.cli.console import put
 
 
 def merge(
@@ -18,15 +17,6 @@ def merge(
     Prints the merged run on stdout, and says what it still lacks. Episodes that several
     runs hold must be the same.
     """
-    from benchnav.cli.tables.run_reading import warn_if_unfinished
-    from benchnav.store.runs import merge as merging
+    from benchnav.api.run import merge as merged
 
-    try:
-        merged = merging.merge(runs, out)
-    except KeyboardInterrupt as stopped:
-        stopped.add_note(f"what was copied is kept. The same command continues in {out}.")
-        raise
-    again = f"; already there, and the same: {merged.twice}" if merged.twice else ""
-    say(f"{counted(merged.copied, 'episode')} copied{again}")
-    warn_if_unfinished(merged.run)
-    put(str(out))
+    put(str(merged(runs, out).path))

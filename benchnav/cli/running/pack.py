@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from benchnav.cli.console import put, say
+from benchnav.cli.console import put
 
 
 def pack(
@@ -19,15 +19,6 @@ def pack(
     Whoever gets it checks it with `benchnav verify` and needs no navigator for that. Prints
     the file's path.
     """
-    from benchnav.errors import UsageError
-    from benchnav.store.packs.pack import SUFFIX, content_digest
-    from benchnav.store.packs.pack import pack as write_pack
-    from benchnav.store.runs.run_folder import RunFolder
+    from benchnav.api.run import open_run
 
-    target = out if out is not None else run.with_name(run.resolve().name + SUFFIX)
-    if target.suffix != SUFFIX:
-        raise UsageError(f"--out must end in {SUFFIX}. Got {target} instead.")
-    folder = RunFolder.open(run)
-    write_pack(folder, target)
-    say(f"{target.stat().st_size / 1e6:.1f} MB, content {content_digest(folder)}")
-    put(str(target))
+    put(str(open_run(run).pack(out)))

@@ -54,7 +54,7 @@ def train(
 
 
 def _load(name: str) -> tuple["Trainer[Any]", Any]:
-    """The trainer and the validated recipe of a name or file."""
+    """Return the trainer and the validated recipe of a name or file."""
     from benchnav.config.yaml_reader import read_yaml, validate
     from benchnav.errors import ScenarioError
     from benchnav.plugins import TRAINERS
@@ -62,12 +62,11 @@ def _load(name: str) -> tuple["Trainer[Any]", Any]:
     path = _path(name)
     document = read_yaml(path)
     kind = document.data.get("trainer") if isinstance(document.data, dict) else None
-    if kind is None:
-        kind = "recurrent-ppo"
     if kind not in TRAINERS.names():
+        got = "no such key" if kind is None else repr(kind)
         raise ScenarioError(
             f"{document.where(('trainer',))} must be one of {', '.join(TRAINERS.names())};"
-            f" got {kind!r}.{did_you_mean(str(kind), TRAINERS.names())}"
+            f" got {got}.{did_you_mean(str(kind), TRAINERS.names())}"
         )
     trainer: Trainer[Any] = TRAINERS.load(kind)()
     return trainer, validate(trainer.Recipe, document)
@@ -76,23 +75,13 @@ def _load(name: str) -> tuple["Trainer[Any]", Any]:
 def _path(name: str) -> Path:
     if name.endswith((".yaml", ".yml")) or Path(name).is_file():
         return Path(name)
-    shipped = shipped_recipes()
-    if name not in shipped:
+    from benchnav.envs.recipes import recipe_files
+
+    found, broken = recipe_files()
+    if name not in found:
+        causes = "".join(f" {error}" for error in broken.values())
         raise UsageError(
-            f"There is no recipe {name!r}.{did_you_mean(name, shipped)}"
-            f" These ship: {', '.join(sorted(shipped))}; a file's name ends in .yaml."
+            f"There is no recipe {name!r}.{did_you_mean(name, found)}"
+            f" 'benchnav list recipes' shows all; a file's name ends in .yaml.{causes}"
         )
-    return shipped[name]
-
-
-def shipped_recipes() -> dict[str, Path]:
-    """Every recipe that a registered trainer ships, by name; `doctor` names the broken ones."""
-    from benchnav.plugins import TRAINERS
-
-    broken = {name for name, _ in TRAINERS.broken()}
-    return {
-        path.stem: path
-        for name in TRAINERS.names()
-        if name not in broken
-        for path in sorted(TRAINERS.load(name).recipes.glob("*.yaml"))
-    }
+    return found[name].path

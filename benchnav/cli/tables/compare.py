@@ -1,4 +1,4 @@
-"""`benchnav compare`: what is different between two navigators, by how much, how sure."""
+"""`benchnav compare`: what differs between two navigators, by how much, and how sure."""
 
 from pathlib import Path
 from typing import Annotated
@@ -7,12 +7,12 @@ import typer
 
 from benchnav.cli.console import deliver, put, say
 from benchnav.cli.output_format import out_format
-from benchnav.cli.tables.run_reading import reading
+from benchnav.cli.tables.opened_runs import opened_runs
 from benchnav.errors import UsageError
 
 
 def compare(
-    told: Annotated[
+    arguments: Annotated[
         list[str],
         typer.Argument(metavar="RUN… A B", help="Run folders or packs, and two navigators."),
     ],
@@ -41,29 +41,28 @@ def compare(
         typer.Option("--recompute", help="Measure the stored episodes again, with every metric."),
     ] = False,
 ) -> None:
-    """Say in words what is different between navigators A and B, by how much, and how sure.
+    """Compare navigators A and B: what differs, by how much, and how sure that is.
 
-    Paired worlds, 95 % intervals, all that is said as one family of tests.
+    Worlds are paired, intervals are of 95 %, and all sentences are one family of tests.
     """
-    from benchnav.cli.tables import board
-    from benchnav.leaderboard.rendering.prose import FORMATS, render_duel
-    from benchnav.viewer.picture import SUFFIXES, is_picture, save
+    from benchnav.leaderboard.rendering.prose import FORMATS
+    from benchnav.viewer.picture import SUFFIXES, is_picture
 
-    if len(told) < 3:
+    if len(arguments) < 3:
         raise UsageError(
-            f"compare must be told a run and two navigators: RUN… A B. Got {' '.join(told)!r}."
+            "compare needs a run and two navigators: RUN… A B."
+            f" Got {' '.join(arguments)!r} instead."
         )
-    *runs, first, second = told
+    *runs, first, second = arguments
     wanted = out_format(FORMATS, format, out, SUFFIXES)
-    pair = first, second
-    with reading([Path(run) for run in runs]) as folders:
-        found, metrics = board.comparison(folders, pair, metric or None, scenario or (), recompute)
-    text = render_duel(found, metrics, wanted)
+    with opened_runs([Path(path) for path in runs]) as (run, *others):
+        found = run.compare(
+            first, second, metrics=metric, scenarios=scenario or (), runs=others,
+            recompute=recompute,
+        )  # fmt: skip
     if is_picture(out):
-        from benchnav.viewer.forest import draw_duel
-
-        save(draw_duel(found, metrics), out)
+        found.plot(out)
         say(f"{out} is drawn")
-        put(text.rstrip("\n"))
+        put(found.text(wanted).rstrip("\n"))
     else:
-        deliver(text, out)
+        deliver(found.text(wanted), out)

@@ -1,16 +1,17 @@
 """`benchnav leaderboard`: the table of one or more runs."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from benchnav.cli.console import deliver, say
+from benchnav.cli.console import deliver, put, say
 from benchnav.cli.output_format import out_format
-from benchnav.cli.tables.run_reading import reading
+from benchnav.cli.tables.opened_runs import opened_runs
 from benchnav.errors import UsageError
 
-FORMATS = ("markdown", "csv", "latex", "html", "json")
+FORMATS = ("markdown", "csv", "latex", "html", "json", "terminal")
 
 
 def leaderboard(
@@ -18,7 +19,8 @@ def leaderboard(
     format: Annotated[
         str | None,
         typer.Option(
-            help="markdown, csv, latex, html or json. [default: as --out ends, or markdown]"
+            help="terminal, markdown, csv, latex, html or json. [default: as --out ends; terminal"
+            " on a terminal, markdown when piped]"
         ),
     ] = None,
     out: Annotated[
@@ -61,34 +63,50 @@ def leaderboard(
     Means, 95 % intervals, and ties shown as ties. Entries whose runs were verified on this
     machine are marked.
     """
-    from benchnav.cli.tables import board
-    from benchnav.cli.tables.verified_labels import vouched
-    from benchnav.leaderboard.rendering.curve_table import FORMATS as CURVE_FORMATS
-    from benchnav.leaderboard.rendering.curve_table import render_curves
-    from benchnav.viewer.curves import draw_curves
-    from benchnav.viewer.picture import SUFFIXES, is_picture, save
-
     if curve is None:
-        if is_picture(out):
-            raise UsageError(
-                f"A table is no picture: {out} must end otherwise, or --curve be given."
-            )
-        wanted, named = out_format(FORMATS, format, out), _named(columns, metric)
+        _table(runs, format, out, metric, columns, recompute, verify)
     else:
-        wanted, named = out_format(CURVE_FORMATS, format, out, SUFFIXES), None
-        _refuse_for_curves(metric, columns, format if is_picture(out) else None)
-    with reading(runs) as folders:
-        if curve is None:
-            folders, checked = vouched(folders, verify)
-            text = board.table(folders, wanted, metric or None, recompute, checked, named)
-        else:
-            points = board.curve(folders, curve, (metric or ["success"])[0], recompute)
-            if is_picture(out):
-                save(draw_curves(points), out)
-                say(f"{out} is drawn")
-                return
-            text = render_curves(points, wanted)
-    deliver(text, out)
+        _curve(runs, curve, format, out, metric, columns, recompute)
+
+
+def _table(
+    paths: list[Path], format: str | None, out: Path | None, metric: list[str] | None,
+    columns: str | None, recompute: bool, verify: bool,
+) -> None:  # fmt: skip
+    from benchnav.viewer.picture import is_picture
+
+    if is_picture(out):
+        raise UsageError(f"A table is no picture: {out} must end otherwise, or --curve be given.")
+    if format is None and out is None and sys.stdout.isatty():
+        format = "terminal"
+    wanted, named = out_format(FORMATS, format, out), _named(columns, metric)
+    with opened_runs(paths) as (run, *others):
+        found = run.leaderboard(
+            metrics=metric, columns=named, runs=others, recompute=recompute, verify=verify
+        )
+        text = found.text(wanted)
+    if wanted == "terminal" and out is None:
+        put(text.rstrip("\n"), safe=True)
+    else:
+        deliver(text, out)
+
+
+def _curve(
+    paths: list[Path], axis: str, format: str | None, out: Path | None, metric: list[str] | None,
+    columns: str | None, recompute: bool,
+) -> None:  # fmt: skip
+    from benchnav.leaderboard.rendering.curve_table import FORMATS as CURVE_FORMATS
+    from benchnav.viewer.picture import SUFFIXES, is_picture
+
+    wanted = out_format(CURVE_FORMATS, format, out, SUFFIXES)
+    _refuse_for_curves(metric, columns, format if is_picture(out) else None)
+    with opened_runs(paths) as (run, *others):
+        found = run.curve(axis, (metric or ["success"])[0], runs=others, recompute=recompute)
+    if is_picture(out):
+        found.plot(out)
+        say(f"{out} is drawn")
+    else:
+        deliver(found.text(wanted), out)
 
 
 def _named(columns: str | None, metric: list[str] | None) -> list[str] | None:

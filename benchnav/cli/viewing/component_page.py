@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benchnav.cli.viewing.list import REGISTRIES, Kind
-from benchnav.cli.viewing.parameter_text import SAID_ONCE_MADE, needs, parameters
+from benchnav.cli.viewing.parameter_text import answers, needs, parameters
 from benchnav.cli.viewing.plugin_page import sentence
 from benchnav.plugins import Registry
 
@@ -52,9 +52,7 @@ def _page(registry: Registry, name: str) -> Iterator[str]:
     yield from _background(thing)
     facts = [f"Comes from `{registry.source(name).value}`."]
     if registry.kind != "planner":
-        needed = needs(registry, name)
-        kind = "command" if needed == SAID_ONCE_MADE else thing.command
-        facts.append(f"Needs {needed}; answers a {kind} per agent.")
+        facts.append(f"Needs {needs(registry, name)}; answers {answers(registry, name)}.")
     yield " ".join(facts)
     rows = parameters(thing)
     if rows:

@@ -9,10 +9,11 @@ from pathlib import Path
 
 import typer
 
-from benchnav.cli.console import columns, put
+from benchnav.cli.console import put
 from benchnav.errors import BenchnavError, MissingExtraError
 from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS
 from benchnav.system.user_folders import user_state
+from benchnav.text.columns import columns
 from benchnav.text.plural import counted
 from benchnav.threads import core_count
 

@@ -6,9 +6,19 @@ from typing import Annotated
 
 import typer
 
-from benchnav.cli.console import columns, one_of, put
+from benchnav.cli.console import one_of, put
 from benchnav.errors import BenchnavError
-from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, Registry
+from benchnav.plugins import (
+    CONTROLLERS,
+    METRICS,
+    NAVIGATORS,
+    PLANNERS,
+    SCENARIOS,
+    SUITES,
+    TRAINERS,
+    Registry,
+)
+from benchnav.text.columns import columns
 
 
 class Kind(StrEnum):
@@ -20,6 +30,8 @@ class Kind(StrEnum):
     SCENARIOS = "scenarios"
     SUITES = "suites"
     METRICS = "metrics"
+    TRAINERS = "trainers"
+    RECIPES = "recipes"
 
 
 REGISTRIES = {
@@ -27,6 +39,7 @@ REGISTRIES = {
     Kind.PLANNERS: PLANNERS,
     Kind.CONTROLLERS: CONTROLLERS,
     Kind.METRICS: METRICS,
+    Kind.TRAINERS: TRAINERS,
 }
 
 Row = tuple[str, str, str]  # name, where from, what it is
@@ -37,7 +50,8 @@ def list_(
         str | None,
         typer.Argument(
             metavar="KIND",
-            help="navigators, planners, controllers, scenarios, suites or metrics. [default: all]",
+            help="navigators, planners, controllers, scenarios, suites, metrics, trainers or"
+            " recipes. [default: all]",
         ),
     ] = None,
 ) -> None:
@@ -55,6 +69,8 @@ def _rows(kind: Kind) -> Iterator[Row]:
         yield from _scenarios()
     elif kind == Kind.SUITES:
         yield from _suites()
+    elif kind == Kind.RECIPES:
+        yield from _recipes()
     else:
         yield from _plugins(REGISTRIES[kind])
 
@@ -70,23 +86,46 @@ def _plugins(registry: Registry) -> Iterator[Row]:
 
 
 def _scenarios() -> Iterator[Row]:
-    from benchnav.scenario.catalogue import find, names
+    from benchnav.config.yaml_packages import missing_packages, scenario_files
+    from benchnav.scenario.catalogue import find
 
-    for name in names():
+    for name, files in scenario_files().items():
         try:
             found = find(name)
-            yield name, f"version {found.version}", found.title
+            yield name, _origin(found.version, files[0].distribution), found.title
         except BenchnavError as error:
             yield name, "broken", str(error)
+    for package, cause in missing_packages(SCENARIOS):
+        yield package, "broken", cause
 
 
 def _suites() -> Iterator[Row]:
+    from benchnav.config.yaml_packages import missing_packages, suite_files
     from benchnav.config.yaml_reader import read_yaml, validate
-    from benchnav.runner.plan.suite_file import SuiteFile, suite_names, suite_path
+    from benchnav.runner.plan.suite_file import SuiteFile, suite_path
 
-    for name in suite_names():
+    for name, files in suite_files().items():
         try:
-            said = validate(SuiteFile, read_yaml(suite_path(name)))
-            yield name, f"version {said.version}", said.description
+            suite = validate(SuiteFile, read_yaml(suite_path(name)))
+            yield name, _origin(suite.version, files[0].distribution), suite.description
         except BenchnavError as error:
             yield name, "broken", str(error)
+    for package, cause in missing_packages(SUITES):
+        yield package, "broken", cause
+
+
+def _origin(version: int, distribution: str) -> str:
+    return f"version {version}, {distribution}"
+
+
+def _recipes() -> Iterator[Row]:
+    from benchnav.envs.recipes import recipe_files
+
+    found, broken = recipe_files()
+    for name, recipe in found.items():
+        try:
+            yield name, f"trainer {recipe.trainer}", recipe.description
+        except BenchnavError as error:
+            yield name, "broken", str(error)
+    for trainer, cause in broken.items():
+        yield f"(of {trainer})", "broken", str(cause)

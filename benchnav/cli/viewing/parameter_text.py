@@ -20,6 +20,20 @@ def parameters(plugin: Any) -> list[tuple[str, str, str, str]]:
 
 def needs(registry: Registry, name: str) -> str:
     """What it needs as it is made without parameters."""
+    made = _made(registry, name)
+    if isinstance(made, str):
+        return made
+    return ", ".join(sorted(made.required)) or "nothing beyond its own state and goal"
+
+
+def answers(registry: Registry, name: str) -> str:
+    """What it answers as it is made without parameters."""
+    made = _made(registry, name)
+    return f"a {'command' if isinstance(made, str) else made.command} per agent"
+
+
+def _made(registry: Registry, name: str) -> Any:
+    """The plugin made without parameters; if it cannot be made, a text that says so."""
     from benchnav.navigation.plugin.configure import make
 
     if name in registry.names():  # and not a pair
@@ -27,10 +41,9 @@ def needs(registry: Registry, name: str) -> str:
         if any(field.is_required() for field in declared):
             return SAID_ONCE_MADE
     try:
-        required = make(registry, name).required
+        return make(registry, name)
     except BenchnavError as error:
         return f"what it says once it can be made: {error}"
-    return ", ".join(sorted(required)) or "nothing beyond its own state and goal"
 
 
 def _type(annotation: Any) -> str:

@@ -3,11 +3,11 @@
 import inspect
 from typing import Any
 
-from benchnav.cli.console import columns
-from benchnav.cli.viewing.parameter_text import needs, parameters
+from benchnav.cli.viewing.parameter_text import answers, needs, parameters
 from benchnav.navigation.hierarchy.composition import MAPPING, NO_PLANNER
 from benchnav.navigation.plugin.configure import make
-from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, Registry
+from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS, Registry
+from benchnav.text.columns import columns
 
 
 def plugin_page(registry: Registry, name: str) -> str:
@@ -17,10 +17,12 @@ def plugin_page(registry: Registry, name: str) -> str:
     facts.append(("comes from", f"{source.distribution}, {source.value}{_place(thing)}"))
     if registry is METRICS:
         facts += _metric_facts(thing)
+    if registry is TRAINERS:
+        recipes = ", ".join(path.stem for path in sorted(thing.recipes.glob("*.yaml")))
+        facts.append(("recipes", recipes or "none"))
     if registry in (NAVIGATORS, CONTROLLERS):
         facts.append(("needs", needs(registry, name)))
-    if isinstance(getattr(thing, "command", None), str):
-        facts.append(("answers", f"a {thing.command} per agent"))
+        facts.append(("answers", answers(registry, name)))
     text = f"{name}\n" + columns([("  " + key, value) for key, value in facts])
     return f"{text}\n  parameters\n{_parameters(thing)}" if hasattr(thing, "Config") else text
 

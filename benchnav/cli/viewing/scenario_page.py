@@ -66,8 +66,8 @@ def said_of_worlds(scenario: "Scenario") -> str:
 
     Raises UnsolvableError where a world cannot be drawn.
     """
-    from benchnav.generation.build import SPLITS
     from benchnav.generation.world_digest import coincidences
+    from benchnav.scenario.terms import SPLITS
 
     same = coincidences(scenario, (0, 1))
     if not same:

@@ -5,12 +5,13 @@ from typing import Annotated
 
 import typer
 
-from benchnav.cli.console import columns, put
+from benchnav.cli.console import put
 from benchnav.cli.viewing.list import REGISTRIES, Kind
 from benchnav.cli.viewing.scenario_page import scenario_page
 from benchnav.errors import BenchnavError, UsageError, did_you_mean
 from benchnav.navigation.hierarchy.composition import is_pair
-from benchnav.plugins import NAVIGATORS
+from benchnav.plugins import NAVIGATORS, TRAINERS
+from benchnav.text.columns import columns
 
 
 def show(
@@ -31,6 +32,7 @@ def show(
         or (kind == Kind.NAVIGATORS and _is_class(name) and not is_pair(name))
     ]
     blocks += [*_pair(name), *_scenario(name), *_suite(name)]
+    blocks = blocks or [*_recipe(name)]
     if not blocks:
         raise UsageError(
             f"NAME must be something that 'benchnav list' lists. Got {name!r} instead."
@@ -82,9 +84,26 @@ def _suite(name: str) -> Iterator[str]:
     yield f"{suite.name}@{suite.version}\n" + columns([("  " + k, v) for k, v in facts])
 
 
+def _recipe(name: str) -> Iterator[str]:
+    from benchnav.envs.recipes import recipe_files
+
+    recipe = recipe_files()[0].get(name)
+    if recipe is None:
+        return
+    facts = [
+        ("is", f"a recipe of the trainer {recipe.trainer}: {recipe.description}"),
+        ("comes from", f"{TRAINERS.source(recipe.trainer).distribution}, {recipe.path}"),
+        ("use it", f"benchnav train {name}"),
+    ]
+    head = f"{name}\n" + columns([("  " + k, v) for k, v in facts])
+    text = recipe.path.read_text(encoding="utf-8").rstrip()
+    yield "\n".join([head, "  file", *(f"    {line}" for line in text.splitlines())])
+
+
 def _everything() -> list[str]:
+    from benchnav.envs.recipes import recipe_files
     from benchnav.runner.plan.suite_file import suite_names
     from benchnav.scenario.catalogue import names
 
     plugins = [name for registry in REGISTRIES.values() for name in registry.names()]
-    return [*plugins, *names(), *suite_names()]
+    return [*plugins, *names(), *suite_names(), *recipe_files()[0]]

@@ -31,7 +31,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         split: str = "train",
         worlds: int = 100,
         reward: Reward = None,
-        others: Spec = "orca",
+        others: Spec | None = None,
         render_mode: str | None = None,
     ) -> None:
         """Draws the worlds.
@@ -42,12 +42,17 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
             split: train or validation.
             worlds: how many of the split.
             reward: weights that are not the defaults, see `RewardWeights`.
-            others: the navigator of the other agents, by name or ``{"type": name, …}``.
+            others: the navigator of the other agents, by name or ``{"type": name, …}``; required.
             render_mode: None; nothing is drawn.
 
         Raises BenchnavError for a mistake in any of these.
         """
         refuse_rendering(render_mode)
+        if others is None:
+            raise UsageError(
+                'others must name the navigator of the other agents: others="NAME".'
+                " 'benchnav list navigators' shows all."
+            )
         self.batch = make_batch(scenario, encoder, split, worlds, reward)
         self.observation_space = observation_space(self.batch.encoder)
         self.action_space = action_space()

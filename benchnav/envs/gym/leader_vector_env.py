@@ -35,7 +35,7 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
 
     def __init__(
         self,
-        num_envs: int = 4,
+        num_envs: int | None = 4,
         scenario: str = "leaders/static",
         encoder: str = "ego",
         *,
@@ -44,11 +44,13 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         reward: Reward = None,
         others: None = None,
         render_mode: str | None = None,
+        num_worlds: int = 1,
     ) -> None:
-        """Draws the worlds. The parameters are those of `LeaderEnv`, but two.
+        """Draws the worlds. The parameters are those of `LeaderEnv`, but three.
 
-        ``num_envs`` is N = B L, a multiple of the learning agents of a world; ``others`` must be
-        None, since all agents learn that the scenario does not drive.
+        ``num_envs`` is N = B L, a multiple of the learning agents of a world, or None: then
+        ``num_worlds`` gives B. ``others`` must be None, since all agents learn that the scenario
+        does not drive.
 
         Raises BenchnavError for a mistake in any of these.
         """
@@ -58,13 +60,13 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
                 "Every agent learns here: `others` must be None. Got"
                 f" {others!r} instead; vectorization_mode='sync' has others."
             )
-        self.batch = make_batch(scenario, encoder, split, worlds, reward, num_envs)
+        self.batch = make_batch(scenario, encoder, split, worlds, reward, num_envs, rows=num_worlds)
         self._slots = LearnerSlots(self.batch)
         self.num_envs, self._begun = self._slots.size, False
         self.single_observation_space = observation_space(self.batch.encoder)
         self.single_action_space = action_space()
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.observation_space = batch_space(self.single_observation_space, self.num_envs)
+        self.action_space = batch_space(self.single_action_space, self.num_envs)
 
     def reset(
         self,

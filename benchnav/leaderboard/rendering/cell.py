@@ -1,4 +1,4 @@
-"""One cell of a table for people: a number, its interval, and what it is based on."""
+"""One cell of a table: a number, its interval, and the number of episodes behind it."""
 
 import math
 from dataclasses import dataclass
@@ -17,10 +17,10 @@ class Cell:
 
 
 def cell(r: Record | None, *, interval: bool, decided: bool) -> Cell:
-    """Value, unit, interval if wanted, and how many episodes define it if not all do.
+    """Return value, unit, interval if requested, and the number of defining episodes if not all.
 
-    ``decided`` says that somebody is significantly worse than the best: only then does
-    a bold cell tell anything.
+    ``decided``: at least one entry is significantly worse than the best; only then is
+    a bold cell informative.
     """
     if r is None or not r.episodes:
         return Cell("")
@@ -33,7 +33,7 @@ def cell(r: Record | None, *, interval: bool, decided: bool) -> Cell:
 
 
 def _figures(r: Record, interval: bool) -> tuple[str, str]:
-    """The number, with its interval if wanted, and the unit that it is in."""
+    """Return the number, with its interval if requested, and its unit."""
     whole = None if r.unit else 1.0  # of a share
     if math.isnan(r.low):
         size, name = prefixed(r.unit, abs(r.value))
@@ -47,12 +47,12 @@ def _figures(r: Record, interval: bool) -> tuple[str, str]:
 
 
 def entrant(r: Record) -> Cell:
-    """A navigator's name, and how often it failed."""
+    """Return a navigator's name, and its number of failures."""
     return Cell(f"{r.navigator}, {r.failures} failed" if r.failures else r.navigator)
 
 
 def rank(r: Record | None) -> Cell:
-    """``1``, ``1–3`` for a tie, ``–`` where it does not rank."""
+    """Return the rank: ``1``, ``1–3`` for a tie, ``–`` without a rank."""
     if r is None or r.rank_low is None or r.rank_high is None:
         return Cell("–")
     tie = r.rank_low != r.rank_high
@@ -60,7 +60,7 @@ def rank(r: Record | None) -> Cell:
 
 
 def training(r: Record) -> Cell:
-    """What it learned from and how long, ``6.5 M, 38 min``; empty if it did not learn."""
+    """Return the amount and time of training, ``6.5 M, 38 min``; empty without training."""
     if math.isnan(r.training_decisions):
         return Cell("")
     seconds = r.training_seconds
@@ -70,7 +70,7 @@ def training(r: Record) -> Cell:
 
 
 def rehearsal(r: Record) -> Cell:
-    """What rehearsing cost in a world, ``812 decisions, 3.2 ms``; empty without."""
+    """Return the cost of rehearsals per world, ``812 decisions, 3.2 ms``; empty without."""
     if math.isnan(r.rehearsal_seconds):
         return Cell("")
     size, unit = prefixed("s", r.rehearsal_seconds)
@@ -79,10 +79,10 @@ def rehearsal(r: Record) -> Cell:
 
 
 def verified(r: Record) -> Cell:
-    """Whether it was re-simulated here; empty for what was not run."""
+    """Return whether the entry was verified here; empty for entries that were not run."""
     return Cell(("yes" if r.verified else "no") if r.episodes else "")
 
 
 def heading(r: Record) -> Cell:
-    """A metric and its direction."""
+    """Return a metric and its direction."""
     return Cell(r.metric + {"higher": " ↑", "lower": " ↓", None: ""}[r.better])

@@ -4,19 +4,19 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-PREFIXES = {  # unit → what it is divided by, and then called
+PREFIXES = {  # unit → divisor, and the prefixed unit
     "s": ((1.0, "s"), (1e-3, "ms"), (1e-6, "µs"), (1e-9, "ns")),
     "B": ((1e9, "GB"), (1e6, "MB"), (1e3, "kB"), (1.0, "B")),
 }
-ROUNDING = 1e-12  # smaller numbers are left over from arithmetic
-NARROWEST = 1e-6  # width of an interval, relative to its numbers, that still chooses the digits
+ROUNDING = 1e-12  # smaller numbers are rounding errors
+NARROWEST = 1e-6  # smallest relative width of an interval that determines the digits
 SMALLEST, LARGEST = 1e-4, 1e6  # numbers outside are written with an exponent
-FIGURES_ALONE = 4  # at most, of a number whose interval is not shown
-TWO_FIGURES = 3.0  # a half-width whose first figure is below this has a second one
+FIGURES_ALONE = 4  # at most, of a number without its interval
+TWO_FIGURES = 3.0  # a half-width with a smaller first figure has a second one
 
 
 def prefixed(unit: str, scale: float) -> tuple[float, str]:
-    """What to divide by so that ``scale`` has digits before the point, and the unit then."""
+    """Return the divisor that gives ``scale`` digits before the point, and the unit after it."""
     steps = PREFIXES.get(unit, ((1.0, unit),))
     if scale == 0.0:
         return 1.0, unit
@@ -24,10 +24,10 @@ def prefixed(unit: str, scale: float) -> tuple[float, str]:
 
 
 def number(value: float, whole: float | None = None) -> str:
-    """Return about three figures of a number that has no interval.
+    """Return about three figures of a number without an interval.
 
-    ``whole`` is the end of a range, as 1 is of a rate: close to it, as many decimals are
-    shown as tell the number from it.
+    ``whole`` is the end of a range, such as 1 of a rate: close to it, there are as many decimals
+    as are needed to distinguish the number from it.
     """
     size = abs(value)
     if size <= ROUNDING:
@@ -48,16 +48,16 @@ def figures(
 ) -> tuple[str, str, str]:
     """Return ``value``, ``low`` and ``high`` with the decimals that the interval resolves.
 
-    Half the interval's width has one figure, or two where the first is 1 or 2 (DIN 1333). One
-    more decimal is shown where two of the numbers, or a bound and 0 or ``whole``, would look
-    the same and are not. Where one more is not enough, the value is shown a step of the last
+    Half the interval's width has one figure, or two if the first is 1 or 2 (DIN 1333). One
+    more decimal is shown if two of the numbers, or a bound and 0 or ``whole``, would look
+    equal and are not. If that is not enough, the value is shown a step of the last
     decimal within its bounds, and a bound close to 0 or ``whole`` as ``<0.001`` or ``>0.999``.
 
     Args:
         value: lies between the bounds.
         low: lower end of the interval.
         high: upper end.
-        whole: end of the range, as 1 is of a rate; without effect where a number exceeds it.
+        whole: end of the range, such as 1 of a rate; no effect if a number exceeds it.
     """
     grid, numbers, suffix = _grid((value, low, high), whole)
     if grid is None:
@@ -72,7 +72,7 @@ def figures(
 def figure(value: float, low: float, high: float, whole: float | None = None) -> str:
     """Return ``value`` alone, with the decimals that its interval resolves, to four figures.
 
-    One more is shown where it would look like 0 or ``whole`` and is not.
+    One more is shown if it would look like 0 or ``whole`` and is not.
     """
     grid, numbers, suffix = _grid((value, low, high), whole)
     if grid is None:
@@ -97,12 +97,12 @@ def signed(text: str) -> str:
 
 
 def _power(x: float) -> int:
-    """The power of ten of the first figure."""
+    """Return the power of ten of the first figure."""
     return math.floor(math.log10(abs(x)))
 
 
 def _places(width: float) -> int:
-    """Decimals that show one or two figures of half a width."""
+    """Return the number of decimals that show one or two figures of half a width."""
     power = _power(width / 2.0)
     second = width / 2.0 / 10.0**power < TWO_FIGURES
     return max(0, second - power)
@@ -111,9 +111,9 @@ def _places(width: float) -> int:
 def _grid(
     given: tuple[float, float, float], whole: float | None
 ) -> tuple["_Grid | None", list[float], str]:
-    """Where (value, low, high) are rounded to, the numbers there, and the exponent behind them.
+    """Return the rounding grid of (value, low, high), the scaled numbers, and their exponent.
 
-    None where the interval has no width to choose decimals by.
+    The grid is None if the interval has no width that determines decimals.
     """
     numbers = [0.0 if abs(x) <= ROUNDING else x for x in given]
     scale = max(map(abs, numbers))
@@ -129,19 +129,19 @@ def _grid(
 
 @dataclass(frozen=True)
 class _Grid:
-    """Numbers rounded to ``places`` decimals, and what must not be mistaken for one another."""
+    """Numbers rounded to ``places`` decimals, with protection against misleading equality."""
 
     places: int
     whole: float | None
 
     def tells_apart(self, numbers: Sequence[float]) -> bool:
-        """Whether (value, low, high) can be rounded as they are."""
+        """Whether (value, low, high) stay distinct when rounded."""
         value, low, high = map(self._steps, numbers)
         ends = any(self.hides_end(x) for x in numbers[1:])
         return not ends and _apart(numbers, (value, low, high))
 
     def texts(self, numbers: Sequence[float]) -> tuple[str, str, str]:
-        """The value, kept within its bounds, and the bounds."""
+        """Return the value, kept within its bounds, and the bounds."""
         low, high = map(self.bound, numbers[1:])
         if _same(numbers[0], numbers[1]) or _same(numbers[0], numbers[2]):
             return (low if _same(numbers[0], numbers[1]) else high), low, high
@@ -156,7 +156,7 @@ class _Grid:
         return f"{steps / 10.0**self.places:.{self.places}f}"
 
     def _exact(self, x: float) -> str | None:
-        """0 and the ends of the range are written without decimals."""
+        """Return 0 and the ends of the range without decimals."""
         if x == 0.0:
             return "0"
         if self.whole is not None and _same(abs(x), self.whole):
@@ -170,7 +170,7 @@ class _Grid:
         return self._exact(x) is None and steps in ends
 
     def bound(self, x: float) -> str:
-        """A bound, or a number alone."""
+        """Return the text of a bound, or of a number alone."""
         steps = self._steps(x)
         if not self.hides_end(x):
             return self._exact(x) or self._text(steps)
@@ -184,5 +184,5 @@ def _same(a: float, b: float) -> bool:
 
 
 def _apart(numbers: Sequence[float], steps: Sequence[int]) -> bool:
-    """Whether the value differs from each bound on the grid where it differs at all."""
+    """Whether the value differs from each bound on the grid if it differs at all."""
     return all(_same(numbers[0], numbers[k]) or steps[0] != steps[k] for k in (1, 2))

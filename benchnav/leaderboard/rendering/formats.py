@@ -1,5 +1,7 @@
-"""Leaderboard → Markdown, CSV, LaTeX, HTML, JSON."""
+"""Leaderboard → Markdown, CSV, LaTeX, HTML, JSON, or text for a terminal."""
 
+import shutil
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from typing import Literal
@@ -14,8 +16,9 @@ from benchnav.leaderboard.rendering.layout import legend, sections
 from benchnav.leaderboard.rendering.long_format import as_csv, as_json
 from benchnav.leaderboard.rendering.matrix import matrix_sections
 from benchnav.leaderboard.rendering.section import Section
+from benchnav.leaderboard.rendering.terminal import terminal
 
-Format = Literal["markdown", "csv", "latex", "html", "json"]
+Format = Literal["markdown", "csv", "latex", "html", "json", "terminal"]
 Metrics = Sequence[str] | None
 
 
@@ -31,7 +34,8 @@ def render(
     all); LaTeX shows each as a matrix of navigators and scenarios. ``columns`` are instead those
     of every table, in this order: metrics and the names of
     `benchnav.leaderboard.columns.NAMES`. CSV and JSON are tidy, one record each with every field,
-    and hold all metrics unless some are named in either way.
+    and hold all metrics unless some are named in either way. "terminal" fits the tables to the
+    width of the terminal, with bold text where standard output is one.
     Raises UsageError for an unknown format, metric or column, and for metrics beside columns.
     """
     if format not in _RENDERERS:
@@ -91,6 +95,11 @@ def _markdown_table(section: Section) -> str:
     return "\n".join([*lines, ""] if section.notes else lines)
 
 
+def _terminal(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+    width = shutil.get_terminal_size().columns
+    return terminal(board, metrics, columns, width=width, styled=sys.stdout.isatty())
+
+
 def _latex(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
     """Matrices of the leading metric, or of those named; tables where columns are named."""
     if columns is not None:
@@ -108,18 +117,22 @@ _STYLE = (
 )
 
 
-def _html(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
+def html_fragment(board: Leaderboard, metrics: Metrics = None, columns: Metrics = None) -> str:
+    """Return the tables and the legend as HTML without a page around them, for a notebook."""
     body = []
     for chapter, tables in _chapters(board, metrics, columns):
         body.append(f"<h2>{escape.html(chapter)}</h2>")
         body += [part for section in tables for part in _html_table(section)]
-    said = [f"<p>{escape.html(line)}</p>" for line in legend(board)]
+    return "\n".join([*body, *(f"<p>{escape.html(line)}</p>" for line in legend(board))])
+
+
+def _html(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
     head = (
         '<!doctype html>\n<html lang="en"><head><meta charset="utf-8">'
         '<meta name="viewport" content="width=device-width">'
         f"<title>Leaderboard</title><style>{_STYLE}</style></head><body>\n<h1>Leaderboard</h1>"
     )
-    return "\n".join([head, *body, *said, "</body></html>", ""])
+    return "\n".join([head, html_fragment(board, metrics, columns), "</body></html>", ""])
 
 
 def _html_table(section: Section) -> list[str]:
@@ -143,4 +156,5 @@ _RENDERERS: dict[str, Callable[[Leaderboard, Metrics, Metrics], str]] = {
     "latex": _latex,
     "html": _html,
     "json": _json,
+    "terminal": _terminal,
 }

@@ -7,6 +7,7 @@ from itertools import groupby
 from benchnav.leaderboard.columns import DESCRIPTIVE, MIDDLE_HALF, NAMES, choose
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Leaderboard, Record
 from benchnav.leaderboard.rendering.cell import Cell, cell, entrant, heading
+from benchnav.leaderboard.rendering.footnotes import with_footnotes
 from benchnav.leaderboard.rendering.knowledge_gap_table import LEGEND as PRICE_LEGEND
 from benchnav.leaderboard.rendering.knowledge_gap_table import price_sections
 from benchnav.leaderboard.rendering.section import Section
@@ -34,16 +35,24 @@ LEGEND = (
 def sections(
     board: Leaderboard, metrics: Sequence[str] | None, columns: Sequence[str] | None = None
 ) -> Iterator[Section]:
-    """Tables of a leaderboard, one per track, scenario and role, and what ignorance costs.
+    """Return the tables of a leaderboard: one per track, scenario and role, then the prices.
 
-    ``columns`` are those of each table, in this order; without them, it has the rank, the
-    ``metrics``, and what else is known of its navigators.
+    The table over all scenarios is the first of its track. ``columns`` are the columns of each
+    table, in this order; by default a table shows the rank, the ``metrics``, and the facts about
+    navigators in which they differ. A long reason for a missing value becomes a footnote.
     """
+    yield from map(with_footnotes, _sections(board, metrics, columns))
+
+
+def _sections(
+    board: Leaderboard, metrics: Sequence[str] | None, columns: Sequence[str] | None
+) -> Iterator[Section]:
     named = None if columns is None else [name for name in columns if name in board.metrics]
     shown = choose(board.metrics, metrics if named is None else named)
     records = [r for r in board.records if r.track != PRICE]
     groups = {key: list(group) for key, group in groupby(records, key=_key)}
-    for key, records in groups.items():
+    modes = _modes(board)
+    for key, records in sorted(groups.items(), key=lambda item: _overall_first(item[0])):
         if key[2] == ALL_INTERQUARTILE:
             continue
         variants = sum((k[:3], k[6:]) == (key[:3], key[6:]) for k in groups) > 1
@@ -53,7 +62,7 @@ def sections(
             for r in group
             if key[2] == ALL and (k[:3], k[6:]) == ((*key[:2], ALL_INTERQUARTILE), key[6:])
         ]
-        table = _Table(records, middle, shown, columns)
+        table = _Table(records, middle, shown, columns, len(modes) > 1)
         yield from table.sections(_title(records, variants), _name(records[0], variants))
     priced = shown[:PRICED] if metrics is None and columns is None else shown
     yield from price_sections(board, priced)
@@ -63,7 +72,19 @@ def legend(board: Leaderboard) -> tuple[str, ...]:
     """What is said below all tables."""
     priced = any(r.track == PRICE for r in board.records)
     caveats = tuple(f"Caveat: {text}" for text in board.caveats)
-    return (*LEGEND, *((PRICE_LEGEND,) if priced else ()), *caveats)
+    modes = _modes(board)
+    mode = (f"mode: {modes[0]} for all entries.",) if len(modes) == 1 and modes[0] else ()
+    return (*LEGEND, *mode, *((PRICE_LEGEND,) if priced else ()), *caveats)
+
+
+def _modes(board: Leaderboard) -> list[str]:
+    """The modes in which the navigators ran."""
+    return sorted({r.mode for r in board.records})
+
+
+def _overall_first(key: tuple[str, ...]) -> tuple[str, str, bool]:
+    split, track, scenario, *_ = key
+    return split, track, scenario != ALL
 
 
 def failures_and_remarks(leaders: Sequence[Record]) -> list[str]:
@@ -118,7 +139,9 @@ class _Table:
         middle: list[Record],
         shown: Sequence[str],
         columns: Sequence[str] | None,
+        modes_differ: bool,
     ) -> None:
+        self.modes_differ = modes_differ
         self.at = {(r.navigator, r.metric): r for r in records}
         self.middle = {(r.navigator, r.metric): r for r in middle}
         known = {r.metric for r in records}
@@ -139,8 +162,8 @@ class _Table:
     def _usual(self, records: list[Record]) -> Iterator[str]:
         """The rank, the metrics, and beside the leading one what else is known."""
         yield "rank"
-        if any(r.mode for r in records):
-            yield "mode"  # in the runner's process, or in one of its own
+        if self.modes_differ:
+            yield "mode"
         for metric in self.metrics:
             yield metric
             if metric != self.leading:
@@ -186,20 +209,19 @@ class _Table:
         limit = len(self.metrics)
         if limit > NARROW:
             limit = INTERVALS - (MIDDLE_HALF in self.columns)
-        if leader.episodes:
-            cells = (self._cell(name, c, c in self.metrics[:limit]) for c in self.columns)
-        else:
-            cells = (self._absence(leader, c) for c in self.columns)
+        cells = (self._cell(name, c, c in self.metrics[:limit]) for c in self.columns)
         return entrant(leader), *cells
 
     def _absence(self, leader: Record, column: str) -> Cell:
-        """Of a navigator that was not run: the reason, once."""
+        """Return a cell of a navigator that was not run: the reason stands once."""
         if column in ("rank", "mode"):
-            return self._cell(leader.navigator, column, False)
+            return DESCRIPTIVE[column](leader)
         return Cell(leader.note if column == self.leading else "")
 
     def _cell(self, name: str, column: str, interval: bool) -> Cell:
         leader = self.at[name, self.leading]
+        if not leader.episodes:
+            return self._absence(leader, column)
         if column == MIDDLE_HALF:
             return cell(self.middle.get((name, self.leading)), interval=False, decided=False)
         if column in DESCRIPTIVE:

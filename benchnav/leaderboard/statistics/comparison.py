@@ -1,4 +1,4 @@
-"""One paired comparison, with everything that is needed to judge it."""
+"""One paired comparison, with the data needed to judge it."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -18,9 +18,9 @@ Verdict = Literal[
 ]  # fmt: skip
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Comparison:
-    """How much the first navigator's values exceed the second's in the worlds of both."""
+    """The difference of two navigators' values in the worlds of both."""
 
     first: str
     second: str
@@ -28,26 +28,26 @@ class Comparison:
     track: str
     role: str
     metric: str
-    worlds: int  # that both attempted and in which both have a value
+    worlds: int  # worlds that both attempted and in which both have a value
     difference: float  # mean of first − second, in the metric's unit; NaN without such worlds
-    low: float  # of its 95 % interval; NaN where the worlds give none
+    low: float  # of its 95 % interval; NaN if the worlds give none
     high: float
-    p: float  # of no difference; below 0.05 exactly where the interval excludes 0
+    p: float  # of the hypothesis of no difference; < 0.05 exactly if the interval excludes 0
     split: str
-    scenario_hash: str  # "" over all scenarios, as the next two are NaN
+    scenario_hash: str  # "" over all scenarios; the next two are then NaN
     horizon: float  # [s]
     dt: float  # [s]
-    first_rehearsal: int = 0  # rehearsals of each world that the first was granted
+    first_rehearsal: int = 0  # rehearsals of each world granted to the first
     second_rehearsal: int = 0
-    adjusted: float = math.nan  # p after Holm, over the family
-    family: int = 0  # how many comparisons are judged together
-    verdict: Verdict = "tie"  # on the first
+    adjusted: float = math.nan  # p after Holm's correction, over the family
+    family: int = 0  # number of comparisons in the family
+    verdict: Verdict = "tie"  # about the first
 
 
 def as_family(found: Sequence[Comparison], metrics: Mapping[str, Metric]) -> tuple[Comparison, ...]:
-    """The same comparisons, judged together: p adjusted by Holm's procedure over all of them.
+    """Return the comparisons as one family: p adjusted by Holm's procedure over all of them.
 
-    Those without a common world test nothing and are none of the family.
+    Comparisons without a common world test nothing and do not count in the family.
     """
     tested = np.array([c.worlds > 0 for c in found], dtype=np.bool_)
     p = np.array([c.p for c in found])
@@ -61,7 +61,7 @@ def as_family(found: Sequence[Comparison], metrics: Mapping[str, Metric]) -> tup
 
 
 def _verdict(c: Comparison, metric: Metric | None) -> Verdict:
-    """Too few worlds: had each of them differed by the whole range, it would be a tie too."""
+    """Return the verdict; "too few worlds" if even the largest differences would be a tie."""
     if not c.worlds:
         return "no common world"
     if c.first_rehearsal != c.second_rehearsal:

@@ -15,7 +15,7 @@ from benchnav.leaderboard.statistics.estimate import Sample, columns_of, estimat
 from benchnav.leaderboard.statistics.interval import resample
 from benchnav.leaderboard.statistics.strata import strata
 from benchnav.metrics.metric import Metric
-from benchnav.metrics.success import SUCCESS, success_by_horizon, success_time
+from benchnav.metrics.success import success, success_by_horizon, success_time
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from benchnav.episode.episode import Episode
 
 HORIZON = "horizon"
-"""The axis that is no parameter of a scenario: what if the episodes had ended by then."""
+"""The axis that is not a scenario parameter: results if the episodes had ended earlier."""
 POINTS = 100  # times of a curve against horizon
 
 
@@ -39,7 +39,7 @@ class Point:
     axis: str  # "horizon", or a parameter of the scenario
     axis_unit: str
     x: float
-    value: float  # mean over worlds; NaN where none defines it
+    value: float  # mean over worlds; NaN if undefined in all
     low: float  # of its 95 % interval
     high: float
     unit: str  # of the value
@@ -53,11 +53,11 @@ class Point:
 
 @dataclass(frozen=True)
 class Setting:
-    """Where on its axis a scenario stands that has a parameter."""
+    """The position on the axis of a scenario with a parameter."""
 
     scenario: str  # without the parameter
     x: float
-    unit: str  # of x; "" where the scenario does not say
+    unit: str  # of x; "" if the scenario gives none
 
 
 Key = tuple[str, str, str, str, str, float, float, int, str]
@@ -65,31 +65,32 @@ Worlds = dict[int, tuple[FloatArray, int]]  # seed → shares at every time, age
 
 
 def horizon_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[Point, ...]:
-    """Success against horizon at ``points`` even times, from episodes that ran to the last.
+    """Return success against horizon at ``points`` even times, from complete episodes.
 
     The cumulative incidence of success: agents that collided, failed or timed out stay in the
-    denominator. One curve for each navigator × scenario × track × role, and apart what
-    differs in split, scenario hash, horizon, time step or rehearsals. An episode that occurs
-    twice counts once. Background agents are left out.
+    denominator. There is one curve for each navigator × scenario × track × role, and separate
+    ones for each split, scenario hash, horizon, time step or number of rehearsals. A repeated
+    episode counts once. Background agents are left out.
     """
     curves: dict[Key, Worlds] = {}
     for episode in episodes:
-        who, clock, agents = episode.identity, episode.world.clock, episode.world.agents
+        identity, clock, agents = episode.identity, episode.world.clock, episode.world.agents
         times = success_time(episode)
         for role in Role:
             members = agents.evaluated & (agents.role == role)
             if members.any():
                 key = (
-                    who.split, who.track, who.scenario, role.name.lower(), who.scenario_hash,
-                    clock.horizon, clock.dt, episode.rehearsals, who.navigator,
+                    identity.split, identity.track, identity.scenario, role.name.lower(),
+                    identity.scenario_hash,
+                    clock.horizon, clock.dt, episode.rehearsals, identity.navigator,
                 )  # fmt: skip
                 shares = success_by_horizon(times[members], _times(clock.horizon, points))
-                curves.setdefault(key, {})[who.seed] = (shares, int(members.sum()))
+                curves.setdefault(key, {})[identity.seed] = (shares, int(members.sum()))
     return tuple(p for key in sorted(curves) for p in _horizon_curve(key, curves[key], points))
 
 
 def _times(horizon: float, points: int) -> FloatArray:
-    """(T,) [s] the ends of equal parts of the episode."""
+    """Return the ends (T,) [s] of equal parts of the episode."""
     found: FloatArray = np.linspace(0.0, horizon, points + 1)[1:]
     return found
 
@@ -99,10 +100,10 @@ def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
     value = np.array([worlds[seed][0] for seed in sorted(worlds)])
     agents = np.array([[float(worlds[seed][1])] * points for seed in sorted(worlds)])
     weights = resample(len(value), np.random.default_rng(0))
-    found = estimate(Sample(value, agents, weights), columns_of([SUCCESS] * points))
+    found = estimate(Sample(value, agents, weights), columns_of([success] * points))
     for k, time in enumerate(_times(horizon, points)):
         yield Point(
-            navigator, scenario, track, role, SUCCESS.name, HORIZON, "s", float(time),
+            navigator, scenario, track, role, success.name, HORIZON, "s", float(time),
             float(found.value[k]), float(found.low[k]), float(found.high[k]), "", len(value),
             split, digest, horizon, dt, rehearsal,
         )  # fmt: skip
@@ -111,10 +112,10 @@ def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
 def parameter_curves(
     results: pa.Table, metric: Metric, axis: str, settings: Mapping[str, Setting]
 ) -> tuple[Point, ...]:
-    """A metric against the parameter ``axis`` of scenarios.
+    """Return a metric against the parameter ``axis`` of scenarios.
 
-    ``settings`` maps a scenario of ``results`` (RESULTS) that has the parameter to where on
-    the axis it stands; other scenarios are left out.
+    ``settings`` maps a scenario of ``results`` (RESULTS) with this parameter to its position
+    on the axis; other scenarios are left out.
     """
     found = []
     for s in strata(results, {metric.name: metric}):
@@ -140,11 +141,11 @@ Place = tuple[str, str, str, str, float, float, int]
 
 
 def place(p: Point) -> Place:
-    """What stands in one picture: curves of one scenario, track and role."""
+    """Return the key of a picture: curves of one scenario, track and role share one."""
     return p.split, p.scenario, p.track, p.role, p.horizon, p.dt, p.rehearsal
 
 
 def panels(points: Iterable[Point]) -> Iterator[list[Point]]:
-    """The points of each place."""
+    """Yield the points of each picture."""
     for _, group in groupby(sorted(points, key=lambda p: (*place(p), p.navigator, p.x)), key=place):
         yield list(group)

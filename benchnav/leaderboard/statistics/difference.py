@@ -1,7 +1,7 @@
 """Paired differences of means over fixed scenarios: value, 95 % interval and p-value.
 
-The interval and the p-value come from one Student statistic: 0 lies in the interval exactly
-where p ≥ 0.05. docs/statistics.md says why, and keeps its false alarms, coverage and power.
+The interval and the p-value come from one Student statistic: the interval contains 0 exactly
+if p ≥ 0.05. docs/statistics.md gives the reasons, false alarms, coverage and power.
 """
 
 from collections.abc import Sequence
@@ -15,14 +15,14 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.leaderboard.statistics.estimate import Column
 from benchnav.leaderboard.statistics.interval import students
 
-EVENTS = 2.0  # events that the variance of a bounded metric counts and no world showed
-UNSEEN = 0.5  # of an event as large as the largest difference, which their size begins with
+EVENTS = 2.0  # unobserved events that are added to the variance of a bounded metric
+UNSEEN = 0.5  # weight of the largest difference in the size of these events
 ROUNDING = 1e-12  # of the largest difference: smaller deviations are rounding
 
 
 @dataclass(frozen=True, eq=False)
 class Moments:
-    """The differences of one scenario: C columns, worlds without a difference left out."""
+    """The differences of one scenario: C columns, without worlds that have no difference."""
 
     count: IntArray  # (C,) worlds
     mean: FloatArray  # (C,) NaN without a world
@@ -33,7 +33,7 @@ class Moments:
 
     @classmethod
     def of(cls, differences: FloatArray) -> Self:
-        """From (n, C) differences, NaN where a world has none."""
+        """Return the moments of differences (n, C), NaN for a world without a difference."""
         known = ~np.isnan(differences)
         count = known.sum(axis=0)
         value = np.where(known, differences, 0.0)
@@ -48,18 +48,18 @@ class Moments:
 
 @dataclass(frozen=True, eq=False)
 class Difference:
-    """(C,) each; NaN bounds where the worlds give no interval, and p = 1 there."""
+    """(C,) each; bounds are NaN and p = 1 if the worlds give no interval."""
 
     worlds: IntArray
     value: FloatArray
     low: FloatArray
     high: FloatArray
-    p: FloatArray  # two-sided, of no difference
+    p: FloatArray  # two-sided, of the hypothesis of no difference
 
 
 @dataclass(frozen=True, eq=False)
 class _Strata:
-    """The moments of S scenarios as arrays (S, C), and what each counts for."""
+    """The moments of S scenarios as arrays (S, C), and their weights."""
 
     count: IntArray
     mean: FloatArray  # 0 without a world
@@ -67,7 +67,7 @@ class _Strata:
     cubes: FloatArray
     sizes: FloatArray
     largest: FloatArray
-    share: FloatArray  # (S, C) of a scenario in the mean: all that have a world count alike
+    share: FloatArray  # (S, C) weight of a scenario in the mean: equal for all that have a world
 
     @classmethod
     def of(cls, parts: Sequence[Moments]) -> Self:
@@ -81,16 +81,16 @@ class _Strata:
 
     @property
     def value(self) -> FloatArray:
-        """(C,) mean over scenarios of the means over worlds."""
+        """The mean (C,) over scenarios of the means over worlds."""
         total: FloatArray = (self.share * self.mean).sum(axis=0)
         return np.where(self.count.any(axis=0), total, np.nan)
 
 
 def difference(parts: Sequence[Moments], column: Column) -> Difference:
-    """Mean over the scenarios ``parts`` of the mean differences of their worlds.
+    """Return the mean over the scenarios ``parts`` of the mean differences of their worlds.
 
-    Scenarios are fixed and count alike: the variance is that of the worlds within them, so a
-    scenario in which the difference is another one adds none. ``column`` says what is known
+    Scenarios are fixed and have equal weights: the variance is that of the worlds within them, so a
+    scenario with another difference adds none. ``column`` gives the known properties
     of the values, not of their differences.
     """
     strata = _Strata.of(parts)
@@ -112,10 +112,10 @@ def difference(parts: Sequence[Moments], column: Column) -> Difference:
 
 
 def _widened(worth: FloatArray, skewness: FloatArray) -> FloatArray:
-    """(C,) where a Student statistic of a skewed estimate has the quantile ``worth`` ≥ 0.
+    """Return the quantile (C,) of a skewed estimate's Student statistic for ``worth`` ≥ 0.
 
     If the long tail of the differences lies on the side of 0, large ones may not have been
-    seen. N. J. Johnson, "Modified t tests and confidence intervals for asymmetrical
+    observed. N. J. Johnson, "Modified t tests and confidence intervals for asymmetrical
     populations", JASA 73 (1978): the term of the Cornish-Fisher expansion that grows with t,
     only where it widens the interval (ours).
     """
@@ -123,13 +123,13 @@ def _widened(worth: FloatArray, skewness: FloatArray) -> FloatArray:
 
 
 def _narrowed(t: FloatArray, skewness: FloatArray) -> FloatArray:
-    """(C,) the ``worth`` of which `_widened` makes t ≥ 0."""
+    """Return the ``worth`` (C,) that `_widened` turns into t ≥ 0."""
     root: FloatArray = np.sqrt(1.0 + 4.0 * skewness * t / 3.0)
     return 2.0 * t / (1.0 + root)
 
 
 def _third(strata: _Strata) -> FloatArray:
-    """(C,) third cumulant of the mean over scenarios, without bias (Fisher's k-statistic)."""
+    """Return the third cumulant (C,) of the mean over scenarios, by Fisher's k-statistic."""
     n = strata.count
     each = strata.share**3 * strata.cubes / np.maximum(n * (n - 1) * (n - 2), 1)
     total: FloatArray = each.sum(axis=0)
@@ -137,13 +137,13 @@ def _third(strata: _Strata) -> FloatArray:
 
 
 def _variance(strata: _Strata) -> tuple[FloatArray, FloatArray]:
-    """(C,), (C,) variance of the mean over scenarios, and its degrees of freedom.
+    """Return the variance (C,) of the mean over scenarios, and its degrees of freedom (C,).
 
     B. L. Welch, "The generalization of 'Student's' problem when several different population
     variances are involved", Biometrika 34 (1947): the degrees of freedom of his section 6,
     which few worlds bias less than those of Satterthwaite, and never more than there are.
     The spread within a scenario of one world is unknown: its distance from the mean over
-    scenarios stands for it, as if such scenarios were a sample. NaN for one world in all.
+    scenarios replaces it, as if such scenarios were a sample. NaN for one world in all.
     """
     n, scenarios = strata.count, (strata.count > 0).sum(axis=0)
     single = n == 1
@@ -159,14 +159,14 @@ def _variance(strata: _Strata) -> tuple[FloatArray, FloatArray]:
 
 
 def _event(strata: _Strata, variance: FloatArray, width: FloatArray) -> FloatArray:
-    """(C,) what one more event would add to the mean: an arrival or a collision, say.
+    """Return the contribution (C,) of one more event, such as a collision, to the mean.
 
-    Where few worlds differ, their variance is too small: events that did not happen to fall
-    into these worlds are missing. A. Agresti and Y. Min, "Simple improved confidence intervals
-    for comparing matched proportions", Statistics in Medicine 24 (2005), therefore count a
-    world more in each direction. Here the variance counts `EVENTS` more, of the size of the
-    deviations that were seen, because a world of many agents seldom differs by its whole
-    range ``width`` (ours); that size is taken where no world differs. A metric without a
+    If few worlds differ, their variance is too small: events that did not occur
+    in these worlds are missing. A. Agresti and Y. Min, "Simple improved confidence intervals
+    for comparing matched proportions", Statistics in Medicine 24 (2005), therefore add a
+    world in each direction. Here the variance has `EVENTS` more, of the size of the
+    observed deviations, because a world of many agents seldom differs by its whole
+    range ``width`` (ours); the range is used if no world differs. A metric without a
     range has no such events, unless it does not vary.
     """
     n = np.maximum(strata.count, 1)
@@ -178,11 +178,11 @@ def _event(strata: _Strata, variance: FloatArray, width: FloatArray) -> FloatArr
     largest = strata.largest.max(axis=0)
     whole = usual * np.where((largest == 0.0) & bounded, width, largest)
     with np.errstate(invalid="ignore", divide="ignore"):
-        seen = (squares + UNSEEN * whole**2) / (sizes + UNSEEN * whole)
-    found: FloatArray = np.where(whole == 0.0, 0.0, seen)
+        observed = (squares + UNSEEN * whole**2) / (sizes + UNSEEN * whole)
+    found: FloatArray = np.where(whole == 0.0, 0.0, observed)
     return np.where(bounded | (variance == 0.0), found, 0.0)
 
 
 def least_p(worlds: int) -> float:
-    """The p-value where all ``worlds`` of one scenario differ by the range of a bounded metric."""
+    """Return the p-value if all ``worlds`` of one scenario differ by a bounded metric's range."""
     return float(2.0 * stdtr(worlds - 1, -worlds / np.sqrt(EVENTS))) if worlds > 1 else 1.0

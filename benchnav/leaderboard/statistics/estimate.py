@@ -1,4 +1,4 @@
-"""Value and 95 % interval of every column of a stratum, and of means over strata."""
+"""Estimates: value and 95 % interval of the columns of a stratum, and of means over strata."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ BLOCK = 64  # columns resampled at once
 
 @dataclass(frozen=True, eq=False)
 class Estimate:
-    """(C,) each; NaN bounds where the episodes give no interval."""
+    """(C,) each; the bounds are NaN if the episodes give no interval."""
 
     value: FloatArray
     low: FloatArray
@@ -38,7 +38,7 @@ class Estimate:
 
 @dataclass(frozen=True, eq=False)
 class Column:
-    """What is known of the metric of each column (C,)."""
+    """The known properties of the metric of each column (C,)."""
 
     rate: BoolArray
     least: FloatArray  # possible value, may be infinite
@@ -46,7 +46,7 @@ class Column:
 
 
 def columns_of(metrics: Sequence[Metric | None]) -> Column:
-    """What is known of one column for each metric; nothing of one that is not installed."""
+    """Return the known properties of one column per metric; None: the metric is not installed."""
     return Column(
         np.array([m is not None and m.rate for m in metrics], dtype=np.bool_),
         np.array([-np.inf if m is None else m.low for m in metrics]),
@@ -64,10 +64,10 @@ class Sample:
 
 
 def estimate(sample: Sample, column: Column) -> Estimate:
-    """Rates: the mid-P interval at the effective size. Others: the bootstrap over worlds.
+    """Estimate rates by the mid-P interval at the effective size, others by the bootstrap.
 
-    Where all values of a bounded metric agree the bootstrap has no width; there it is
-    said how far unseen worlds could move the mean. Where the range is not bounded, or
+    If all values of a bounded metric are equal, the bootstrap has no width; the interval then
+    shows how far unseen worlds could move the mean. If the range is not bounded, or
     fewer than two worlds have a value, there is no interval.
     """
     value = mean(sample.value)
@@ -89,7 +89,7 @@ def estimate(sample: Sample, column: Column) -> Estimate:
 
 
 def _varies(values: FloatArray) -> BoolArray:
-    """(C,) whether a column (n, C) holds two different values."""
+    """Whether a column (n, C) holds two different values, (C,)."""
     low = np.where(np.isnan(values), np.inf, values).min(axis=0, initial=np.inf)
     high = np.where(np.isnan(values), -np.inf, values).max(axis=0, initial=-np.inf)
     varies: BoolArray = low < high
@@ -97,10 +97,10 @@ def _varies(values: FloatArray) -> BoolArray:
 
 
 def mean_over(parts: list[Estimate], samples: list[Sample], column: Column) -> Estimate:
-    """Mean over strata of C columns, each stratum counting alike; those without a value do not.
+    """Return the mean over strata of C columns, with equal weights of the strata with a value.
 
     Rates, and bounded metrics that do not vary in some stratum, recover their variance
-    from the intervals of the strata; others take a bootstrap stratified by scenario.
+    from the intervals of the strata; others use a bootstrap stratified by scenario.
     """
     value, low, high = (
         np.array([getattr(part, name) for part in parts]) for name in ("value", "low", "high")
@@ -130,9 +130,9 @@ def mean_over(parts: list[Estimate], samples: list[Sample], column: Column) -> E
 
 
 def interquartile_mean_over(samples: list[Sample]) -> Estimate:
-    """Mean over the middle half of the strata: bootstrap stratified by scenario, C columns.
+    """Return the interquartile mean over strata: bootstrap stratified by scenario, C columns.
 
-    NaN where a stratum has no value, and no interval where one has fewer than two.
+    NaN if a stratum has no value, and no interval if a stratum has fewer than two.
     R. Agarwal et al., "Deep reinforcement learning at the edge of the statistical
     precipice", NeurIPS 2021, with scenarios in the place of their runs.
     """
@@ -157,12 +157,12 @@ def _unknown(value: FloatArray) -> Estimate:
 
 
 def _counts(samples: list[Sample]) -> FloatArray:
-    """(strata, C) values that each stratum gives."""
+    """Return the number of values (strata, C) of each stratum."""
     return np.array([(~np.isnan(s.value)).sum(axis=0) for s in samples], dtype=np.float64)
 
 
 def _alike(has: BoolArray, wanted: BoolArray) -> Iterator[tuple[IntArray, IntArray]]:
-    """Strata with values and the wanted columns that have theirs there, few at a time."""
+    """Yield groups of columns that have values in the same strata, with these strata."""
     patterns, pattern = np.unique(has[:, wanted], axis=1, return_inverse=True)
     columns = np.flatnonzero(wanted)
     for p in range(patterns.shape[1]):

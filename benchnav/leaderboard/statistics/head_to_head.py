@@ -1,4 +1,4 @@
-"""Two navigators against each other, on all metrics and places that both were run in."""
+"""Head-to-head comparison of two navigators, on all metrics and places where both were run."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Duel:
-    """What `benchnav compare` says: one family of comparisons, and what it cannot compare."""
+    """The result of `benchnav compare`: one family of comparisons, and notes on missing ones."""
 
     first: str
     second: str
@@ -43,11 +43,11 @@ def duel(
     second: str,
     gaps: Sequence[NotApplicable] = (),
 ) -> Duel:
-    """``first`` − ``second`` by the metrics ``names``, in every scenario, track and role of both.
+    """Compare ``first`` − ``second`` by the metrics ``names``, in every scenario, track and role.
 
-    Where they met in several scenarios of a track also over all of these, each counting
-    alike. All that is said is one family. ``gaps`` are cells that could not be run.
-    Raises UsageError where one of the two is not in ``results``, or they met nowhere.
+    If both were run in several scenarios of a track, also compare over all of these with equal
+    weights. All comparisons form one family. ``gaps`` are cells that could not be run.
+    Raises UsageError if one of the two is not in ``results``, or they share no world.
     """
     _require(results, first, second)
     import pyarrow.compute as pc
@@ -61,13 +61,13 @@ def duel(
     notes = absences(found, first, second, gaps)
     if not met:
         raise UsageError(
-            f"Two navigators can be compared where both were run in the same worlds. {first!r}"
+            f"Two navigators can be compared if both were run in the same worlds. {first!r}"
             f" and {second!r} never were.{''.join(f' {note}' for note in notes)}"
         )
-    wanted = [metrics[name] for name in names]
-    every = [c for s in met for c in _in_one(s, first, second, wanted)]
+    chosen = [metrics[name] for name in names]
+    every = [c for s in met for c in _in_one(s, first, second, chosen)]
     for _, group in groupby(met, key=lambda s: (s.split, s.track, s.role)):
-        every += _over_all(list(group), first, second, wanted)
+        every += _over_all(list(group), first, second, chosen)
     order = {name: place for place, name in enumerate(names)}
     every.sort(key=lambda c: (order[c.metric], c.split, c.track, c.role))  # stable
     return Duel(first, second, as_family(every, metrics), tuple(notes))
@@ -78,7 +78,7 @@ def _require(results: pa.Table, first: str, second: str) -> None:
     for name in (first, second):
         if name not in known:
             raise UsageError(
-                f"A navigator to compare must be one that was run. Got {name!r} instead."
+                f"A navigator to compare must be in the run. Got {name!r} instead."
                 f"{did_you_mean(name, known)}"
             )
     if first == second:
@@ -92,13 +92,13 @@ def _strings(*values: str) -> pa.Array:
 
 
 def _sides(s: Stratum, first: str, second: str, count: int) -> tuple[IntArray, IntArray]:
-    """(C,), (C,) their places among the navigators of a stratum."""
+    """Return the places (C,), (C,) of both navigators in a stratum."""
     one, other = s.navigators.index(first), s.navigators.index(second)
     return np.full(count, one, np.int64), np.full(count, other, np.int64)
 
 
 def _in_one(s: Stratum, first: str, second: str, metrics: Sequence[Metric]) -> list[Comparison]:
-    """In one scenario, by the metrics that were measured there."""
+    """Compare in one scenario, by the metrics measured there."""
     held = [metric for metric in metrics if metric.name in s.metrics]
     return differences(s, *_sides(s, first, second, len(held)), held)
 
@@ -106,7 +106,7 @@ def _in_one(s: Stratum, first: str, second: str, metrics: Sequence[Metric]) -> l
 def _over_all(
     group: list[Stratum], first: str, second: str, metrics: Sequence[Metric]
 ) -> Iterator[Comparison]:
-    """Over the scenarios of one split, track and role, if there are several."""
+    """Compare over the scenarios of one split, track and role, if there are several."""
     if len(group) < 2:
         return
     sides = [side_by_side(s, *_sides(s, first, second, len(metrics)), metrics) for s in group]
@@ -115,7 +115,21 @@ def _over_all(
     granted = [int(s.granted[s.navigators.index(name)]) for name in (first, second)]
     for m, metric in enumerate(metrics):
         yield Comparison(
-            first, second, ALL, s.track, s.role, metric.name, int(found.worlds[m]),
-            float(found.value[m]), float(found.low[m]), float(found.high[m]), float(found.p[m]),
-            s.split, "", math.nan, math.nan, granted[0], granted[1],
-        )  # fmt: skip
+            first=first,
+            second=second,
+            scenario=ALL,
+            track=s.track,
+            role=s.role,
+            metric=metric.name,
+            worlds=int(found.worlds[m]),
+            difference=float(found.value[m]),
+            low=float(found.low[m]),
+            high=float(found.high[m]),
+            p=float(found.p[m]),
+            split=s.split,
+            scenario_hash="",
+            horizon=math.nan,
+            dt=math.nan,
+            first_rehearsal=granted[0],
+            second_rehearsal=granted[1],
+        )

@@ -1,27 +1,27 @@
-"""95 % intervals: mid-P for rates, a corrected bootstrap for everything else.
+"""95 % intervals: mid-P for rates, a corrected bootstrap for all other metrics.
 
 Every function works on columns, so that one call serves all navigators and metrics.
-docs/statistics.md holds the simulation by which the methods were chosen.
+docs/statistics.md describes the simulation by which the methods were chosen.
 """
 
 from collections.abc import Callable
 
 import numpy as np
-from scipy.special import betainc, ndtr, ndtri, stdtrit  # scipy.stats takes a second to import
+from scipy.special import betainc, ndtr, ndtri, stdtrit  # importing scipy.stats takes a second
 
 from benchnav.arrays import FloatArray, IntArray
 
 ALPHA = 0.05
 RESAMPLES = 2000
-PRIOR = 0.2  # of a world, which the estimate of a correlation begins with
+PRIOR = 0.2  # worlds that are added to the estimate of a correlation
 HALVINGS = 50
 
 
 def mid_p(rate: FloatArray, size: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Mid-P interval (C,), (C,) of rates (C,) from ``size`` (C,) independent trials.
+    """Return the mid-P interval (C,), (C,) of rates (C,) from ``size`` (C,) independent trials.
 
-    Its bounds p leave P(X > x) + P(X = x)/2 = α/2 at either side of x = rate·size, the
-    binomial X continued to sizes that are no whole numbers. H. O. Lancaster,
+    Its bounds p leave P(X > x) + P(X = x)/2 = α/2 at either side of x = rate·size, with the
+    binomial X continued to sizes that are not integers. H. O. Lancaster,
     "Significance tests in discrete distributions", JASA 56 (1961); as an interval,
     G. Berry and P. Armitage, "Mid-P confidence intervals: a brief review", The
     Statistician 44 (1995).
@@ -33,7 +33,7 @@ def mid_p(rate: FloatArray, size: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _above(p: FloatArray, x: FloatArray, size: FloatArray) -> FloatArray:
-    """(C,) P(X > x) + P(X = x)/2 of X binomial, by its incomplete beta function."""
+    """Return P(X > x) + P(X = x)/2 (C,) of a binomial X, by its incomplete beta function."""
     least, rest = np.finfo(float).tiny, np.maximum(size - x, np.finfo(float).tiny)
     at_least = np.where(x > 0.0, betainc(np.maximum(x, least), rest + 1.0, p), 1.0)
     more = np.where(x < size, betainc(x + 1.0, rest, p), 0.0)
@@ -42,7 +42,7 @@ def _above(p: FloatArray, x: FloatArray, size: FloatArray) -> FloatArray:
 
 
 def _solve(rising: Callable[[FloatArray], FloatArray], like: FloatArray) -> FloatArray:
-    """(C,) where ``rising`` passes 0 between 0 and 1, by bisection."""
+    """Return the zero (C,) of ``rising`` between 0 and 1, by bisection."""
     low, high = np.zeros_like(like), np.ones_like(like)
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
@@ -54,26 +54,26 @@ def _solve(rising: Callable[[FloatArray], FloatArray], like: FloatArray) -> Floa
 def unanimous(
     value: FloatArray, count: FloatArray, least: FloatArray, most: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """Interval (C,), (C,) of means of which all ``count`` (C,) values are the same.
+    """Return the interval (C,), (C,) of means of ``count`` (C,) equal values.
 
-    If a share q of worlds had another value, none of them would show with probability
-    (1 − q)ⁿ, which is α/2 at q = 1 − (α/2)^(1/n); theirs lie from ``least`` to ``most``.
+    If a share q of worlds had another value, none of them would be observed with probability
+    (1 − q)ⁿ, which is α/2 at q = 1 − (α/2)^(1/n); such values lie from ``least`` to ``most``.
     """
     others = 1.0 - (ALPHA / 2) ** (1.0 / count)
     return value - others * (value - least), value + others * (most - value)
 
 
 def effective_size(rates: FloatArray, agents: FloatArray) -> FloatArray:
-    """(C,) independent trials that (n, C) world rates of (n, C) agents are worth.
+    """Return the number (C,) of independent trials that world rates (n, C) are equivalent to.
 
-    agents / (1 + (m − 1)·ρ), with m agents a world (L. Kish, "Survey sampling", 1965)
-    and ρ the one-way analysis-of-variance estimate of the correlation of agents that
-    share a world, held within [0, 1] so that sharing a world never narrows an interval.
-    Few failures estimate ρ badly: a fifth of a world is added to its estimate, half of
-    which all agents succeed and half none (ours). Where all agents agree ρ is 1 by that:
+    With ``agents`` (n, C): agents / (1 + (m − 1)·ρ), with m agents a world (L. Kish,
+    "Survey sampling", 1965) and ρ the one-way analysis-of-variance estimate of the correlation
+    of agents that share a world, limited to [0, 1] so that sharing never narrows an interval.
+    Few failures estimate ρ badly: a fifth of a world is added to its estimate, in half of
+    which all agents succeed and in half none (ours). If all agents agree, this gives ρ = 1:
     the worlds count.
     Few worlds estimate ρ badly too, so the size shrinks by the squared ratio of Student's
-    quantiles at agents − 1 and worlds − 1, but never below the worlds (E. L. Korn and
+    quantiles at agents − 1 and worlds − 1, but never below the number of worlds (E. L. Korn and
     B. I. Graubard, "Confidence intervals for proportions with small expected number of
     positive counts estimated from survey data", Survey Methodology 24, 1998; the floor
     is ours). NaN rates are left out.
@@ -92,8 +92,8 @@ def effective_size(rates: FloatArray, agents: FloatArray) -> FloatArray:
 def _correlation(
     value: FloatArray, size: FloatArray, worlds: IntArray, total: FloatArray
 ) -> FloatArray:
-    """(C,) of agents that share a world, by analysis of variance; 1 where it has no estimate."""
-    usual = total / worlds  # agents of the part of a world that is added
+    """Return the correlation (C,) of agents in a world, by analysis of variance; 1 if unknown."""
+    usual = total / worlds  # agents of the added part of a world
     n, agents = worlds + PRIOR, total + PRIOR * usual
     mean = ((size * value).sum(axis=0) + 0.5 * PRIOR * usual) / agents
     added = 0.5 * PRIOR * usual * ((1 - mean) ** 2 + mean**2)
@@ -106,19 +106,19 @@ def _correlation(
 
 
 def students(freedom: FloatArray) -> FloatArray:
-    """(C,) Student's quantile at 1 − α/2; NaN without a degree of freedom."""
+    """Return Student's quantile (C,) at 1 − α/2; NaN without a degree of freedom."""
     return np.asarray(stdtrit(freedom, 1 - ALPHA / 2), dtype=np.float64)
 
 
 def trimmed_mean(values: FloatArray, share: float) -> FloatArray:
-    """Mean along the first axis without the ``share`` of it at either end."""
+    """Return the mean along the first axis without the share ``share`` at either end."""
     cut = int(share * len(values))
     middle: FloatArray = np.sort(values, axis=0)[cut : len(values) - cut].mean(axis=0)
     return middle
 
 
 def resample(count: int, rng: np.random.Generator) -> FloatArray:
-    """(R, n) weights of bootstrap resamples of ``count`` units; each row sums to 1."""
+    """Return weights (R, n) of bootstrap resamples of ``count`` units; each row sums to 1."""
     drawn = rng.integers(count, size=(RESAMPLES, count))
     drawn += count * np.arange(RESAMPLES)[:, None]
     counts = np.bincount(drawn.ravel(), minlength=RESAMPLES * count)
@@ -126,10 +126,10 @@ def resample(count: int, rng: np.random.Generator) -> FloatArray:
 
 
 def resampled_means(values: FloatArray, weights: FloatArray) -> FloatArray:
-    """(R, C) means of the columns of (n, C) under weights (R, n), NaN values left out.
+    """Return means (R, C) of the columns of (n, C) under weights (R, n), without NaN values.
 
-    Units without a value are resampled as well, for a new draw of seeds would leave
-    another number of them undefined. A resample that holds no value at all (rarer than
+    Units without a value are resampled as well, because a new draw of seeds would leave
+    another number of them undefined. A resample without any value (rarer than
     e⁻ᵏ for k values) repeats the mean.
     """
     known = ~np.isnan(values)
@@ -142,7 +142,7 @@ def resampled_means(values: FloatArray, weights: FloatArray) -> FloatArray:
 
 
 def mean(values: FloatArray) -> FloatArray:
-    """(C,) mean of the columns of (n, C), NaN values left out; NaN where nothing is left."""
+    """Return the mean (C,) of the columns of (n, C), without NaN values; NaN if none is left."""
     known = ~np.isnan(values)
     with np.errstate(invalid="ignore"):
         found: FloatArray = np.where(known, values, 0.0).sum(axis=0) / known.sum(axis=0)
@@ -150,7 +150,7 @@ def mean(values: FloatArray) -> FloatArray:
 
 
 def cumulants(values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(C,) Σ(x − x̄)² and (C,) Σ(x − x̄)³ of the columns of (n, C), NaN values left out."""
+    """Return Σ(x − x̄)² (C,) and Σ(x − x̄)³ (C,) of the columns of (n, C), without NaN values."""
     centred = np.nan_to_num(values - mean(values), nan=0.0)
     return (centred**2).sum(axis=0), (centred**3).sum(axis=0)
 
@@ -162,14 +162,14 @@ def bca(
     count: FloatArray,
     freedom: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Bias-corrected, accelerated, expanded bootstrap interval (C,), (C,).
+    """Return the bias-corrected, accelerated, expanded bootstrap interval (C,), (C,).
 
-    ``means`` (R, C) are resampled estimates of ``estimate`` (C,), ``count`` (C,) the
-    values that a stratum gives (the fewest of any), and ``freedom`` (C,) the values less
-    the strata. The correction is that of B. Efron, "Better bootstrap confidence
+    ``means`` (R, C) are resampled estimates of ``estimate`` (C,), ``count`` (C,) is the number of
+    values of a stratum (the smallest of all strata), and ``freedom`` (C,) the number of values
+    minus the number of strata. The correction is that of B. Efron, "Better bootstrap confidence
     intervals", JASA 82 (1987). The expansion, by which the normal quantile becomes
     √(n/(n − 1)) times Student's, is that of T. C. Hesterberg, "What teachers should know
-    about the bootstrap", The American Statistician 69 (2015); joining the two is ours.
+    about the bootstrap", The American Statistician 69 (2015); their combination is ours.
     """
     resamples = len(means)
     below = (means < estimate).sum(axis=0) + 0.5 * (means == estimate).sum(axis=0)
@@ -182,13 +182,13 @@ def bca(
 
 
 def _correct(bias: FloatArray, side: FloatArray, acceleration: FloatArray) -> FloatArray:
-    """(C,) normal quantile after correction; beyond the pole of the formula, the extreme."""
+    """Return the corrected normal quantile (C,); beyond the pole of the formula, the extreme."""
     pole = 1 - acceleration * side
     return np.where(pole > 0, bias + side / np.where(pole > 0, pole, 1.0), np.sign(side) * np.inf)
 
 
 def _quantile(ordered: FloatArray, level: FloatArray) -> FloatArray:
-    """(C,) quantile of each sorted row (C, R) at its own level (C,), interpolated."""
+    """Return the quantile (C,) of each sorted row (C, R) at its own level (C,), interpolated."""
     at = level * (ordered.shape[1] - 1)
     lower = np.floor(at).astype(np.int64)
     upper = np.ceil(at).astype(np.int64)
@@ -201,12 +201,12 @@ def _quantile(ordered: FloatArray, level: FloatArray) -> FloatArray:
 def recover(
     value: FloatArray, low: FloatArray, high: FloatArray, least: float, most: float
 ) -> tuple[float, float]:
-    """Interval of the mean of (S,) independent estimates, from their own intervals.
+    """Return the interval of the mean of (S,) independent estimates, from their own intervals.
 
     G. Y. Zou, W. Huang and X. Zhang, "A note on confidence interval estimation for a
     linear function of binomial proportions", Computational Statistics & Data Analysis 53
-    (2009). So strata in which every episode succeeded, or failed, keep the
-    width of their own interval. Held within the metric's range ``least`` to ``most``.
+    (2009). So strata in which every episode succeeded, or every one failed, keep the
+    width of their own interval. The result is limited to the metric's range ``least`` to ``most``.
     """
     mean = float(value.mean())
     down = float(np.sqrt(((value - low) ** 2).sum())) / len(value)

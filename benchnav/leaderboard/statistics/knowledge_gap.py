@@ -125,10 +125,26 @@ def _records(
             at, metric = n * len(s.metrics) + m, metrics.get(name)
             low, high = (nan, nan) if none else (float(found.low[at]), float(found.high[at]))
             yield Record(
-                navigator, of.scenario if of else ALL, PRICE, s.role, name,
-                0.0 if none else float(found.value[at]), low, high,
-                metric.unit if metric else "", metric.better if metric else None,
-                int(episodes[n]), int(found.worlds[at]), int(failures[n]), None, None, 0, notes[n],
-                s.split, of.scenario_hash if of else "", of.horizon if of else nan,
-                of.dt if of else nan, rehearsal=s.rehearsal,
-            )  # fmt: skip
+                navigator=navigator,
+                scenario=of.scenario if of else ALL,
+                track=PRICE,
+                role=s.role,
+                metric=name,
+                value=0.0 if none else float(found.value[at]),
+                low=low,
+                high=high,
+                unit=metric.unit if metric else "",
+                better=metric.better if metric else None,
+                episodes=int(episodes[n]),
+                defined=int(found.worlds[at]),
+                failures=int(failures[n]),
+                rank_low=None,
+                rank_high=None,
+                ranked=0,
+                note=notes[n],
+                split=s.split,
+                scenario_hash=of.scenario_hash if of else "",
+                horizon=of.horizon if of else nan,
+                dt=of.dt if of else nan,
+                rehearsal=s.rehearsal,
+            )

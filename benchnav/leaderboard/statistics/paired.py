@@ -24,16 +24,16 @@ if TYPE_CHECKING:
 def comparisons(
     results: pa.Table, metrics: Mapping[str, Metric], metric: str
 ) -> tuple[Comparison, ...]:
-    """Every pair of navigators on one metric, in every scenario, track and role.
+    """Compare every pair of navigators on one metric, in every scenario, track and role.
 
-    The pairs in one scenario, track and role are a family. Also pairs of which one
-    rehearsed: each says how many rehearsals both were granted, and is not judged.
+    The pairs in one scenario, track and role are a family. If one of a pair
+    rehearsed, the comparison gives the rehearsals of both, and has no verdict.
     ``results`` has the schema `benchnav.store.parts.results.RESULTS`. Raises UsageError for a
-    metric that is not among ``metrics``, or where one label stands for two navigators.
+    metric that is not among ``metrics``, or if one label stands for two navigators.
     """
     if metric not in metrics:
         raise UsageError(
-            f"A metric to compare by must be a known one. Got {metric!r} instead."
+            f"A metric to compare by must be a known metric. Got {metric!r} instead."
             f"{did_you_mean(metric, metrics)}"
         )
     require_one_navigator_per_label({"the results": results})
@@ -49,27 +49,40 @@ def comparisons(
 def differences(
     s: Stratum, first: IntArray, second: IntArray, metrics: Sequence[Metric]
 ) -> list[Comparison]:
-    """Column c compares navigators ``first[c]`` and ``second[c]`` of ``s`` by ``metrics[c]``.
+    """Compare in column c navigators ``first[c]`` and ``second[c]`` of ``s`` by ``metrics[c]``.
 
-    Not judged yet.
+    The comparisons have no verdict yet.
     """
     apart = side_by_side(s, first, second, metrics)
     found = difference([Moments.of(apart)], columns_of(metrics))
     return [
         Comparison(
-            s.navigators[i], s.navigators[j], s.scenario, s.track, s.role, metrics[c].name,
-            int(found.worlds[c]), float(found.value[c]), float(found.low[c]),
-            float(found.high[c]), float(found.p[c]), s.split, s.scenario_hash, s.horizon, s.dt,
-            int(s.granted[i]), int(s.granted[j]),
+            first=s.navigators[i],
+            second=s.navigators[j],
+            scenario=s.scenario,
+            track=s.track,
+            role=s.role,
+            metric=metrics[c].name,
+            worlds=int(found.worlds[c]),
+            difference=float(found.value[c]),
+            low=float(found.low[c]),
+            high=float(found.high[c]),
+            p=float(found.p[c]),
+            split=s.split,
+            scenario_hash=s.scenario_hash,
+            horizon=s.horizon,
+            dt=s.dt,
+            first_rehearsal=int(s.granted[i]),
+            second_rehearsal=int(s.granted[j]),
         )
         for c, (i, j) in enumerate(zip(first, second, strict=True))
-    ]  # fmt: skip
+    ]
 
 
 def side_by_side(
     s: Stratum, first: IntArray, second: IntArray, metrics: Sequence[Metric]
 ) -> FloatArray:
-    """The differences (n, C) of `differences`; NaN where ``s`` has no such metric or value."""
+    """Return the differences (n, C); NaN where ``s`` has no such metric or value."""
     place = np.array([s.metrics.index(m.name) if m.name in s.metrics else -1 for m in metrics])
     apart = s.value[:, first, place] - s.value[:, second, place]
     return np.where(place >= 0, apart, np.nan)

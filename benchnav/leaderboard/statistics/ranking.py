@@ -1,4 +1,4 @@
-"""Who ranks where on each metric, and why somebody does not rank."""
+"""The rank of each entry on each metric, or the reason for none."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -30,9 +30,9 @@ def standings(
     names: Sequence[str],
     metrics: Mapping[str, Metric],
 ) -> list[list[Standing]]:
-    """[metric][navigator], from values (n, N, M) in the worlds attempted (n, N).
+    """Return ranks [metric][navigator], from values (n, N, M) in the worlds attempted (n, N).
 
-    ``stratum`` (n,) numbers the scenario of each world: scenarios count alike.
+    ``stratum`` (n,) numbers the scenario of each world: scenarios have equal weights.
     """
     covered = comparable(attempted)
     table = []
@@ -47,7 +47,7 @@ def standings(
 
 
 def _never(metric: Metric | None) -> str:
-    """Why nobody ranks on a metric; "" where they may."""
+    """Return why no entry ranks on a metric; "" if entries may."""
     if metric is None:
         return "the metric's definition is not installed"
     if metric.better is None:
@@ -62,7 +62,7 @@ def _ranked(
     stratum: IntArray,
     metric: Metric,
 ) -> list[Standing]:
-    """Rank those that attempted the same worlds and have a value wherever any of them has."""
+    """Rank the entries that attempted the same worlds and have a value wherever any has one."""
     known: BoolArray = ~np.isnan(value)
     owed: BoolArray = np.any(known[:, covered], axis=1)
     gaps = (owed[:, None] & ~known).sum(axis=0)
@@ -78,7 +78,7 @@ def _ranked(
         elif gaps[n]:
             note = f"undefined in {counted(gaps[n], 'episode')} in which others have a value"
         else:
-            note = "nobody to rank with" if len(entrants) < 2 else ""
+            note = "no other entry to rank with" if len(entrants) < 2 else ""
         row.append(Standing(None, None, 0, note))
     if len(entrants) > 1:
         low, high = _places(value[:, entrants], stratum, metric)
@@ -88,7 +88,7 @@ def _ranked(
 
 
 def _places(value: FloatArray, stratum: IntArray, metric: Metric) -> tuple[IntArray, IntArray]:
-    """(E,), (E,) rank intervals of E entrants, from the differences of their values (n, E)."""
+    """Return rank intervals (E,), (E,) of E entries, from differences of their values (n, E)."""
     first, second = pairs(value.shape[1])
     apart = value[:, first] - value[:, second]
     parts = [Moments.of(apart[stratum == s]) for s in np.unique(stratum)]

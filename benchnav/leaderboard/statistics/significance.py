@@ -1,4 +1,4 @@
-"""Which comparisons of a family are significant, and the ranks that follow.
+"""Significance of the comparisons of a family, and the ranks that follow.
 
 Columns are comparisons.
 """
@@ -10,7 +10,7 @@ from benchnav.leaderboard.statistics.interval import ALPHA
 
 
 def holm(p: FloatArray) -> FloatArray:
-    """(C,) p-values adjusted for all of their family being tested at once.
+    """Return p-values (C,) adjusted for testing the whole family at once.
 
     S. Holm, "A simple sequentially rejective multiple test procedure", Scandinavian
     Journal of Statistics 6 (1979).
@@ -23,16 +23,16 @@ def holm(p: FloatArray) -> FloatArray:
 
 
 def pairs(navigators: int) -> tuple[IntArray, IntArray]:
-    """(C,), (C,) both sides of every comparison of N navigators."""
+    """Return both sides (C,), (C,) of every comparison of N navigators."""
     first, second = np.triu_indices(navigators, 1)
     return first.astype(np.int64), second.astype(np.int64)
 
 
 def ranks(lead: FloatArray, adjusted: FloatArray, navigators: int) -> tuple[IntArray, IntArray]:
-    """(N,), (N,) rank intervals [1 + significantly better, N − significantly worse].
+    """Return rank intervals (N,), (N,): [1 + significantly better, N − significantly worse].
 
-    ``lead`` (C,) is how much better the first of each of ``pairs`` is, and ``adjusted``
-    (C,) the p-value after Holm.
+    ``lead`` (C,) is the advantage of the first of each of ``pairs``, and ``adjusted``
+    (C,) the p-value after Holm's correction.
     """
     first, second = pairs(navigators)
     decided = adjusted < ALPHA
@@ -48,9 +48,9 @@ def ranks(lead: FloatArray, adjusted: FloatArray, navigators: int) -> tuple[IntA
 
 
 def comparable(attempted: BoolArray) -> BoolArray:
-    """(N,) navigators that attempted the same worlds, from (S, N).
+    """Return which navigators (N,) attempted the same worlds, from (S, N).
 
-    Where coverage differs, the set of worlds that most navigators share ranks; of two
+    If coverage differs, the set of worlds that most navigators share is ranked; of two
     such sets, the larger.
     """
     groups: dict[bytes, list[int]] = {}

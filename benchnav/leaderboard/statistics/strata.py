@@ -1,4 +1,4 @@
-"""From rows of results to dense arrays: one stratum per set of episodes that may be compared."""
+"""Strata: rows of results as dense arrays, one per set of episodes that may be compared."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 KEYS = ("split", "track", "role", "scenario", "scenario_hash", "horizon", "dt")
-GRANT = "rehearsal"  # the key that keeps those apart who were granted different rehearsals
+GRANT = "rehearsal"  # the key that separates entries with different numbers of rehearsals
 COSTS = ("rehearsal_decisions", "rehearsal_seconds")
-MIXED = -1  # stands where entries with different grants stand together
+MIXED = -1  # replaces the number if entries with different grants are together
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,31 +36,31 @@ class Stratum:
     scenario_hash: str
     horizon: float
     dt: float
-    rehearsal: int  # rehearsals that everybody here was granted; `MIXED`: see granted
+    rehearsal: int  # rehearsals granted to all entries; `MIXED`: see granted
     navigators: tuple[str, ...]  # (N,) sorted
     metrics: tuple[str, ...]  # (M,) sorted
     seeds: IntArray  # (S,) sorted
     value: FloatArray  # (S, N, M) NaN where undefined
-    agents: FloatArray  # (S, N, M) over which a value was taken
+    agents: FloatArray  # (S, N, M) agents over which a value is taken
     attempted: BoolArray  # (S, N)
     failed: BoolArray  # (S, N) the navigator failed
     granted: IntArray  # (N,) rehearsals
-    cost: FloatArray  # (S, N, 2) decisions and seconds [s] of rehearsing; NaN if not attempted
+    cost: FloatArray  # (S, N, 2) decisions and seconds [s] of rehearsals; NaN if not attempted
 
     def rng(self, purpose: str) -> np.random.Generator:
-        """A generator of this scenario's own, the same in every track and table."""
+        """Return a generator of this scenario, equal in every track and table."""
         own = (self.scenario, self.scenario_hash, self.horizon, self.dt)
         key = "\0".join([purpose, *map(str, own)])
         return np.random.default_rng(list(sha256(key.encode()).digest()))
 
 
 def strata(results: pa.Table, metrics: Mapping[str, Metric], mixed: bool = False) -> list[Stratum]:
-    """Every stratum, sorted by its key, whatever the order of the rows (RESULTS).
+    """Return every stratum, sorted by its key, for any order of the rows (RESULTS).
 
-    ``mixed`` puts entries together that were granted different rehearsals: they may be
-    compared in words that say so, and are never ranked.
+    ``mixed`` combines entries with different numbers of rehearsals: they may be
+    compared in texts that name the numbers, and are never ranked.
 
-    Raises UsageError where one navigator has two values in one world.
+    Raises UsageError if one navigator has two values in one world.
     """
     rows = results.num_rows
     columns = {name: _encode(results[name]) for name in (*KEYS, "navigator", "metric", "seed")}
@@ -84,7 +84,7 @@ def strata(results: pa.Table, metrics: Mapping[str, Metric], mixed: bool = False
 
 
 def _encode(column: Any) -> tuple[IntArray, list[Any]]:
-    """(rows,) codes and the sorted values that they stand for."""
+    """Return codes (rows,) and the sorted values of the codes."""
     import pyarrow.compute as pc
 
     encoded = pc.dictionary_encode(column).combine_chunks()
@@ -105,7 +105,7 @@ def _failed(column: Any) -> BoolArray:
 
 
 def _filled(results: pa.Table, name: str) -> AnyArray:
-    """(rows,) a column that older results lack, or made-up ones leave empty: 0 there."""
+    """Return a column (rows,) with 0 where it is missing (older results) or empty."""
     import pyarrow.compute as pc
 
     if name not in results.column_names:
@@ -156,7 +156,7 @@ def _stratum(
 def _settle(
     value: FloatArray, flat: IntArray, axes: list[list[Any]], metrics: Mapping[str, Metric]
 ) -> tuple[IntArray, FloatArray]:
-    """(K,) one row for each cell, and the value (K,) that counts for it.
+    """Return one row (K,) per cell, and the value (K,) that counts for it.
 
     Rows that repeat an episode count once; timings of repeated runs are averaged.
     """
@@ -185,10 +185,10 @@ def _charge(
     names: list[str],
     metrics: Mapping[str, Metric],
 ) -> None:
-    """A failed episode counts with the worst value that its metric can take.
+    """Set the values of failed episodes to the worst value of their metric.
 
-    It is undefined where there is no worst, where the metric is conditional on having
-    arrived or is undefined in that world for everybody, and stays where it only describes.
+    The value is undefined if there is no worst, or if the metric is conditional on
+    arrival or undefined in that world for all navigators; it is kept if the metric only describes.
     """
     for m, name in enumerate(names):
         metric = metrics.get(name)
@@ -204,7 +204,7 @@ def _charge(
 
 
 def align(group: list[Stratum]) -> list[Stratum]:
-    """The same navigators and metrics in every stratum, absent ones unattempted."""
+    """Return strata with the same navigators and metrics; absent ones count as unattempted."""
     navigators = tuple(sorted({name for s in group for name in s.navigators}))
     metrics = tuple(sorted({name for s in group for name in s.metrics}))
     aligned = []

@@ -14,10 +14,9 @@ import numpy as np
 
 from benchnav.arena.solid import Solid
 from benchnav.arena.world import World
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import BoolArray, Extent, FloatArray, IntArray
 from benchnav.metrics.quantities.trajectory import Trajectories, positions_at, present_at
 
-Box = tuple[float, float, float, float]  # x0, y0, x1, y1 [m]
 FRAME_RATE = 2.0  # [Hz] of what is quick to compute
 DENSITY_RATE = 1.0  # [Hz]
 REACH = 0.8  # [m]: a circle of 2.01 m²
@@ -59,7 +58,7 @@ def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
     return density
 
 
-def _matter(area: Box, frames: IntArray, points: FloatArray) -> BoolArray:
+def _matter(area: Extent, frames: IntArray, points: FloatArray) -> BoolArray:
     """(N,) points that can change the density, in frames in which there is any."""
     beyond = np.maximum(np.maximum(area[:2] - points, points - area[2:]), 0.0)
     away = np.hypot(beyond[:, 0], beyond[:, 1])
@@ -69,7 +68,7 @@ def _matter(area: Box, frames: IntArray, points: FloatArray) -> BoolArray:
     return matter
 
 
-def _nearby(walkable: Any, area: Box) -> Any:
+def _nearby(walkable: Any, area: Extent) -> Any:
     """The part of the walkable area that cells of those who matter can reach."""
     import shapely
 

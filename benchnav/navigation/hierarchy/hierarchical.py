@@ -20,7 +20,7 @@ from benchnav.navigation.hierarchy.plan_log import PlanLog, checked_plan
 from benchnav.navigation.hierarchy.replanning import Policies, Replan, Watch
 from benchnav.navigation.hierarchy.retreat import Retreat
 from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import Navigator, Need, PluginConfig, Training
+from benchnav.navigation.navigator import CommandKind, Navigator, Need, PluginConfig, Training
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.planner import UNSOLVED, Plan, Planner
 from benchnav.navigation.plugin.configure import make
@@ -46,11 +46,7 @@ class Hierarchical(Navigator):
     class Config(GuidedConfig):
         """Parameters."""
 
-        controller: PartSpec = Field(
-            "path-following",
-            validate_default=True,
-            description="a controller: name or {type: name, …}",
-        )
+        controller: PartSpec = Field(description="a controller: name or {type: name, …}")
 
         @field_validator("controller")
         @classmethod
@@ -66,7 +62,6 @@ class Hierarchical(Navigator):
         if c.planner != NO_PLANNER:
             self.planner = make(PLANNERS, c.planner, where="planner")
         self.controller: Controller = make(CONTROLLERS, self._controller(), where="controller")
-        vars(self)["command"] = self.controller.command  # declared for the class, known here
         self.mapping = Mapping(c.mapping) if c.mapping is not None else None
         self.plans: dict[int, list[Plan]] = {}  # row → the last plan of each agent
         usual: Replan = "blocked" if self.mapping else "map-change"
@@ -89,6 +84,10 @@ class Hierarchical(Navigator):
             return self.controller.required
         known = self.needs if self.mapping is None else self.mapping.needs
         return known | self.controller.required
+
+    @property
+    def command(self) -> CommandKind:
+        return self.controller.command
 
     @property
     def uses_map(self) -> bool:

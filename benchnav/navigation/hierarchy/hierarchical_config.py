@@ -18,8 +18,6 @@ class GuidedConfig(PluginConfig):
     """Of the planner, of planning again, and of following a path."""
 
     planner: PartSpec = Field(
-        "ompl.rrt-connect",
-        validate_default=True,
         description="a planner: name or {type: name, …}; none: the goal is the target, and no map"
         " is needed",
     )

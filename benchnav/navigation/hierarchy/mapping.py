@@ -15,7 +15,7 @@ from pydantic import Field
 
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import AnyArray, ByteArray, FloatArray, IntArray
+from benchnav.arrays import AnyArray, ByteArray, Extent, FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.hierarchy.learned_map import GUESSED, TOLD, learn
 from benchnav.navigation.map import Map
@@ -204,7 +204,7 @@ class Mapping:
         return solid
 
     @staticmethod
-    def _bounds(state: _Row, held: FloatArray) -> tuple[float, float, float, float]:
+    def _bounds(state: _Row, held: FloatArray) -> Extent:
         if state.granted is not None:
             return state.granted.bounds
         corner = state.told.start.min(axis=0)

@@ -19,6 +19,7 @@ from benchnav.errors import (
 from benchnav.navigation.command_check import said
 from benchnav.navigation.hierarchy.composition import HIERARCHICAL, hint, is_pair, parameters_of
 from benchnav.plugins import NAVIGATORS, Registry
+from benchnav.text.visible import shortened
 
 Spec = str | Mapping[str, Any]
 Where = str | Callable[[str], str]
@@ -188,5 +189,4 @@ def _listed(names: Iterable[object]) -> str:
 
 
 def _short(value: object) -> str:
-    text = repr(value)
-    return text if len(text) <= 80 else text[:77] + "..."
+    return shortened(repr(value), 80)

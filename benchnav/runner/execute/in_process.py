@@ -5,17 +5,15 @@ from contextlib import suppress
 
 from benchnav.errors import UsageError
 from benchnav.named_module import load_by_module
-from benchnav.navigation.plugin.configure import Spec, split
-from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.contestant import source_of
 from benchnav.runner.plan.job import Cell
 from benchnav.source.importable import is_importable
-from benchnav.source.parts import live_object, places_of
+from benchnav.source.parts import live_object
 
 
 def bound_here(cells: Iterable[Cell], elsewhere: bool) -> list[Cell]:
-    """Return the cells that worker processes cannot run; ``elsewhere``: on other machines."""
-    return [cell for cell in cells if any(_is_bound(p, elsewhere) for p in _places(cell))]
+    """Return the cells that no worker process can run; ``elsewhere``: on other machines."""
+    return [cell for cell in cells if any(_is_bound(p, elsewhere) for p in cell.places)]
 
 
 def refuse_limits_here(cells: Iterable[Cell], limited: bool) -> None:
@@ -43,17 +41,6 @@ def refuse_edited(cells: Iterable[Cell]) -> None:
                 " run old code. Restart Python, or call"
                 f" importlib.reload({module}) and load the suite again."
             )
-
-
-def _places(cell: Cell) -> tuple[str, ...]:
-    """Return the places of the evaluated navigator and of the scenario's drivers."""
-    others = (place for spec in cell.scenario.driver_specs for place in places_of(_full(spec)))
-    return (*cell.entry.places, *others)
-
-
-def _full(spec: Spec) -> dict[str, object]:
-    name, parameters = split(NAVIGATORS, spec)
-    return {"type": name, **parameters}
 
 
 def _is_bound(place: str, elsewhere: bool) -> bool:

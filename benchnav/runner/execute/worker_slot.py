@@ -11,7 +11,7 @@ from benchnav.navigation.command_check import short
 from benchnav.plugins import METRICS, Registration
 from benchnav.processes.channel import ChannelError
 from benchnav.processes.fork_server import Child, exit_text, start_process
-from benchnav.processes.main_module import main_module
+from benchnav.processes.main_module import is_of_main, main_of
 from benchnav.processes.process_tree import resident, tree
 from benchnav.runner.execute.call_timer import CallTimer
 from benchnav.runner.execute.task_failure import TaskFailure
@@ -48,7 +48,7 @@ class WorkerSlot:
         if task.new_process or task.forced_failure or self.process_key != task.process_key:
             self._stop_worker()
         if self._worker is None:
-            self._start_worker(task.process_key)
+            self._start_worker(task)
         self._tasks += 1
         self._first_count, self._max_count = self._timer.notes[0], 2.0 * task.max_calls
         self._send(self._worker, task)
@@ -119,12 +119,16 @@ class WorkerSlot:
     def _free(self) -> Task:
         task, self.task, self._state = self.task, None, "idle"
         if task is None:
-            raise RuntimeError("no task is at this slot")
+            raise RuntimeError("this slot has no task")
         return task
 
-    def _start_worker(self, process_key: str) -> None:
-        self._worker = start_process("benchnav.runner.execute.worker:serve")
-        self._timer, self._tasks, self.process_key = CallTimer(self._worker.notes), 0, process_key
+    def _start_worker(self, task: Task) -> None:
+        places = (*task.cell.places, *(value for _, _, value in self._registrations))
+        self._worker = start_process(
+            "benchnav.runner.execute.worker:serve", main=is_of_main(places)
+        )
+        self._timer, self._tasks = CallTimer(self._worker.notes), 0
+        self.process_key = task.process_key
         self._send(self._worker, self._registrations)
 
     def _stop_worker(self) -> None:
@@ -143,9 +147,8 @@ class WorkerSlot:
         self._state, self._measuring_time = "measuring", 0.0
         if self._measurer is None:
             self._measurer = start_process("benchnav.runner.execute.measurer:serve", main=False)
-            measuring = Measuring(
-                self._plugins, self._registrations, main_module(), self._limits.timeout
-            )
+            main = main_of(value for _, _, value in self._registrations)
+            measuring = Measuring(self._plugins, self._registrations, main, self._limits.timeout)
             self._send(self._measurer, measuring)
         self._send(self._measurer, (self.task, played))
 

@@ -60,6 +60,7 @@ class Meeting:
     sensings: tuple[Sensing, ...]
     isolate: bool
     timeout: float = Limits.timeout  # [s] that a call of a navigator may last
+    here: bool = False  # ask all in this process, which is about to run them
 
     def entry(self, spec: Spec, where: str) -> Entry:
         """The entry that ``spec`` describes, as it stands at ``where``."""
@@ -81,7 +82,7 @@ class Meeting:
             name, parameters = split(NAVIGATORS, spec, where=where)
             if self.isolate and name != PROCESS:
                 found[k] = _isolated(spec, self.sensings, where)
-            elif local_names({"type": name, **parameters}):
+            elif self.here or local_names({"type": name, **parameters}):
                 found[k] = introduction(spec, self.sensings, where=where)
             else:
                 away.append(k)

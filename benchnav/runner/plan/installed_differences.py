@@ -19,6 +19,7 @@ from benchnav.scenario.catalogue import find
 from benchnav.scenario.catalogue import names as scenario_names
 from benchnav.store.runs.manifest import Manifest
 from benchnav.text.plural import counted
+from benchnav.text.visible import shortened
 
 _SHOWN = 3  # names of each kind
 _LONG = 80  # characters of a name
@@ -168,4 +169,4 @@ def _named(name: str) -> str:
 
 
 def _short(text: str) -> str:
-    return text if len(text) <= _LONG else text[: _LONG - 1] + "…"
+    return shortened(text, _LONG)

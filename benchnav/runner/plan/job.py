@@ -4,13 +4,17 @@ import hashlib
 import json
 import re
 from dataclasses import dataclass, replace
+from typing import Any
 
 from benchnav.generation.build import sensing_of
 from benchnav.navigation.navigator import Need
+from benchnav.navigation.plugin.configure import Spec, split
+from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.contestant import Entry
 from benchnav.runner.rollouts.rollout import Assignment
 from benchnav.scenario.sampling.sampler import support
 from benchnav.scenario.scenario import Scenario
+from benchnav.source.parts import places_of
 from benchnav.store.runs.manifest import ISOLATED
 
 
@@ -35,6 +39,12 @@ class Cell:
             leader=entry.leader.spec if entry.leader else None,
             isolated=entry.mode == ISOLATED,
         )  # fmt: skip
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Places, module:attribute, of the classes of all navigators in it, and of their parts."""
+        others = (place for spec in self.scenario.driver_specs for place in places_of(_full(spec)))
+        return (*self.entry.places, *others)
 
     @property
     def once(self) -> bool:
@@ -96,6 +106,11 @@ class Cell:
             share = counts.setdefault(team.name, [0.0])
             share[0] += most if team.role == "leader" else 0.0
         return sum(max(share[0], 1.0) for share in counts.values())
+
+
+def _full(spec: Spec) -> dict[str, Any]:
+    name, parameters = split(NAVIGATORS, spec)
+    return {"type": name, **parameters}
 
 
 def _slug(text: str) -> str:

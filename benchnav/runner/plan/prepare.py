@@ -14,6 +14,7 @@ from benchnav.runner.plan.shard import Shard
 from benchnav.runner.plan.suite import Suite
 from benchnav.runner.rollouts.seeding import draw_salt
 from benchnav.store.runs.manifest import MANIFEST, Manifest
+from benchnav.store.runs.provenance import provenance
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.spans import spans
 
@@ -40,7 +41,7 @@ def planned(
             cell["seeds"] = spans(wanted.get(cell["key"], ()))
     return Manifest(
         suite.resolved(), tuple(said), suite.salt or draw_salt(), shard=str(shard or ""),
-        sources=sources_of(suite.entries),
+        sources=sources_of(suite.entries), provenance=provenance(),
     )  # fmt: skip
 
 

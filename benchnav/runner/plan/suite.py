@@ -16,14 +16,15 @@ from benchnav.errors import (
 from benchnav.generation.build import sensing_of
 from benchnav.navigation.plugin.background_navigators import check_drivers
 from benchnav.navigation.plugin.configure import Spec
-from benchnav.navigation.tracks import TRACKS
 from benchnav.runner.plan.contestant import Entry, Meeting, label_of, resolved
 from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.labels import labelled
 from benchnav.runner.plan.limits import patience
 from benchnav.runner.plan.suite_file import SuiteFile, is_scenario, parse_seeds, suite_path
 from benchnav.runner.rollouts.seeding import check_salt
 from benchnav.scenario.catalogue import find
 from benchnav.scenario.scenario import Scenario
+from benchnav.scenario.terms import TRACKS
 from benchnav.store.runs.scenario_files import sha256_of
 
 FIRST_LOOK = "quick"  # the suite that lends its navigators, tracks and seeds to a scenario alone
@@ -31,11 +32,11 @@ FIRST_LOOK = "quick"  # the suite that lends its navigators, tracks and seeds to
 
 @dataclass(frozen=True)
 class Selection:
-    """What the command line takes instead of the suite's own; empty means the suite's own."""
+    """What is run instead of the suite's own; an empty value means the suite's own."""
 
     scenarios: tuple[str, ...] = ()
     tracks: tuple[str, ...] = ()
-    navigators: tuple[str, ...] = ()
+    navigators: tuple[Spec, ...] = ()  # labels of the suite's own, or specs, also as YAML text
     seeds: str = ""
     salt: str = ""  # in hexadecimal digits; empty: the run draws one
     isolate: bool = False  # every evaluated navigator in a process of its own
@@ -118,9 +119,9 @@ class Suite:
 
 
 def load_suite(
-    name: str, selection: Selection = Selection(), *, timeout: float | None = None
+    suite: str | Document, selection: Selection = Selection(), *, timeout: float | None = None
 ) -> Suite:
-    """Return the suite called ``name`` or in that file, with the selection applied.
+    """Return the suite of this name, file or content, with the selection applied.
 
     The name or file of a scenario gives a suite of that scenario: its navigators, tracks and
     seeds are those of the suite `FIRST_LOOK` where nothing is selected. Navigators are asked
@@ -131,16 +132,26 @@ def load_suite(
         ScenarioError: the suite file or a scenario is wrong.
         PluginError: a navigator cannot be used.
     """
-    if is_scenario(name):
-        return _suite_of_one(name, selection, timeout)
-    path = suite_path(name)
-    document = read_yaml(path)
+    if isinstance(suite, str):
+        if is_scenario(suite):
+            return _suite_of_one(suite, selection, timeout)
+        path = suite_path(suite)
+        document, folder = read_yaml(path), path.parent
+    else:
+        document, folder = suite, Path()
+    return _selected(document, folder, selection, timeout)
+
+
+def _selected(
+    document: Document, folder: Path, selection: Selection, timeout: float | None
+) -> Suite:
+    """The suite that ``document`` describes, whose scenarios lie in ``folder``."""
     said = validate(SuiteFile, document)
     wanted = _wanted_navigators(said, selection.navigators)
     if selection.scenarios:
         scenarios = tuple(find(name) for name in selection.scenarios)
     else:
-        scenarios = tuple(find(name, path.parent) for name in said.scenarios)
+        scenarios = tuple(find(name, folder) for name in said.scenarios)
     check_drivers(*scenarios, timeout=patience(timeout))
     meeting = Meeting(
         tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate, patience(timeout)
@@ -162,7 +173,7 @@ def load_suite(
     seeds = _seeds(selection.seeds or str(said.seeds))
     salt = _salt(selection.salt)
     suite = Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries, salt)
-    return replace(suite, blocks=_blocks(said, suite, path)) if said.blocks else suite
+    return replace(suite, blocks=_blocks(said, suite, document, folder)) if said.blocks else suite
 
 
 def _suite_of_one(name: str, selection: Selection, timeout: float | None) -> Suite:
@@ -174,10 +185,10 @@ def _suite_of_one(name: str, selection: Selection, timeout: float | None) -> Sui
     return replace(suite, name=called or "scenario", version=scenario.version, blocks=())
 
 
-def _blocks(said: SuiteFile, suite: Suite, path: Path) -> tuple[Block, ...]:
+def _blocks(said: SuiteFile, suite: Suite, document: Document, folder: Path) -> tuple[Block, ...]:
     """The file's blocks; what was selected and is not in the file belongs to each of them."""
-    identities = {name: find(name, path.parent).identity for name in said.scenarios}
-    labels = tuple(label_of(spec) for spec in said.navigators)
+    identities = {name: find(name, folder).identity for name in said.scenarios}
+    labels = tuple(map(label_of, labelled(said.navigators)))
     added = (
         tuple(s.identity for s in suite.scenarios if s.identity not in identities.values()),
         tuple(track for track in suite.tracks if track not in said.tracks),
@@ -185,7 +196,7 @@ def _blocks(said: SuiteFile, suite: Suite, path: Path) -> tuple[Block, ...]:
     )
     blocks = []
     for i, block in enumerate(said.blocks):
-        at = f"{path}: blocks[{i}]"
+        at = f"{document.name}: blocks[{i}]"
         scenarios = _known(block.scenarios, said.scenarios, f"{at}.scenarios")
         tracks = _known(block.tracks, said.tracks, f"{at}.tracks")
         navigators = _known(block.navigators, labels, f"{at}.navigators")
@@ -210,15 +221,21 @@ def _known(chosen: tuple[str, ...] | None, own: tuple[str, ...], where: str) -> 
     return own if chosen is None else chosen
 
 
-def _wanted_navigators(said: SuiteFile, selected: Sequence[str]) -> list[tuple[int | None, Spec]]:
-    """(place in the file or None, spec): labels select from the file, other names are added."""
-    own = {label_of(spec): (i, spec) for i, spec in enumerate(said.navigators)}
+def _wanted_navigators(said: SuiteFile, selected: Sequence[Spec]) -> list[tuple[int | None, Spec]]:
+    """(place in the file or None, spec): labels select from the file, other specs are added."""
+    every = labelled(said.navigators)
+    own = {label_of(spec): (i, spec) for i, spec in enumerate(every)}
     if not selected:
-        return [(i, spec) for i, spec in enumerate(said.navigators)]
-    return [own.get(name, (None, _written(name))) for name in selected]
+        return list(enumerate(every))
+    chosen = [
+        own.get(spec, (None, _parsed(spec))) if isinstance(spec, str) else (None, spec)
+        for spec in selected
+    ]
+    specs = labelled([spec for _, spec in chosen])
+    return [(place, spec) for (place, _), spec in zip(chosen, specs, strict=True)]
 
 
-def _written(text: str) -> Spec:
+def _parsed(text: str) -> Spec:
     """A name, or ``{type: name, …}`` as it would stand in a file."""
     if not text.lstrip().startswith("{"):
         return text
@@ -252,7 +269,7 @@ def _refuse_unknown_tracks(tracks: Sequence[str]) -> None:
 
 
 def _refuse_twice(
-    key: str, names: Sequence[str], selected: Sequence[str], document: Document
+    key: str, names: Sequence[str], selected: Sequence[Spec], document: Document
 ) -> None:
     """Raise UsageError for a name that stands twice in the file, or among options if selected."""
     for k, name in enumerate(names):

@@ -1,25 +1,23 @@
 """The suite file: what a YAML file that asks for a run may say."""
 
 import re
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
+from benchnav.config.yaml_packages import SUFFIXES, only, suite_files
 from benchnav.config.yaml_reader import read_yaml
 from benchnav.errors import UsageError, did_you_mean
-from benchnav.navigation.tracks import Track
 from benchnav.scenario.catalogue import is_named
 from benchnav.scenario.catalogue import names as scenario_names
 from benchnav.scenario.parameters import split_parameters
 from benchnav.scenario.scenario import Scenario
+from benchnav.scenario.terms import Track
 from benchnav.store.runs.spans import SEED_DIGITS
 
 MAX_SEEDS = 1_000_000
 _RANGE = re.compile(rf"(?:([0-9]{{1,{SEED_DIGITS}}}):)?([0-9]{{1,{SEED_DIGITS}}})")
-_SUFFIXES = (".yaml", ".yml")
 
 Name = Annotated[str, Field(min_length=1, max_length=200)]
 
@@ -92,20 +90,20 @@ def parse_seeds(text: str) -> range:
 
 
 def suite_names() -> list[str]:
-    """Suites that ship, sorted."""
-    return sorted(f.name.removesuffix(".yaml") for f in _shipped() if f.name.endswith(".yaml"))
+    """Return the names of all installed suites, sorted."""
+    return list(suite_files())
 
 
 def suite_path(name: str) -> Path:
-    """Return the file of a suite that ships, or the path itself where ``name`` is one.
+    """Return the file of an installed suite, or the path itself where ``name`` is one.
 
-    Raises UsageError where it is neither.
+    Raises UsageError where it is neither, PluginConflictError where two packages hold the suite.
     """
     if _is_file_name(name):
         return Path(name)
-    for entry in _shipped():
-        if entry.name == f"{name}.yaml":
-            return Path(str(entry))
+    files = suite_files()
+    if name in files:
+        return only("suite", files[name]).path
     raise UsageError(
         f"SUITE must be one of the suites {', '.join(suite_names())}, the name of a scenario, or"
         f" a file (*.yaml). Got {name!r} instead."
@@ -131,12 +129,7 @@ def describes_scenario(data: Any) -> bool:
 
 
 def _is_file_name(name: str) -> bool:
-    return name.endswith(_SUFFIXES) or Path(name).is_file()
-
-
-def _shipped() -> list[Traversable]:
-    folder = files("benchnav_scenarios") / "suites"
-    return list(folder.iterdir()) if folder.is_dir() else []
+    return name.endswith(SUFFIXES) or Path(name).is_file()
 
 
 def json_schema() -> dict[str, Any]:

@@ -8,18 +8,17 @@ import numpy as np
 
 from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.episode.episode import Status
 from benchnav.errors import MissingExtraError
 from benchnav.navigation.briefing import Briefing, brief
 from benchnav.navigation.command_check import CallFailed, checked, remarks_of, said
+from benchnav.navigation.held_maps import HeldMaps
 from benchnav.navigation.navigator import CommandKind, Navigator, Need
 from benchnav.navigation.observation import Observation
+from benchnav.navigation.observe import deciding, observe
 from benchnav.navigation.plugin.trace import trace
 from benchnav.navigation.rehearsal import Rehearsal, copied
-from benchnav.navigation.tracks import granted_map
 from benchnav.runner.execute.call_timer import Call, calling
 from benchnav.runner.rollouts.tamper_guard import Guard
-from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
 
 PROPERTIES: dict[str, Callable[[Any], Any]] = {  # of a navigator that a run asks for, checked
@@ -58,13 +57,7 @@ class Driver:
             asked = [_asked(navigator, name, blame) for name in PROPERTIES]
         needs, self._command, self.reproducible = asked
         self._needs = frozenset(needs)
-        self._row = np.arange(len(worlds))[:, None]
-        self._goal = np.zeros((*self.chosen.shape, 2))
-        for b, world in enumerate(worlds):
-            mine = self.chosen[b][self.chosen[b] >= 0]
-            self._goal[b, : len(mine)] = world.agents.goal[mine]
-        self._maps = [granted_map(world, track) for world in worlds]
-        self._moving = track == "known" and any(world.relocates for world in worlds)
+        self._maps = HeldMaps(simulation, track)
 
     def reset(self, generators: Sequence[np.random.Generator]) -> float:
         """Brief the navigator for all worlds. Returns the seconds that it took.
@@ -108,8 +101,8 @@ class Driver:
         Returns the seconds that its call took. Raises CallFailed where the call raises
         or answers what is not a command.
         """
-        observation = self._observe(time)
-        active = self._active[observation.rows]
+        observation = self._observe()
+        active, rows = observation.active.copy(), observation.rows.copy()  # a plugin gets its own
         began = perf_counter()
         try:
             with calling("act", time):
@@ -118,7 +111,7 @@ class Driver:
                 told = checked(answer, active)
             self._require_intact()
         except CallFailed as failed:
-            who = None if failed.suspects is None else observation.rows[failed.suspects]
+            who = None if failed.suspects is None else rows[failed.suspects]
             raise CallFailed(self._at(failed.reason, time), who, failed.traceback) from None
         except MissingExtraError:
             raise  # what is not installed is no failure of the navigator
@@ -126,7 +119,7 @@ class Driver:
             reason, traceback = _raised("act", error, time)
             raise CallFailed(self._at(reason, time), traceback=traceback) from error
         world, agent = np.nonzero(active)
-        row = observation.rows[world]
+        row = rows[world]
         command[row, self.chosen[row, agent]] = told[world, agent]
         return seconds
 
@@ -146,47 +139,21 @@ class Driver:
     def _at(self, reason: str, time: float) -> str:
         return f"{self._blame}{reason} at t = {time:g} s"
 
-    def _observe(self, time: float) -> Observation:
-        simulation, at = self.simulation, (self._row, self.chosen)
-        self._active = (
-            (self.chosen >= 0)
-            & simulation.running[:, None]
-            & (simulation.status[at] == int(Status.ACTIVE))
-            & simulation.present[at]
-        )
-        present = np.where(self._active, self.chosen, -1)
-        rays, neighbours, edges = sense(simulation, present, self._needs)
-        if self._moving:
-            self._renew_maps()
-        everything = Observation(
-            np.arange(len(self.chosen)), np.full(len(self.chosen), time), self._active.copy(),
-            self._own(simulation.position), self._own(simulation.heading),
-            self._own(simulation.velocity), self._goal.copy(), tuple(self._maps),
-            rays, neighbours, edges,
-        )  # fmt: skip
-        if simulation.running.all():
-            return everything
-        return everything.select(np.flatnonzero(simulation.running))
-
-    def _own(self, array: FloatArray) -> FloatArray:
-        own = array[self._row, self.chosen]
-        own[self.chosen < 0] = 0.0
-        return own
-
-    def _renew_maps(self) -> None:
+    def _observe(self) -> Observation:
         simulation = self.simulation
-        for b, world in enumerate(simulation.worlds):
-            held, revision = self._maps[b], int(simulation.revision[b])
-            if held is not None and held.revision != revision:
-                position = simulation.body_position[b].copy()
-                self._maps[b] = granted_map(world, self.track, position, revision)
+        active = deciding(simulation, self.chosen)
+        maps = self._maps.now()
+        observation = observe(simulation, self.chosen, active, self._needs, maps)
+        if simulation.running.all():
+            return observation
+        return observation.select(np.flatnonzero(simulation.running))
 
     def _briefing(self, b: int, world: World, rng: np.random.Generator) -> Briefing:
         clock = world.clock
         return brief(
             world.agents, self.chosen[b][self.chosen[b] >= 0], dt=clock.dt, horizon=clock.horizon,
             goal_tolerance=world.rules.goal_tolerance, decision_budget=clock.decision_budget,
-            map=self._maps[b], rng=rng, rehearsals=tuple(map(copied, self._rehearsals[b])),
+            map=self._maps.begin(b), rng=rng, rehearsals=tuple(map(copied, self._rehearsals[b])),
         )  # fmt: skip
 
 

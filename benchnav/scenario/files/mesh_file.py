@@ -1,4 +1,4 @@
-"""Triangles of a mesh file, in metres, z up, where the arena wants them."""
+"""Triangles of a mesh file, transformed to metres, z up, in the arena."""
 
 import re
 from collections.abc import Sequence
@@ -18,16 +18,16 @@ Up = Literal["x", "y", "z"]
 FORMATS = (".dae", ".obj", ".off", ".ply", ".stl")
 MAX_BYTES = 64 << 20
 MAX_FACES = 1_000_000
-_MERGE = 1e-6  # [m] vertices that are nearer than this are one
+_MERGE = 1e-6  # [m] closer vertices are merged
 
 _UNIT = re.compile(rb"<unit\b[^>]*\bmeter\s*=\s*[\"']\s*([^\"']{1,40}?)\s*[\"']")
 _UP = re.compile(rb"<up_axis>\s*([XYZ])_UP\s*</up_axis>")
 
 
 def read_triangles(path: Path) -> tuple[FloatArray, IntArray, float, Up]:
-    """Vertices (V, 3) in the file's own unit and axes, faces (F, 3), unit [m], up axis.
+    """Return vertices (V, 3) in the file's unit and axes, faces (F, 3), unit [m], up axis.
 
-    Unit and up axis are what a COLLADA file declares; 1 m and z in other formats.
+    Unit and up axis are read from a COLLADA file; they are 1 m and z for other formats.
 
     Raises:
         MeshError: not a mesh, or too large.
@@ -50,7 +50,7 @@ def place(
     yaw: float,
     at: Sequence[float],
 ) -> FloatArray:
-    """(V, 3) [m] in the arena: scaled along the file's axes, stood up, turned, moved."""
+    """Return vertices (V, 3) [m] in the arena: scaled along the file's axes, rotated, moved."""
     x, y, z = (vertices * np.broadcast_to(np.asarray(scale, np.float64), 3) * unit).T
     if up == "y":
         x, y, z = x, -z, y
@@ -63,7 +63,7 @@ def place(
 
 
 def merged(vertices: FloatArray, faces: IntArray) -> tuple[FloatArray, IntArray]:
-    """The same triangles on vertices of which no two coincide; without degenerate faces."""
+    """Return the same triangles without duplicate vertices and degenerate faces."""
     _, first, index = np.unique(
         np.rint(vertices / _MERGE), axis=0, return_index=True, return_inverse=True
     )
@@ -101,9 +101,9 @@ def _load(path: Path) -> tuple[FloatArray, IntArray]:
         mesh = scene.to_mesh()
         vertices: AnyArray = np.asarray(mesh.vertices, np.float64).reshape(-1, 3)
         faces: AnyArray = np.asarray(mesh.faces, np.int64).reshape(-1, 3)
-    except Exception as error:  # every loader raises kinds of its own
-        said = " ".join(str(error).split())[:120]
-        raise MeshError(f"{path}:1: the file must be a mesh that trimesh reads: {said}.") from None
+    except Exception as error:  # every loader raises its own errors
+        text = " ".join(str(error).split())[:120]
+        raise MeshError(f"{path}:1: the file must be a mesh that trimesh reads: {text}.") from None
     return vertices, faces
 
 

@@ -1,4 +1,4 @@
-"""A mesh as a planar obstacle: all of it that lies within the agents' height band."""
+"""A mesh as a planar obstacle: its part within the agents' height band."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,9 +12,9 @@ from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.errors import MeshError
 from benchnav.scenario.files.mesh_file import Up, merged, place, read_triangles
 
-SIMPLIFY = 1e-3  # [m] how far an outline may be from the exact one
-THIN = 2e-3  # [m] thickness that a sheet without volume is given
-_GRID = 1e-6  # [m] to which unions are rounded
+SIMPLIFY = 1e-3  # [m] tolerance of simplified outlines
+THIN = 2e-3  # [m] thickness of a sheet without volume
+_GRID = 1e-6  # [m] grid of rounded unions
 _SPECK = 1e-8  # [m²] smaller polygons and holes are dropped
 
 
@@ -28,25 +28,25 @@ def mesh_solids(
     at: Sequence[float] = (0.0, 0.0),
     kind: Kind = Kind.STATIC,
 ) -> tuple[tuple[Solid, ...], Mesh]:
-    """The outlines of what a mesh puts between two heights, and the placed mesh.
+    """Return the outlines of the part of a mesh between two heights, and the placed mesh.
 
-    The obstacle is the union of the plan views of all that lies strictly within the
-    band. Closed outlines are filled, each connected part of the mesh by itself, by
+    The obstacle is the union of the plan views of all parts strictly within the
+    band. Closed outlines are filled, each connected part of the mesh separately, by
     the even-odd rule: a pipe stays hollow, a hull is solid. A sheet that encloses
-    nothing becomes a wall ``THIN`` thick. Outlines are exact to ``SIMPLIFY``.
+    no area becomes a wall of thickness ``THIN``. Outlines are exact to ``SIMPLIFY``.
 
     Args:
         path: a COLLADA, STL, OBJ, PLY or OFF file.
-        unit: [m] of the file's unit; None: what the file declares, else 1.
-        up: the file's axis that points up; None: what the file declares, else z.
+        unit: [m] of the file's unit; None: as the file declares, else 1.
+        up: the file's axis that points up; None: as the file declares, else z.
         scale: factor, or one for each of the file's axes, applied before `up`.
         band: (low, high) [m] heights above the arena's floor.
-        yaw: [rad] by which the mesh is turned.
-        at: (x, y) or (x, y, z) [m] where its origin stands.
+        yaw: rotation of the mesh [rad].
+        at: (x, y) or (x, y, z) [m] of its origin.
         kind: of the solids.
 
     Raises:
-        MeshError: not a mesh, or nothing of it lies within the band.
+        MeshError: not a mesh, or no part of it lies within the band.
         MissingExtraError: trimesh or pycollada is not installed.
     """
     path = Path(path)
@@ -58,16 +58,16 @@ def mesh_solids(
     if not loops:
         low, high = placed[:, 2].min(), placed[:, 2].max()
         raise MeshError(
-            f"{path}:1: the mesh must have something between {band[0]} m and {band[1]} m; "
+            f"{path}:1: the mesh must have a part between {band[0]} m and {band[1]} m; "
             f"it spans {low:.4g} m to {high:.4g} m. Check unit, up, scale and band."
         )
     return tuple(Solid(kind, part) for part in loops), Mesh(placed, faces, band)
 
 
 def section(vertices: FloatArray, faces: IntArray, band: tuple[float, float]) -> Any:
-    """The plan view (a shapely geometry) of all that lies within a height band (low, high) [m].
+    """Return the plan view (a shapely geometry) of the part within a height band (low, high) [m].
 
-    ``vertices`` (V, 3) [m], z up, no two the same; ``faces`` (F, 3).
+    ``vertices`` (V, 3) [m], z up, no two equal; ``faces`` (F, 3).
     """
     import shapely
 
@@ -87,7 +87,7 @@ def section(vertices: FloatArray, faces: IntArray, band: tuple[float, float]) ->
 
 
 def _plan_views(corners: FloatArray, low: float, high: float) -> tuple[list[Any], list[Any]]:
-    """Polygons and lines (of upright triangles) of triangles (F, 3, 3) clipped to the band.
+    """Return polygons and lines (of upright triangles) of triangles (F, 3, 3) clipped to the band.
 
     A clipped triangle is convex, so its plan view is the hull of the corners within
     the band and of the points where its edges leave the band.
@@ -115,7 +115,7 @@ def _plan_views(corners: FloatArray, low: float, high: float) -> tuple[list[Any]
 
 
 def _cut(a: FloatArray, b: FloatArray, level: float) -> FloatArray:
-    """(N, 2) where the segments a–b (N, 3) cross a height; the same point from either end."""
+    """Return the points (N, 2) where segments a–b (N, 3) cross a height, equal from either end."""
     swap = (a[:, 2] > b[:, 2])[:, None]
     below, above = np.where(swap, b, a), np.where(swap, a, b)
     share = (level - below[:, 2]) / (above[:, 2] - below[:, 2])
@@ -124,7 +124,7 @@ def _cut(a: FloatArray, b: FloatArray, level: float) -> FloatArray:
 
 
 def _components(faces: IntArray) -> list[IntArray]:
-    """Faces that hang together through shared vertices."""
+    """Return groups of faces that are connected through shared vertices."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
@@ -137,9 +137,9 @@ def _components(faces: IntArray) -> list[IntArray]:
 
 
 def _filled(vertices: FloatArray, faces: IntArray, band: tuple[float, float]) -> Any:
-    """What one connected part encloses at a height within the band at which no vertex lies.
+    """Return the area that one connected part encloses at a height without vertices in the band.
 
-    Whatever is inside the mesh throughout the band is inside at that height too; the
+    Everything inside the mesh throughout the band is inside at that height too; the
     rest of the obstacle is the plan view of the surface.
     """
     import shapely
@@ -151,7 +151,7 @@ def _filled(vertices: FloatArray, faces: IntArray, band: tuple[float, float]) ->
     corners = vertices[faces]
     after = np.roll(corners, -1, axis=1)
     crosses = (corners[..., 2] > level) != (after[..., 2] > level)
-    face, edge = np.nonzero(crosses)  # two edges of each crossing face, side by side
+    face, edge = np.nonzero(crosses)  # the two edges of each crossing face are adjacent
     points = _cut(corners[face, edge], after[face, edge], level)
     lines = shapely.linestrings(points.reshape(-1, 2, 2))
     return shapely.build_area(shapely.union_all(lines))
@@ -168,7 +168,7 @@ def _parts(region: Any) -> list[Any]:
 
 
 def _loops(polygon: Any) -> tuple[FloatArray, ...]:
-    """Outer boundary counter-clockwise, holes clockwise, none repeated at its end."""
+    """Return the outer boundary counter-clockwise, holes clockwise, without repeated vertices."""
     import shapely
 
     holes = [r for r in polygon.interiors if shapely.Polygon(r).area > _SPECK]

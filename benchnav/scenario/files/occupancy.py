@@ -1,4 +1,4 @@
-"""Occupancy maps as solids: the outline of what is blocked, exact to the cell."""
+"""Occupancy maps as solids: the outline of blocked cells, exact to the cell."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,14 +7,13 @@ from typing import Literal
 import numpy as np
 
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import FloatArray
+from benchnav.arrays import Extent, FloatArray
 from benchnav.errors import MapError
 from benchnav.geometry.contour import outlines
 from benchnav.scenario.importers import movingai, ros_map
 from benchnav.scenario.importers.grid import MAX_CELLS, Occupancy, demand_free
 
 Format = Literal["movingai", "ros"]
-Bounds = tuple[float, float, float, float]
 
 __all__ = [
     "MAX_CELLS",
@@ -28,7 +27,7 @@ __all__ = [
 
 
 def read_occupancy(path: Path | str, format: Format, cell: float | None = None) -> Occupancy:
-    """The map in ``path``; ``cell`` [m] a cell (default: 1 m for MovingAI, the file's for ROS).
+    """Return the map in ``path``; ``cell`` [m] is a side (default: 1 m, ROS as in the file).
 
     Raises:
         MapError: it is not a map of that format.
@@ -41,9 +40,9 @@ def read_occupancy(path: Path | str, format: Format, cell: float | None = None) 
 
 
 def trace(occupancy: Occupancy, unknown_is_free: bool = False) -> tuple[Solid, ...]:
-    """Walls around everything blocked, one for each 8-connected set of cells.
+    """Return walls around all blocked cells, one for each 8-connected set.
 
-    The outside of the map is blocked and comes first. Nothing passes between two
+    The outside of the map is blocked and comes first. Agents cannot pass between two
     blocked cells that touch at a corner. Unknown cells are blocked unless
     ``unknown_is_free``.
     """
@@ -60,19 +59,19 @@ def occupancy_solids(
     offset: Sequence[float] = (0.0, 0.0),
     cell: float | None = None,
     unknown_is_free: bool = False,
-) -> tuple[tuple[Solid, ...], Bounds]:
-    """Walls and bounds (xmin, ymin, xmax, ymax) [m] of an occupancy map.
+) -> tuple[tuple[Solid, ...], Extent]:
+    """Return walls and bounds (xmin, ymin, xmax, ymax) [m] of an occupancy map.
 
     Args:
         path: a MovingAI ``.map`` file, or a map_server YAML file.
-        format: `movingai` (y upwards, lower left corner at the origin) or `ros` (where the
-            file's origin says, turned by its yaw).
+        format: `movingai` (y upwards, lower left corner at the origin) or `ros` (placed and
+            rotated by the file's origin).
         offset: (x, y) [m] added to every point.
-        cell: [m] a cell; None: 1 m for MovingAI, the file's resolution for ROS.
-        unknown_is_free: whether cells that the map does not know can be entered.
+        cell: side of a cell [m]; None: 1 m for MovingAI, the file's resolution for ROS.
+        unknown_is_free: whether agents may enter cells that are unknown in the map.
 
     Raises:
-        MapError: the file is not what it must be, or no cell is free.
+        MapError: the file is wrong, or no cell is free.
     """
     occupancy = read_occupancy(path, format, cell)
     demand_free(f"{path}:1", occupancy, unknown_is_free, "`unknown_is_free: true`")
@@ -87,13 +86,13 @@ def occupancy_solids(
 def occupancy_loops(
     path: Path | str, format: Format, cell: float | None = None, unknown_is_free: bool = False
 ) -> tuple[FloatArray, ...]:
-    """What an occupancy map blocks, as one thing that stands in the open: its loops (V, 2) [m].
+    """Return the loops (V, 2) [m] of a map's blocked cells, as an obstacle in the open.
 
-    As `occupancy_solids`, in the map's own frame, but nothing lies outside the map:
-    what reaches its edge ends there.
+    Like `occupancy_solids`, in the map's own frame, but the outside of the map is free:
+    obstacles end at the map's edge.
 
     Raises:
-        MapError: the file is not what it must be, or no cell is blocked.
+        MapError: the file is wrong, or no cell is blocked.
     """
     occupancy = read_occupancy(path, format, cell)
     blocked = ~occupancy.free(unknown_is_free)
@@ -103,5 +102,5 @@ def occupancy_loops(
             f"{path}:1: an obstacle's map must have a blocked cell; {free} are free"
             f" and {unknown} are unknown."
         )
-    _, *regions = outlines(np.pad(blocked, 1))  # first the outside, around the free rim
+    _, *regions = outlines(np.pad(blocked, 1))  # the first outline is the outside
     return tuple(occupancy.points(loop - 1.0) for region in regions for loop in region.loops)

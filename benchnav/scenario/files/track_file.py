@@ -19,13 +19,13 @@ Row = tuple[int, float, int, float, float]  # line, frame, id, x, y
 
 
 def read_tracks(law: RecordedTrack, folder: Path) -> list[FloatArray]:
-    """One (T, 3) array of time [s], x, y (as recorded) per id, ids rising.
+    """Return one array (T, 3) of time [s], x, y (as recorded) per id, by ascending id.
 
-    Time 0 is the recording's first frame. Rows whose numbers are ``?`` are missing
+    Time 0 is the recording's first frame. Rows with ``?`` in place of numbers are missing
     values and are left out.
 
     Raises:
-        ScenarioError: the file is not of its format, or lacks an id that the law names.
+        ScenarioError: the file is not of its format, or has not all ids that the law names.
     """
     path = folder / (law.file or "")
     found: dict[int, dict[float, tuple[float, float]]] = {}
@@ -33,21 +33,21 @@ def read_tracks(law: RecordedTrack, folder: Path) -> list[FloatArray]:
     for line, frame, number, x, y in read(path):
         track = found.setdefault(number, {})
         if frame in track:
-            raise ScenarioError(f"{path}:{line}: frame {frame:g} of id {number} stands twice.")
+            raise ScenarioError(f"{path}:{line}: frame {frame:g} of id {number} is repeated.")
         track[frame] = (x, y)
     if not found:
         raise ScenarioError(f"{path}:1: the file must hold at least one track.")
     first = min(min(track) for track in found.values())
-    wanted = sorted(found) if law.ids is None else law.ids
-    for number in wanted:
+    chosen = sorted(found) if law.ids is None else law.ids
+    for number in chosen:
         if number not in found:
             ids = ", ".join(str(n) for n in sorted(found)[:10])
             raise ScenarioError(f"{path}:1: the file must hold id {number}; it has {ids}.")
-    if len(wanted) > MAX_TRACKS:
-        raise ScenarioError(f"{path}:1: at most {MAX_TRACKS} tracks are taken: choose `ids`.")
+    if len(chosen) > MAX_TRACKS:
+        raise ScenarioError(f"{path}:1: there are more than {MAX_TRACKS} tracks: choose `ids`.")
     step = law.frame_time or 1.0
     return [
-        np.array([((f - first) * step, *found[n][f]) for f in sorted(found[n])]) for n in wanted
+        np.array([((f - first) * step, *found[n][f]) for f in sorted(found[n])]) for n in chosen
     ]
 
 
@@ -80,11 +80,11 @@ def _ndjson(path: Path) -> Iterator[Row]:
 
 def _text(path: Path) -> Iterator[Row]:
     for line, text in _lines(path):
-        words = text.replace(",", " ").split()
-        if len(words) == 4 and "?" in words:
+        columns = text.replace(",", " ").split()
+        if len(columns) == 4 and "?" in columns:
             continue
         try:
-            yield _row(line, *words)
+            yield _row(line, *columns)
         except (ValueError, TypeError):
             raise ScenarioError(
                 f"{path}:{line}: must be four numbers: frame, id, x, y; got {shown(text)!r}."

@@ -1,4 +1,4 @@
-"""Readers of other projects' files, and the scenarios that are made of them."""
+"""Readers of other projects' files, and scenarios made from them."""
 
 from benchnav.scenario.importers.bundle import write_scenario
 from benchnav.scenario.importers.draft import default_name, import_movingai, import_ros_map

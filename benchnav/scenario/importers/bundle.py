@@ -1,4 +1,4 @@
-"""A scenario file and copies of its maps, in one folder that is complete."""
+"""Write a scenario file and copies of its maps into one complete folder."""
 
 import itertools
 from collections.abc import Iterator
@@ -14,20 +14,20 @@ from benchnav.scenario.importers.grid import read_bytes
 
 Mapping = dict[str, Any]
 
-_MOST_BYTES = 1 << 28  # of a map's file
+_MAX_BYTES = 1 << 28  # of a map file
 
 
 def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> list[Path]:
-    """Write a scenario as YAML and copy its maps beside it.
+    """Write a scenario as YAML, and copy its maps into the same folder.
 
-    A map whose name is taken by another file gets a name of its own: no map is ever
+    If another file has a map's name, the copy gets a new name: no map is ever
     overwritten, because other scenarios may need it.
 
     Returns the paths of all files, the scenario first.
 
     Raises:
-        UsageError: a scenario is there already and ``force`` is not given, or another
-            file is, or it cannot be written.
+        UsageError: the scenario exists already and ``force`` is not given, or another
+            file has its name, or it cannot be written.
         MapError: a map cannot be read any more.
     """
     out = Path(out)
@@ -42,12 +42,12 @@ def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> li
             if not _holds(path, content):
                 path.write_bytes(content)
     except OSError as error:
-        raise UsageError(f"{out.parent} must be writable; {error.strerror or error}.") from None
+        raise UsageError(f"{out.parent} is not writable: {error.strerror or error}.") from None
     return list(contents)
 
 
 def _contents(mapping: Mapping, out: Path) -> dict[Path, bytes]:
-    """What each file must hold, the scenario first."""
+    """Return the content of each file, the scenario first."""
     copies = _Copies(out)
     walls = [dict(wall) for wall in mapping.get("walls", [])]
     for wall in walls:
@@ -59,7 +59,7 @@ def _contents(mapping: Mapping, out: Path) -> dict[Path, bytes]:
 
 
 class _Copies:
-    """The files that must stand beside a scenario file."""
+    """The files to write with a scenario file."""
 
     def __init__(self, out: Path) -> None:
         self.out = out
@@ -70,17 +70,17 @@ class _Copies:
         if format == "ros":
             document, spec = ros_map.read_header(source)
             image = ros_map.image_path(document, spec)
-            name = self._add(image, read_bytes(image, _MOST_BYTES, "the image"))
+            name = self._add(image, read_bytes(image, _MAX_BYTES, "the image"))
             if spec.image != name:
                 renamed = {**document.data, "image": name}
                 text = yaml.safe_dump(renamed, sort_keys=False, default_flow_style=None)
                 return self._add(source, text.encode())
-        return self._add(source, read_bytes(source, _MOST_BYTES, "the map"))
+        return self._add(source, read_bytes(source, _MAX_BYTES, "the map"))
 
     def _add(self, source: Path, content: bytes) -> str:
-        """Add a file under the first name that no other file has."""
+        """Add a file under the first free name."""
         if self.out.exists() and self.out.samefile(source):
-            raise UsageError(f"{self.out} is the map's own name; give the scenario another one.")
+            raise UsageError(f"{self.out} is the map's own name; give the scenario another name.")
         name = next(n for n in _names(source, self.out) if self._free(n, content))
         self.contents[self.out.parent / name] = content
         return name
@@ -101,7 +101,7 @@ def _names(source: Path, out: Path) -> Iterator[str]:
 
 
 def _is_scenario(path: Path) -> bool:
-    """Whether a file may be overwritten by a scenario: it is no map and nothing else."""
+    """Whether a scenario may overwrite a file: it is a scenario already."""
     try:
         data: Any = read_yaml(path).data
     except ScenarioError:
@@ -110,7 +110,7 @@ def _is_scenario(path: Path) -> bool:
 
 
 def _holds(path: Path, content: bytes) -> bool:
-    """Whether a file is there and has just this content."""
+    """Whether a file exists with exactly this content."""
     try:
         return path.stat().st_size == len(content) and path.read_bytes() == content
     except OSError:

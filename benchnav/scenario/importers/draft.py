@@ -1,4 +1,4 @@
-"""Scenarios made of maps: a mapping in the words of a scenario file."""
+"""Drafts of scenarios on imported maps, as mappings with the keys of a scenario file."""
 
 import math
 import re
@@ -17,12 +17,12 @@ from benchnav.scenario.importers.room import Room, largest_room
 Mapping = dict[str, Any]
 Remark = Callable[[str], None]
 
-_MOST = 20  # agents, unless more are asked for
+_MAX_AGENTS = 20  # default
 _RADII = tuple(0.2 / 2**k for k in range(6))  # [m]
 _SPEED = 1.0  # [m/s]
-_APART = 0.25  # of the smaller side of where they are: start and goal, at least
-_PATIENCE = 3.0  # the horizon is so many times the time of an undisturbed journey
-_COMMON = {"", "map", "maps", "out", "s", "scenario", "scenarios"}  # names that many maps share
+_MIN_SHARE = 0.25  # least distance of start and goal, as a share of the area's smaller side
+_PATIENCE = 3.0  # ratio of the horizon to the time of an undisturbed journey
+_COMMON = {"", "map", "maps", "out", "s", "scenario", "scenarios"}  # names shared by many maps
 
 
 def _silent(text: str) -> None:
@@ -43,21 +43,21 @@ def import_movingai(
     """Return a scenario on a MovingAI map.
 
     With a ``.scen`` file, starts and goals are those of its rows, spread over the
-    buckets, of which no two share a start or a goal; else they are drawn as on a
+    buckets, without repeated starts or goals; otherwise they are drawn as on a
     map_server map.
 
     Args:
         map_path: a ``.map`` file.
         scen_path: a ``.scen`` file of that map.
-        agents: how many; None: up to 20, as many as have room or as the file has rows.
-        bucket: takes only the rows of this bucket, the first ones.
-        cell: [m] a cell.
-        radius: [m] of an agent; None: 0.3 cells.
+        agents: number of agents; None: up to 20, as far as space or rows allow.
+        bucket: takes only the first rows of this bucket.
+        cell: side of a cell [m].
+        radius: of an agent [m]; None: 0.3 cells.
         name: of the scenario; None: ``movingai/`` and the name of the map.
         remark: called with each remark about the map and the journeys.
 
     Raises:
-        MapError: a file is not what it must be, has too few rows, or no agent has room.
+        MapError: a file is wrong or has too few rows, or no agent fits.
         UsageError: a bucket without a ``.scen`` file, or no agents, or no radius.
     """
     _demand_sane(agents, radius, name)
@@ -70,7 +70,7 @@ def import_movingai(
     called = name or default_name("movingai", path)
     if scen_path is None:
         if bucket is not None:
-            raise UsageError(f"A bucket is one of a .scen file; got {bucket} without such a file.")
+            raise UsageError(f"A bucket needs a .scen file; got bucket {bucket} without one.")
         room = _room(path, occupancy, False, (size,))
         places, journey, count = _drawn(room, agents, remark)
         return _scenario(called, path, shape, occupancy, places, count, size, journey)
@@ -97,20 +97,20 @@ def import_ros_map(
 ) -> Mapping:
     """Return a scenario on a map_server map.
 
-    Starts and goals are drawn in the largest part of the map that agents can be in,
+    Starts and goals are drawn in the largest connected part of the map where agents fit,
     goals at least a quarter of its smaller side away.
 
     Args:
         path: the map's YAML file.
-        agents: how many; None: 20, or as many as have room.
-        radius: [m] of an agent; None: 0.2 m, or half of it, a quarter, … until two have room.
-        unknown_is_free: whether agents may enter cells that the map does not know.
+        agents: number of agents; None: 20, or as many as fit.
+        radius: of an agent [m]; None: 0.2 m, or half of it, a quarter, … until two agents fit.
+        unknown_is_free: whether agents may enter cells that are unknown in the map.
         name: of the scenario; None: ``ros/`` and the name of the map, or of its folder
-            where the map is called ``map``.
+            if the map is called ``map``.
         remark: called with each remark about the map and the journeys.
 
     Raises:
-        MapError: the file is not what it must be, or no agent has room.
+        MapError: the file is wrong, or no agent fits.
         UsageError: no agents, or no radius.
     """
     _demand_sane(agents, radius, name)
@@ -131,7 +131,7 @@ def import_ros_map(
 def default_name(family: str, map_path: Path, out: Path | None = None) -> str:
     """Return ``family/`` and the name of the scenario file, of the map or of its folder.
 
-    The first of these counts that is not a name which many maps share.
+    The first of these that is not a common name is used.
     """
     folder = map_path.resolve().parent.name
     stems = ([out.stem] if out else []) + [map_path.stem, folder]
@@ -187,8 +187,8 @@ def _scenario(
 def _demand_sane(agents: int | None, radius: float | None, name: str | None) -> None:
     if name is not None and not (re.fullmatch(NAME_PATTERN, name) and len(name) <= MAX_NAME):
         raise UsageError(
-            "A scenario's name must be small letters, digits, - and _, with / between its parts,"
-            f" such as ros/warehouse; got {shown(name)!r}."
+            "A scenario's name must consist of small letters, digits, - and _, with / between its"
+            f" parts, such as ros/warehouse; got {shown(name)!r}."
         )
     if agents is not None and agents < 1:
         raise UsageError(f"agents must be ≥ 1; got {agents}.")
@@ -197,7 +197,7 @@ def _demand_sane(agents: int | None, radius: float | None, name: str | None) -> 
 
 
 def _room(path: Path, occupancy: Occupancy, unknown_is_free: bool, radii: Sequence[float]) -> Room:
-    """Of the first radius for which two agents have room, else of the last for which one has."""
+    """Return the room of the first radius for which two agents fit, else of the last for one."""
     free, found = occupancy.free(unknown_is_free), None
     for radius in radii:
         found = largest_room(occupancy, free, radius) or found
@@ -207,15 +207,15 @@ def _room(path: Path, occupancy: Occupancy, unknown_is_free: bool, radii: Sequen
         closed = occupancy.unknown.any() and not unknown_is_free
         raise MapError(
             f"{path}:1: the map must have a place for an agent; none has a radius of"
-            f" {radii[-1]:g} m free around it. Try a smaller radius"
+            f" {radii[-1]:g} m of free space. Try a smaller radius"
             f"{', or --unknown-is-free to open unknown cells' if closed else ''}."
         )
     return found
 
 
 def _drawn(room: Room, agents: int | None, remark: Remark) -> tuple[Mapping, float, int]:
-    """Where agents start and want to go, the length [m] of a long journey, and how many."""
-    count = max(1, min(_MOST, room.capacity)) if agents is None else agents
+    """Return starts and goals, the length [m] of a long journey, and the number of agents."""
+    count = max(1, min(_MAX_AGENTS, room.capacity)) if agents is None else agents
     places = _within(room)
     wide, high = room.sides
     remark(
@@ -228,7 +228,7 @@ def _drawn(room: Room, agents: int | None, remark: Remark) -> tuple[Mapping, flo
 
 def _within(room: Room) -> Mapping:
     start, goal = ({"type": "rectangle", "bounds": list(room.box)} for _ in range(2))
-    apart = round(_APART * min(room.sides), 3)
+    apart = round(_MIN_SHARE * min(room.sides), 3)
     return {
         "start": {"type": "region", "region": start, "separation": room.radius},
         "goal": {"type": "region", "region": goal, "min_distance": apart},
@@ -242,20 +242,20 @@ def _points(places: FloatArray) -> Mapping:
 def _rows(
     path: Path, queries: movingai.Queries, agents: int | None, bucket: int | None, remark: Remark
 ) -> list[int]:
-    """The rows that become agents, as many as wanted."""
+    """Return the rows that become agents, in the requested number."""
     left_out = len(queries.left_out)
     if left_out:
         rows_are = "row is" if left_out == 1 else "rows are"
         remark(f"{left_out} {rows_are} left out. The first:\n{queries.left_out[0]}")
-    rows = journeys.choose(queries, _MOST if agents is None else agents, bucket)
-    wanted = agents or 1
-    if len(rows) < wanted:
+    rows = journeys.choose(queries, _MAX_AGENTS if agents is None else agents, bucket)
+    count = agents or 1
+    if len(rows) < count:
         within = "" if bucket is None else f" in bucket {bucket}"
-        cure = "Ask for fewer agents."
+        cure = "Request fewer agents."
         if not rows and bucket is not None:
             cure = f"The file has buckets {queries.bucket.min()} to {queries.bucket.max()}."
         raise MapError(
-            f"{path}:1: there must be {wanted} {'query' if wanted == 1 else 'queries'}{within}"
-            f" that share no start and no goal; there are {len(rows)}. {cure}"
+            f"{path}:1: there must be {count} {'query' if count == 1 else 'queries'}{within}"
+            f" with different starts and goals; there are {len(rows)}. {cure}"
         )
     return rows

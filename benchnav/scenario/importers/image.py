@@ -1,4 +1,4 @@
-"""Grey levels and opacity of an image, refused early when it is hostile."""
+"""Grey levels and opacity of an image; hostile images are refused early."""
 
 import warnings
 from pathlib import Path
@@ -21,12 +21,12 @@ _FORMATS = ("PNG", "PPM", "BMP", "JPEG", "TIFF", "GIF")  # PPM is Pillow's name 
 
 
 def read_levels(path: Path) -> tuple[Levels, BoolArray]:
-    """Return the (H, W) grey levels 0 to 255, row 0 at the top, and where pixels are opaque.
+    """Return the grey levels (H, W) 0 to 255, row 0 at the top, and which pixels are opaque.
 
     A colour counts by its luma (ITU-R 601), whatever its opacity; 16 bits are rounded to 8.
 
     Raises:
-        MapError: the image has another format, is cut short, or is too large.
+        MapError: the image has another format, is truncated, or is too large.
     """
     from PIL import Image as pillow
 
@@ -47,7 +47,7 @@ def read_levels(path: Path) -> tuple[Levels, BoolArray]:
         ) from None
     except Exception as error:  # Pillow's decoders raise a dozen kinds
         raise MapError(
-            f"{path}:1: the image must be a whole JPEG, TIFF, GIF, PNG, PGM or BMP file;"
+            f"{path}:1: the image must be a complete JPEG, TIFF, GIF, PNG, PGM or BMP file;"
             f" got: {error}."
         ) from None
 

@@ -1,4 +1,4 @@
-"""Which queries of a ``.scen`` file become agents, and how far these have to go."""
+"""Choose the queries of a ``.scen`` file that become agents, and summarise their lengths."""
 
 from collections import defaultdict, deque
 
@@ -9,10 +9,10 @@ from benchnav.scenario.importers.movingai import Queries
 
 
 def choose(queries: Queries, count: int, bucket: int | None) -> list[int]:
-    """Return up to ``count`` rows, no two of which share a start or a goal.
+    """Return up to ``count`` rows without repeated starts or goals.
 
-    They are spread evenly over the buckets, because published files put the shortest
-    journeys first; within a bucket, and where only one ``bucket`` is wanted, the first
+    They are spread evenly over the buckets, because published files list the shortest
+    journeys first; within a bucket, and if only one ``bucket`` is requested, the first
     rows are taken.
     """
     by_bucket: defaultdict[int, deque[int]] = defaultdict(deque)
@@ -38,7 +38,7 @@ def _next(
 ) -> int | None:
     """Take the first row whose start and goal are not yet in ``starts`` and ``goals``."""
     while rows:
-        row = rows.popleft()  # one that is refused now would be refused later too
+        row = rows.popleft()  # a row that is refused now would be refused later too
         start, goal = tuple(queries.start[row].tolist()), tuple(queries.goal[row].tolist())
         if start != goal and start not in starts and goal not in goals:
             starts.add(start)
@@ -48,7 +48,7 @@ def _next(
 
 
 def summary(lengths: FloatArray) -> str:
-    """Return how many journeys there are, and how long [m] they are."""
+    """Return the number and lengths [m] of the journeys, as text."""
     if len(lengths) == 1:
         return f"1 journey of {lengths[0]:.1f} m."
     return (

@@ -19,30 +19,29 @@ from benchnav.errors import MapError
 from benchnav.scenario.importers.grid import MAX_CELLS, Occupancy, check_size, read_bytes
 
 FREE = ".GS"
-BLOCKED = "@OTW"  # water too: nothing here swims
+BLOCKED = "@OTW"  # includes water: agents cannot swim
 _MAX_BYTES = MAX_CELLS + (1 << 20)
 _LINE_END = re.compile(r"\r\n|\r|\n")
 _HEADER = "the four header lines are `type octile`, `height H`, `width W`, `map`"
 
-Lines = list[tuple[int, str]]  # (number in the file from 1, text without spaces around it)
+Lines = list[tuple[int, str]]  # (number in the file from 1, text without surrounding spaces)
 
 
 @dataclass(frozen=True, eq=False)
 class Queries:
-    """The rows of a ``.scen`` file, y already turned upwards."""
+    """The rows of a ``.scen`` file, with y upwards."""
 
     bucket: IntArray  # (Q,)
     start: IntArray  # (Q, 2) cell (column, row), row 0 at the bottom
     goal: IntArray  # (Q, 2)
     length: FloatArray  # (Q,) published optimal octile length, in cells
-    left_out: tuple[str, ...] = ()  # what is wrong with each row that cannot be used
+    left_out: tuple[str, ...] = ()  # the problem of each row that cannot be used
 
 
 def read_map(path: Path | str, cell: float = 1.0) -> Occupancy:
-    """Return the map in ``path``, its lower left corner at the origin; ``cell`` [m] a cell.
+    """Return the map in ``path``, its lower left corner at the origin; ``cell`` [m] is a side.
 
-    As in the field's own reader, blank lines, spaces around a row and small letters do
-    not matter.
+    Like the original reader, ignore blank lines, spaces around a row and letter case.
 
     Raises:
         MapError: it is not such a map.
@@ -76,7 +75,7 @@ def read_map(path: Path | str, cell: float = 1.0) -> Occupancy:
 def read_scen(path: Path | str, map_path: Path | str, occupancy: Occupancy) -> Queries:
     """Return the queries of ``path`` on the map in ``map_path``, which was read as ``occupancy``.
 
-    Fields stand apart by spaces or tabs. As in the field's own reader, a file without a
+    Fields are separated by spaces or tabs. As in the original reader, a file without a
     version has rows with or without width and height. Rows that cannot be used, or that
     are about another map, are left out.
 
@@ -102,9 +101,9 @@ def read_scen(path: Path | str, map_path: Path | str, occupancy: Occupancy) -> Q
     )
 
 
-def _lines(path: Path, what: str) -> Lines:
-    """The lines that are not blank."""
-    text = read_bytes(path, _MAX_BYTES, what).removeprefix(b"\xef\xbb\xbf").decode("latin-1")
+def _lines(path: Path, subject: str) -> Lines:
+    """Return the lines that are not blank."""
+    text = read_bytes(path, _MAX_BYTES, subject).removeprefix(b"\xef\xbb\xbf").decode("latin-1")
     numbered = enumerate(map(str.strip, _LINE_END.split(text)), 1)
     return [(number, line) for number, line in numbered if line]
 
@@ -114,7 +113,7 @@ def _any_case(letters: NDArray[np.uint8], of: str) -> BoolArray:
 
 
 def _header(path: Path, lines: Lines) -> tuple[int, int]:
-    """(width, height)"""
+    """Return (width, height)."""
     end = lines[-1][0] + 1 if lines else 1
     numbers, texts = zip(*(*lines[:4], *[(end, "")] * 4), strict=True)
     got = [_got(text) if i < len(lines) else "the end of the file" for i, text in enumerate(texts)]
@@ -126,7 +125,7 @@ def _header(path: Path, lines: Lines) -> tuple[int, int]:
         known = len(pair) == 2 and pair[0] in {"height", "width"} and pair[0] not in size
         if not known or not _is_count(pair[1]):
             raise MapError(
-                f"{path}:{numbers[i]}: must say height or width; got {got[i]}. {_HEADER}."
+                f"{path}:{numbers[i]}: must give height or width; got {got[i]}. {_HEADER}."
             )
         size[pair[0]] = int(pair[1])
     check_size(f"{path}:{numbers[1]}", size["width"], size["height"])
@@ -136,7 +135,7 @@ def _header(path: Path, lines: Lines) -> tuple[int, int]:
 
 
 def _version(path: Path, lines: Lines) -> tuple[bool, Lines]:
-    """Whether the file is of version 1, and its rows."""
+    """Return whether the file is of version 1, and its rows."""
     number, first = lines[0] if lines else (1, "")
     words = first.split()
     if first and words[0].lower() != "version":
@@ -172,14 +171,14 @@ def _query(
         )
     length = _length(where, fields[-1])
     start, goal = (sx, high - 1 - sy), (gx, high - 1 - gy)
-    for what, (column, row) in (("start", start), ("goal", goal)):
+    for end, (column, row) in (("start", start), ("goal", goal)):
         if column >= wide or not 0 <= row < high or occupancy.blocked[row, column]:
-            raise MapError(f"{where}: the {what} must be a free cell of the map; got {_got(line)}.")
+            raise MapError(f"{where}: the {end} must be a free cell of the map; got {_got(line)}.")
     return bucket, start, goal, length
 
 
 def _fields(where: str, line: str, versioned: bool) -> list[str]:
-    """Bucket, map, (width, height,) start x, y, goal x, y, length; a map's name may hold spaces."""
+    """Return bucket, map, (width, height,) start, goal, length; a map name may have spaces."""
     tabbed = [field.strip() for field in line.split("\t")]
     words = tabbed if len(tabbed) in ({9} if versioned else {7, 9}) else line.split()
     count = 7 if len(words) == 7 and not versioned else 9
@@ -192,7 +191,7 @@ def _fields(where: str, line: str, versioned: bool) -> list[str]:
 
 
 def _same_map(named: str, map_name: str) -> bool:
-    """Whether a row names the map, in whatever folder and case."""
+    """Whether a row names the map, in any folder and letter case."""
     base = named.replace("\\", "/").rsplit("/", 1)[-1]
     return base.lower().removesuffix(".map") == map_name.lower().removesuffix(".map")
 

@@ -1,28 +1,26 @@
-"""Where on a map agents have room: the largest part of it that a disc can walk about in."""
+"""The largest connected part of a map in which a disc can move."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from benchnav.arrays import BoolArray
+from benchnav.arrays import BoolArray, Extent
 from benchnav.scenario.importers.grid import Occupancy
-
-Bounds = tuple[float, float, float, float]
 
 SHARE = 6.0  # [radii] side of the square of free space that each agent is given
 
 
 @dataclass(frozen=True)
 class Room:
-    """Connected free cells in whose middle a disc may stand."""
+    """Connected free cells that a disc's centre can be in."""
 
-    box: Bounds  # xmin, ymin, xmax, ymax [m] around them
+    box: Extent  # xmin, ymin, xmax, ymax [m] around them
     area: float  # [m²]
     radius: float  # [m] of the disc
 
     @property
     def capacity(self) -> int:
-        """How many agents it holds with room to move."""
+        """The number of agents that fit with space to move."""
         return int(self.area / (SHARE * self.radius) ** 2)
 
     @property
@@ -33,10 +31,10 @@ class Room:
 
 
 def largest_room(occupancy: Occupancy, free: BoolArray, radius: float) -> Room | None:
-    """The largest connected set of cells (H, W) of a map that a disc of ``radius`` [m] can be in.
+    """Return the largest connected set of cells that a disc of ``radius`` [m] can be in.
 
-    Measured from cell to cell, so approximately; whoever draws a world tests each place
-    exactly. None where there is no room.
+    ``free`` is (H, W). The set is measured between cells, so it is approximate; `build` tests each
+    place exactly. None if there is no such cell.
     """
     from scipy import ndimage
 

@@ -29,7 +29,7 @@ _FLAGS = {
 
 
 def _number(value: Any) -> Any:
-    """Return the number that a quoted text holds, as yaml-cpp reads it."""
+    """Return the number in a quoted text, as yaml-cpp reads it."""
     return float(value) if isinstance(value, str) and _NUMBER.fullmatch(value) else value
 
 
@@ -52,7 +52,7 @@ Share = Annotated[float, Field(allow_inf_nan=False, ge=0.0, le=1.0), Quotable]
 
 
 class RosMap(BaseModel):
-    """The keys of a map_server YAML file that say where the cells are; others are ignored."""
+    """The keys of a map_server YAML file that locate and classify cells; others are ignored."""
 
     model_config = ConfigDict(extra="ignore", frozen=True)
 
@@ -79,17 +79,17 @@ def read_map(path: Path | str, cell: float | None = None) -> Occupancy:
     """Return the map that the YAML file ``path`` describes, as nav2's map_server reads it.
 
     A pixel of brightness v has the occupancy p = 1 − v (v if ``negate``); p ≥
-    occupied_thresh is blocked, p ≤ free_thresh is free, anything between is unknown.
-    Mode `scale` grades what is between from 0 to 100: a grade that rounds to 0 is free,
+    occupied_thresh is blocked, p ≤ free_thresh is free, values between are unknown.
+    Mode `scale` grades values between from 0 to 100: a grade that rounds to 0 is free,
     one that rounds to 100 is blocked. A pixel that is not opaque is unknown. In mode
     `raw` a pixel's level is itself the occupancy in per cent, and unknown above 100.
 
     Args:
         path: the YAML file.
-        cell: [m] a pixel, instead of the file's ``resolution``.
+        cell: side of a pixel [m], instead of the file's ``resolution``.
 
     Raises:
-        MapError: the YAML file or its image is not what it must be.
+        MapError: the YAML file or its image is wrong.
     """
     document, spec = read_header(path)
     levels, opaque = read_levels(image_path(document, spec))
@@ -142,14 +142,14 @@ def image_path(document: Document, spec: RosMap) -> Path:
 
 
 def _meaning(spec: RosMap) -> tuple[BoolArray, BoolArray]:
-    """(256,) whether a level is free, and whether it is blocked."""
+    """Return whether each level (256,) is free, and whether it is blocked."""
     level = np.arange(256)
     if spec.mode == "raw":
         occupancy = np.where(level <= 100, level / 100.0, np.nan)
     else:
         occupancy = level / 255.0 if spec.negate else 1.0 - level / 255.0
     low, high = spec.free_thresh, spec.occupied_thresh
-    margin = 0.005 * (high - low) if spec.mode == "scale" else 0.0  # half a per cent rounds away
+    margin = 0.005 * (high - low) if spec.mode == "scale" else 0.0  # half a per cent is rounded off
     free = (occupancy <= low) | (occupancy < low + margin)
     blocked = (occupancy >= high) | (occupancy >= high - margin)
     return free, blocked & ~free

@@ -1,29 +1,29 @@
-"""How many agents fit side by side, and where: bounds and lattices."""
+"""Bounds on the number of agents in a region, and lattices of packed agents."""
 
 import math
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import BoolArray, Extent, FloatArray
 from benchnav.scenario.sampling.region import Anywhere, DiscRegion, Points, Rectangle, Region, Ring
 
-Box4 = tuple[float, float, float, float]
-ROW = math.sqrt(0.75)  # of the spacing: between rows of a hexagonal lattice
-MOST = 2_000_000  # lattice points that are looked at
+Box4 = Extent
+ROW = math.sqrt(0.75)  # distance of rows of a hexagonal lattice, in spacings
+MAX_POINTS = 2_000_000  # lattice points that are examined
 
 
 def most_that_fit(region: Region, arena: Box4, least: float, margin: float) -> int:
-    """At most so many points of ``region`` are ``least`` [m] > 0 apart, however they are placed.
+    """Return an upper bound of the number of points in ``region`` at distances ≥ ``least`` > 0.
 
     Groemer 1960 and Oler 1961 (An inequality in the geometry of numbers): a compact
     convex set of area A and perimeter P holds at most 2/√3·A/d² + P/(2d) + 1 points of
-    mutual distance d. What is not convex is taken for the smallest convex set around it.
+    mutual distance d. For other sets, the convex hull is used.
 
     Args:
         region: of centres.
         arena: bounds [m].
         least: distance between any two [m].
-        margin: that centres keep from the arena's bounds [m].
+        margin: distance of centres from the arena's bounds [m].
     """
     if isinstance(region, Points):
         return len(region.points)
@@ -44,12 +44,12 @@ def most_that_fit(region: Region, arena: Box4, least: float, margin: float) -> i
 
 
 def lattice(
-    front: tuple[float, float], spacing: float, region: Region, arena: Box4, count: int
+    front: tuple[float, float], spacing: float, region: Region, arena: Extent, count: int
 ) -> FloatArray:
-    """(N, 2) up to ``count`` points [m] of a hexagonal lattice in ``region``, nearest first.
+    """Return up to ``count`` points (N, 2) [m] of a hexagonal lattice in ``region``, nearest first.
 
-    The lattice has a point at ``front``, and rows along x; of points equally far from
-    it the lower and then the left one comes first.
+    The lattice has a point at ``front``, and rows along x; of equally distant points,
+    the lower and then the left one comes first.
     """
     reach = spacing * (2.0 + math.sqrt(count))
     while True:
@@ -60,16 +60,16 @@ def lattice(
 
 
 def _within(
-    front: tuple[float, float], spacing: float, region: Region, arena: Box4, reach: float
+    front: tuple[float, float], spacing: float, region: Region, arena: Extent, reach: float
 ) -> tuple[FloatArray, bool]:
-    """Lattice points of the region within ``reach``, nearest first; True where these are all."""
+    """Return lattice points within ``reach``, nearest first, and whether these are all."""
     box = region.box(arena)
     low = [max(box[k] - front[k], -reach) / spacing for k in (0, 1)]
     high = [min(box[k + 2] - front[k], reach) / spacing for k in (0, 1)]
     rows = np.arange(math.ceil(low[1] / ROW - 1e-9), math.floor(high[1] / ROW + 1e-9) + 1)
     columns = np.arange(math.ceil(low[0] - 0.5), math.floor(high[0] + 0.5) + 1)
     corner = max(math.hypot(box[i] - front[0], box[j] - front[1]) for i in (0, 2) for j in (1, 3))
-    whole = reach >= corner or 4 * len(rows) * len(columns) > MOST
+    whole = reach >= corner or 4 * len(rows) * len(columns) > MAX_POINTS
     j, i = (grid.ravel() for grid in np.meshgrid(rows, columns, indexing="ij"))
     offset = np.stack([i + 0.5 * (j % 2), ROW * j], axis=1)
     away = np.round(np.sum(offset * offset, axis=1), 6)
@@ -80,7 +80,7 @@ def _within(
 
 
 def inside_region(region: Region, arena: Box4, points: FloatArray) -> BoolArray:
-    """(N,) True for points (N, 2) of the region, its edge included (to a nanometre)."""
+    """Whether points (N, 2) are in the region, its edge included (to a nanometre), (N,)."""
     slack = 1e-9
     if isinstance(region, Rectangle | Anywhere):
         x0, y0, x1, y1 = region.box(arena)

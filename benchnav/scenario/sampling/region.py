@@ -1,13 +1,12 @@
-"""Regions that points are drawn from, uniformly by area."""
+"""Regions from which points are drawn, uniformly by area."""
 
 from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
+from benchnav.arrays import Extent
 from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Bounds, Distance, Length, Point, Spec
-
-Box4 = tuple[float, float, float, float]
 
 
 class Rectangle(Spec):
@@ -16,8 +15,8 @@ class Rectangle(Spec):
     type: Literal["rectangle"]
     bounds: Bounds = Field(description="[xmin, ymin, xmax, ymax] [m]")
 
-    def box(self, arena: Box4) -> Box4:
-        """The smallest rectangle around the region."""
+    def box(self, arena: Extent) -> Extent:
+        """Return the smallest rectangle around the region."""
         return self.bounds
 
 
@@ -28,14 +27,14 @@ class DiscRegion(Spec):
     center: Point = Field(description="[m]")
     radius: Length = Field(description="[m]")
 
-    def box(self, arena: Box4) -> Box4:
-        """The smallest rectangle around the region."""
+    def box(self, arena: Extent) -> Extent:
+        """Return the smallest rectangle around the region."""
         (x, y), r = self.center, self.radius
         return (x - r, y - r, x + r, y + r)
 
 
 class Ring(Spec):
-    """What lies between two circles."""
+    """The area between two circles."""
 
     type: Literal["ring"]
     center: Point = Field(description="[m]")
@@ -48,8 +47,8 @@ class Ring(Spec):
             raise FieldError(("outer",), f"must be ≥ inner ({self.inner:g}); got {self.outer:g}")
         return self
 
-    def box(self, arena: Box4) -> Box4:
-        """The smallest rectangle around the region."""
+    def box(self, arena: Extent) -> Extent:
+        """Return the smallest rectangle around the region."""
         (x, y), r = self.center, self.outer
         return (x - r, y - r, x + r, y + r)
 
@@ -60,20 +59,20 @@ class Points(Spec):
     type: Literal["points"]
     points: tuple[Point, ...] = Field(min_length=1, max_length=5000, description="[m]")
 
-    def box(self, arena: Box4) -> Box4:
-        """The smallest rectangle around the region."""
+    def box(self, arena: Extent) -> Extent:
+        """Return the smallest rectangle around the region."""
         xs, ys = zip(*self.points, strict=True)
         return (min(xs), min(ys), max(xs), max(ys))
 
 
 class Anywhere(Spec):
-    """The whole arena, less a margin along its bounds."""
+    """The whole arena, minus a margin along its bounds."""
 
     type: Literal["anywhere"]
     margin: Distance = Field(0.0, description="[m]")
 
-    def box(self, arena: Box4) -> Box4:
-        """The smallest rectangle around the region."""
+    def box(self, arena: Extent) -> Extent:
+        """Return the smallest rectangle around the region."""
         m = self.margin
         return (arena[0] + m, arena[1] + m, arena[2] - m, arena[3] - m)
 
@@ -81,8 +80,8 @@ class Anywhere(Spec):
 Region = Annotated[Rectangle | DiscRegion | Ring | Points | Anywhere, Field(discriminator="type")]
 
 
-def region_problem(region: "Region", arena: Box4) -> str:
-    """Why ``region`` does not fit the arena's bounds; "" if it does."""
+def region_problem(region: "Region", arena: Extent) -> str:
+    """Return why ``region`` does not fit the arena's bounds; "" if it does."""
     x0, y0, x1, y1 = region.box(arena)
     if x0 > x1 or y0 > y1:
         return "leaves nothing of the arena: its margin is too large"

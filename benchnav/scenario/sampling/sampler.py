@@ -1,4 +1,4 @@
-"""Samplers: wherever a scenario takes a number it also takes a distribution of numbers."""
+"""Samplers: a scenario accepts a distribution wherever it accepts a number."""
 
 from typing import Annotated, Any
 
@@ -48,7 +48,7 @@ class Normal(Spec):
 
 
 class Choice(Spec):
-    """One of the numbers, each as likely."""
+    """One of the numbers, equally likely."""
 
     choice: tuple[Number, ...] = Field(min_length=1, max_length=1000)
 
@@ -69,8 +69,8 @@ class Integers(Spec):
 _KINDS = ("uniform", "normal", "choice", "integers")
 
 
-def _kind(value: Any) -> str | None:
-    """The tag, which is no key, so that places of errors can be told from tags."""
+def _union_tag(value: Any) -> str | None:
+    """Return the union tag, which differs from all keys, so that error paths are unambiguous."""
     if isinstance(value, Spec):
         return f"a {type(value).__name__.lower()}"
     if isinstance(value, dict):
@@ -85,7 +85,7 @@ Scalar = Annotated[
     | Annotated[Choice, Tag("a choice")]
     | Annotated[Integers, Tag("a integers")],
     Discriminator(
-        _kind,
+        _union_tag,
         custom_error_type="sampler",
         custom_error_message="must be a number or one of {uniform: [a, b]},"
         " {normal: [mean, sd, low, high]}, {choice: [a, b, c]}, {integers: [a, b]}",
@@ -94,7 +94,7 @@ Scalar = Annotated[
 
 
 def support(scalar: "Scalar") -> tuple[float, float]:
-    """Smallest and greatest number that can be drawn."""
+    """Return the smallest and largest number that can be drawn."""
     match scalar:
         case Uniform(uniform=(low, high)) | Integers(integers=(low, high)):
             return float(low), float(high)
@@ -107,7 +107,7 @@ def support(scalar: "Scalar") -> tuple[float, float]:
 
 
 def sample(scalar: "Scalar", rng: np.random.Generator) -> float:
-    """One number; a plain number draws nothing from ``rng``."""
+    """Draw a number; a plain number draws nothing from ``rng``."""
     match scalar:
         case Uniform(uniform=(low, high)):
             return low + (high - low) * rng.random()
@@ -126,7 +126,7 @@ def sample(scalar: "Scalar", rng: np.random.Generator) -> float:
 
 
 def fixed(scalar: "Scalar") -> bool:
-    """True where every draw is the same number."""
+    """Whether every draw is the same number."""
     low, high = support(scalar)
     return low == high
 

@@ -11,10 +11,9 @@ import pyarrow.compute as pc
 from benchnav.arena.agents import Role
 from benchnav.arrays import LARGEST
 from benchnav.config.document import shown
-from benchnav.navigation.tracks import TRACKS
+from benchnav.scenario.terms import SPLITS, TRACKS
 from benchnav.store.runs.spans import SEED_END
 
-SPLITS = ("train", "validation", "test")
 MAX_ROWS = 1 << 18  # of a part: 64 seeds, two roles and 2048 metrics
 _MOST_AGENTS = 1_000_000
 _KEYS = ("seed", "role", "metric")  # a part has one row per combination

@@ -19,7 +19,8 @@ from benchnav.store.runs import checked_json
 from benchnav.store.runs.manifest_schema import ManifestSchema
 from benchnav.store.runs.run_path import RunPath, run_path
 
-SCHEMA = 4  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source
+SCHEMA = 5  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source;
+#            5: provenance
 MANIFEST = "manifest.json"
 MAX_BYTES = 64 << 20  # of a manifest
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
@@ -47,6 +48,8 @@ class Manifest:
     versions: Mapping[str, str] = field(default_factory=lambda: versions())
     platform: str = field(default_factory=platform.platform)
     created: str = field(default_factory=lambda: datetime.now(UTC).isoformat(timespec="seconds"))
+    # commit, dirty, processor, command: `provenance.provenance`; empty in runs of 0.1
+    provenance: Mapping[str, Any] = field(default_factory=dict)
 
     @property
     def name(self) -> str:
@@ -136,7 +139,7 @@ def parse_manifest(text: str, path: Path) -> Manifest:
             fields["suite"], tuple(fields["cells"]), fields.get("salt", ""),
             fields.get("limits", {}), fields.get("shard", ""), fields.get("sources", {}),
             tuple(fields.get("unguarded", ())), fields["schema"], fields["versions"],
-            fields["platform"], fields["created"],
+            fields["platform"], fields["created"], fields.get("provenance", {}),
         )  # fmt: skip
         whole = manifest.suite_hash == fields["suite_hash"]
     except (OSError, ValueError, RecursionError) as error:

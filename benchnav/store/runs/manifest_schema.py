@@ -11,8 +11,9 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from benchnav.config.document import shown
 from benchnav.config.validation import FieldError
-from benchnav.navigation.tracks import Track
 from benchnav.scenario.parameters import Parameter
+from benchnav.scenario.terms import Track
+from benchnav.store.runs.provenance import LONGEST
 from benchnav.store.runs.spans import SEED_END
 
 MAX_SEEDS = 1_000_000  # of a run
@@ -130,6 +131,13 @@ class _Source(_Part):
     places: Annotated[tuple[Annotated[str, Field(max_length=1_000)], ...], Field(max_length=1_000)]
 
 
+class _Provenance(_Part):
+    commit: Annotated[str, Field(pattern=r"^([0-9a-f]{40}|[0-9a-f]{64})?$")] = ""
+    dirty: bool = False
+    processor: Short = ""
+    command: Annotated[str, Field(max_length=LONGEST)] = ""
+
+
 class ManifestSchema(_Part):
     """A manifest of any schema so far; keys missing in older ones have a default here."""
 
@@ -146,6 +154,7 @@ class ManifestSchema(_Part):
     versions: dict[Short, Short]
     platform: Annotated[str, Field(max_length=1_000)]
     created: Short
+    provenance: _Provenance = _Provenance()
     suite_hash: Hex64
 
     @model_validator(mode="after")

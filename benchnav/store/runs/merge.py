@@ -17,6 +17,7 @@ from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.run_path import RunPath, run_path
 from benchnav.store.runs.scenario_files import FOLDER, keep_files
 from benchnav.store.runs.spans import spans
+from benchnav.text.visible import shortened
 
 _SHARED = ("suite_hash", "salt", "limits", "versions", "schema")
 
@@ -89,9 +90,8 @@ def _refuse_other_source(one: RunFolder, other: RunFolder) -> None:
             )
 
 
-def _short(value: object) -> str:
-    text = str(value)
-    return text if len(text) <= 200 else text[:197] + "..."
+def _short(said: object) -> str:
+    return shortened(str(said), 200)
 
 
 def _joined(manifests: Sequence[Manifest]) -> Manifest:

@@ -1,8 +1,8 @@
-"""Judges every contact of an episode a second time, with trimesh and python-fcl.
+"""Judge every contact of an episode a second time, with trimesh and python-fcl.
 
-Three questions. Does who is said to touch touch, where it was at that instant? Is who
-is said to be in contact near enough, and no deeper than recorded, at every state until
-the end? And does nobody overlap, at a state or on the way between two, without an event?
+There are three checks. At the start of an event, the two partners touch. At every state until
+its end, they are close, and overlap no deeper than recorded. And without an event, no
+agent overlaps anything, at a state or on the path between two states.
 """
 
 import math
@@ -22,20 +22,20 @@ from benchnav.verify.part_check import Pair
 from benchnav.verify.reference.reference_contacts import RELEASE, Partner
 from benchnav.verify.reference.reference_geometry import inside, law_position
 
-TOUCH = 1e-6  # [m] by which a touch may miss, and a depth may be more than recorded
-OVERLAP = 1e-3  # [m] of an overlap that must be an event
-STRIDE = 0.02  # [m] between the places on the way from one state to the next
+TOUCH = 1e-6  # [m] tolerance of a touch, and of a depth beyond the recorded one
+OVERLAP = 1e-3  # [m] an overlap deeper than this must be an event
+STRIDE = 0.02  # [m] between checked positions on the path from one state to the next
 _NAMES = {Kind.AGENT: "agents", Kind.DYNAMIC: "bodies", Kind.WALL: "solids", Kind.STATIC: "solids"}
 
 
 def require_referee() -> None:
-    """Raise MissingExtraError where the libraries are not installed."""
+    """Raise MissingExtraError if the libraries are not installed."""
     if find_spec("fcl") is None or find_spec("trimesh") is None:
         raise MissingExtraError("--referee fcl", "plan")
 
 
 def judge(pair: Pair, report: Report) -> None:
-    """Report every contact of an episode that the referee sees otherwise."""
+    """Report every contact of an episode on which the referee disagrees."""
     judgement = _Judgement(pair)
     report.counts["judged events"] += len(pair.again.contacts)
     report.counts["judged states"] += pair.again.status.size
@@ -66,7 +66,7 @@ class _Judgement:
         return f"agent {c.agent[n]} with {kind} {c.partner[n]} from {c.start[n]:.6f} s"
 
     def touches(self) -> Iterator[str]:
-        """Where each event starts, the two must touch; only what never yields may start deeper."""
+        """Yield events that do not start with a touch; only what never yields may start deeper."""
         c = self.episode.contacts
         for n, partner in enumerate(self.partners):
             at = self._place_at(n, partner)
@@ -79,7 +79,7 @@ class _Judgement:
                 yield f"{self._named(n)}: they overlap by {-gap:.9f} m then"
 
     def _place_at(self, n: int, partner: Partner) -> FloatArray | None:
-        """Where the partner of event n was at its start; None if its own event began before."""
+        """Return the partner's position at the start of event n; None if its own event is older."""
         c, (name, k) = self.episode.contacts, partner
         if name == "solids":
             return np.zeros(2)
@@ -90,7 +90,7 @@ class _Judgement:
         return self.touched[mirrored[0]] if len(mirrored) else None
 
     def _body_at(self, m: int, time: float) -> FloatArray:
-        """Between substeps bodies move straight; re-placed ones stand where the state says."""
+        """Return a body's position: straight between substeps; relocated ones as in the state."""
         body, h = self.world.bodies[m], self.dt / self.world.clock.substeps
         if body.solid.kind == Kind.STATIC:
             state = min(int(time / self.dt) + 1, len(self.episode.body_position) - 1)
@@ -101,7 +101,7 @@ class _Judgement:
         return a + (b - a) * min(max(time / h - tick, 0.0), 1.0)
 
     def lasting(self) -> Iterator[str]:
-        """At every state within an event, the two are near, and no deeper than it says."""
+        """Yield states within an event where the two are apart, or deeper than recorded."""
         c, e = self.episode.contacts, self.episode
         for n, partner in enumerate(self.partners):
             first = math.floor(c.start[n] / self.dt) + 1
@@ -124,7 +124,7 @@ class _Judgement:
         return place
 
     def _gap(self, i: int, place: FloatArray, partner: Partner, at: FloatArray) -> float:
-        """As the scene has it; a centre within a body is as deep as the kernels call it."""
+        """Return the gap in the scene; for a centre within a body, the depth as in the kernels."""
         name, k = partner
         gap = self.scene.gap(i, place, partner, at)
         solid = self.world.bodies[k].solid if name == "bodies" else None
@@ -135,18 +135,18 @@ class _Judgement:
         return -(away + 2.0 * radius if gap > 0.0 else away + radius)
 
     def missing(self) -> Iterator[str]:
-        """Overlaps of active agents that no event covers."""
-        told: set[tuple[int, Partner]] = set()
+        """Yield overlaps of active agents that no event covers."""
+        reported: set[tuple[int, Partner]] = set()
         for t in range(len(self.episode.position)):
             present = _present(self.episode, t)
             for i in np.flatnonzero(self.episode.status[t] == int(Status.ACTIVE)):
                 places = self._way(int(i), t)
                 for partner, place, at in self._near(int(i), t, places, present):
-                    if (int(i), partner) in told or self._covered(int(i), partner, t):
+                    if (int(i), partner) in reported or self._covered(int(i), partner, t):
                         continue
                     gap = self._gap(int(i), place, partner, at)
                     if gap < -OVERLAP:
-                        told.add((int(i), partner))
+                        reported.add((int(i), partner))
                         name, k = partner
                         yield (
                             f"agent {i} overlaps {name} {k} by {-gap:.6f} m"
@@ -154,7 +154,7 @@ class _Judgement:
                         )
 
     def _covered(self, i: int, partner: Partner, t: int) -> bool:
-        """Is there an event of the two in the decisions before or after state t?"""
+        """Whether there is an event of the two in the decisions before or after state t."""
         c = self.episode.contacts
         return any(
             self.partners[n] == partner
@@ -164,9 +164,9 @@ class _Judgement:
         )
 
     def _way(self, i: int, t: int) -> FloatArray:
-        """(N, 2) [m] places from state t to the next; the state alone where it touched something.
+        """Return positions (N, 2) [m] from state t to the next; only the state after a touch.
 
-        Who touches nothing goes as its executed command says.
+        An agent without contact moves by its executed command.
         """
         e, c = self.episode, self.episode.contacts
         here: FloatArray = e.position[t, i][None]
@@ -193,7 +193,7 @@ class _Judgement:
     def _near(
         self, i: int, t: int, places: FloatArray, present: BoolArray
     ) -> Iterator[tuple[Partner, FloatArray, FloatArray]]:
-        """(partner, place of agent i, place of the partner) of all that may overlap."""
+        """Yield (partner, position of agent i, position of the partner) of all that may overlap."""
         r = float(self.world.agents.radius[i])
         for k, (low, high) in enumerate(self.extents):
             close = ((places + r > low) & (places - r < high)).all(axis=1)
@@ -211,7 +211,7 @@ class _Judgement:
 
 
 def _present(episode: Episode, t: int) -> BoolArray:
-    """(A,) who is a body at state t."""
+    """Return the agents (A,) with a body at state t."""
     status, rules = episode.status[t], episode.world.rules
     gone = (status == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
     gone |= (status == int(Status.ENDED)) & (rules.on_end == Afterwards.VANISH)

@@ -1,7 +1,7 @@
-"""A world in python-fcl, built by trimesh: a second geometry, for the referee.
+"""A world in python-fcl, built with trimesh: a second geometry for the referee.
 
-Everything planar stands upright: loops become side walls of triangles, discs and agents
-spheres in the plane between. The gap between sphere and wall there is the planar gap.
+Planar shapes stand upright: loops become side walls of triangles, discs and agents become
+spheres in the plane between. The gap between sphere and wall is the planar gap.
 """
 
 import math
@@ -15,12 +15,12 @@ from benchnav.arena.solid import Solid
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
 
-HALF = 10.0  # [m] of the height of side walls: more than any agent is wide
-_MOST = 64  # triangles of one pair that are asked for
+HALF = 10.0  # [m] half height of side walls: more than the width of any agent
+_MAX_CONTACTS = 64  # triangles per pair that python-fcl reports
 
 
 class Scene:
-    """Objects of solids, bodies and agents, that are moved before they are asked about."""
+    """Objects of solids, bodies and agents; they are moved before each query."""
 
     def __init__(self, world: World) -> None:
         self.solids = [_object(solid) for solid in world.solids]
@@ -28,21 +28,21 @@ class Scene:
         self.agents = [fcl.CollisionObject(fcl.Sphere(float(r))) for r in world.agents.radius]
 
     def gap(self, i: int, place: FloatArray, other: tuple[str, int], at: FloatArray) -> float:
-        """[m] between agent i at ``place`` (2,) and a partner at ``at`` (2,).
+        """Return the gap [m] between agent i at ``place`` (2,) and a partner at ``at`` (2,).
 
-        Negative: how deep they overlap; of a shape that holds the agent's centre, how
-        far the agent reaches out of it.
+        Negative: the depth of the overlap; for a shape that contains the agent's centre, how
+        far the agent extends out of it.
         """
         name, k = other
-        mine, theirs = self.agents[i], getattr(self, name)[k]
-        _move(mine, place)
+        agent, partner = self.agents[i], getattr(self, name)[k]
+        _move(agent, place)
         if name != "solids":
-            _move(theirs, at)
+            _move(partner, at)
         found = fcl.CollisionResult()
-        asked = fcl.CollisionRequest(num_max_contacts=_MOST, enable_contact=True)
-        if fcl.collide(mine, theirs, asked, found):
+        request = fcl.CollisionRequest(num_max_contacts=_MAX_CONTACTS, enable_contact=True)
+        if fcl.collide(agent, partner, request, found):
             return -max(abs(float(contact.penetration_depth)) for contact in found.contacts)
-        return max(0.0, float(fcl.distance(mine, theirs)))
+        return max(0.0, float(fcl.distance(agent, partner)))
 
 
 def _move(thing: Any, place: FloatArray) -> None:
@@ -76,7 +76,7 @@ def _side_walls(solid: Solid) -> Any:
 
 
 def extent(solid: Solid) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest corner (2,), (2,) [m] of a shape."""
+    """Return the lowest and highest corner (2,), (2,) [m] of a shape."""
     c = solid.capsules
     ends = np.vstack([c[:, :2], c[:, 2:4]])
     rim = float(c[:, 4].max(initial=0.0))

@@ -1,4 +1,4 @@
-"""Replays an episode through the slow twin, decision by decision from the stored states."""
+"""Replay an episode in the reference simulator, each decision from the stored state."""
 
 import math
 
@@ -13,16 +13,16 @@ from benchnav.verify.reference.reference_contacts import Event
 from benchnav.verify.reference.reference_simulator import Twin
 
 TOLERANCE = 1e-7  # [m], [rad], [m/s] after one decision
-TIME = 1e-6  # [s] of an event: a touch at grazing incidence is that uncertain
-MOST_TOUCHES = 5000  # after which a replay ends: agents that jam touch all the time
+TIME = 1e-6  # [s] of an event: the uncertainty of a touch at grazing incidence
+MAX_TOUCHES = 5000  # after which a replay ends: jammed agents touch all the time
 GRAZE = 1e-6  # [m/s] and [m] of events that rounding alone may open
 
 
 def check_twin(world: World, episode: Episode, where: str, report: Report) -> None:
-    """Report the first decision, and every event, that the twin sees otherwise.
+    """Report the first decision, and every event, on which the reference simulator disagrees.
 
-    A decision that the twin sees otherwise, and in which rounding may decide who touches
-    first, is counted and not held against anybody; nor are events of whom it concerns.
+    A disagreement in a decision where rounding may decide the order of touches is counted, but
+    is not a finding; nor are later events of the agents concerned.
     """
     twin, doubted = Twin(world), np.zeros(len(world.agents), np.bool_)
     twist = np.zeros(len(doubted), np.bool_) if episode.twist is None else episode.twist
@@ -38,15 +38,15 @@ def check_twin(world: World, episode: Episode, where: str, report: Report) -> No
             doubted |= wrong
             report.notes["decision of a replayed episode that rounding may decide"] += 1
         _follow(twin, episode, t + 1)
-        if twin.touches > MOST_TOUCHES:
-            report.notes["replay through the slow twin, cut short in a jam"] += 1
+        if twin.touches > MAX_TOUCHES:
+            report.notes["replay in the slow reference simulator, stopped in a jam"] += 1
             break
     _check_arrivals(twin, episode, doubted, where, report)
     _check_events(twin, episode, doubted, where, report)
 
 
 def _disagree(twin: Twin, episode: Episode, t: int, executed: np.ndarray) -> tuple[BoolArray, str]:
-    """(A,) about whom they disagree after decision t, and how, in words."""
+    """Return the agents (A,) on which they disagree after decision t, and the difference."""
     status = _status(episode, t + 1)
     turned = np.remainder(twin.heading - episode.heading[t + 1] + math.pi, 2.0 * math.pi) - math.pi
     there = twin.present
@@ -58,30 +58,30 @@ def _disagree(twin: Twin, episode: Episode, t: int, executed: np.ndarray) -> tup
          _far(twin.position, episode.position[t + 1])),
         ("heading", twin.heading, episode.heading[t + 1], there & (abs(turned) > TOLERANCE)),
     )  # fmt: skip
-    for name, mine, stored, wrong in checks:
+    for name, own, stored, wrong in checks:
         if wrong.any():
             i = int(np.flatnonzero(wrong)[0])
             return (
                 wrong,
-                f"{name} of agent {i} is {_shown(stored[i])}, by the twin {_shown(mine[i])}",
+                f"{name} of agent {i} is {_shown(stored[i])}, in the reference {_shown(own[i])}",
             )
     bodies = _far(twin.bodies, episode.body_position[t + 1])
     if bodies.any():
         m = int(np.flatnonzero(bodies)[0])
-        stored, mine = episode.body_position[t + 1, m], twin.bodies[m]
-        twin.doubtful = False  # no touch has a say in it
-        everybody = np.ones(len(twin.status), np.bool_)
-        return everybody, f"body {m} is at {_shown(stored)}, by the twin at {_shown(mine)}"
+        stored, own = episode.body_position[t + 1, m], twin.bodies[m]
+        twin.doubtful = False  # no touch influences it
+        all_agents = np.ones(len(twin.status), np.bool_)
+        return all_agents, f"body {m} is at {_shown(stored)}, in the reference at {_shown(own)}"
     return np.zeros(len(twin.status), np.bool_), ""
 
 
-def _far(mine: np.ndarray, stored: np.ndarray) -> BoolArray:
-    far: BoolArray = ~(abs(mine - stored) <= TOLERANCE).all(axis=1)
+def _far(own: np.ndarray, stored: np.ndarray) -> BoolArray:
+    far: BoolArray = ~(abs(own - stored) <= TOLERANCE).all(axis=1)
     return far
 
 
 def _status(episode: Episode, t: int) -> ByteArray:
-    """(A,) before the navigator's failure was told."""
+    """Return the status (A,) without the navigator's failure."""
     status: ByteArray = episode.status[t].copy()
     if episode.failure and t == len(episode.requested):
         status[status == int(Status.FAILED)] = int(Status.ACTIVE)
@@ -89,7 +89,7 @@ def _status(episode: Episode, t: int) -> ByteArray:
 
 
 def _follow(twin: Twin, episode: Episode, t: int) -> None:
-    """Go on from the stored state, so that rounding does not add up."""
+    """Continue from the stored state, so that rounding does not accumulate."""
     twin.position = episode.position[t].copy()
     twin.heading = episode.heading[t].copy()
     twin.status = _status(episode, t)
@@ -104,7 +104,7 @@ def _check_arrivals(
     for i in np.flatnonzero(~same & ~doubted):
         report.find(
             "twin", where,
-            f"arrival of agent {i} is {episode.arrival[i]!r}, by the twin {twin.arrival[i]!r}",
+            f"arrival of agent {i} is {episode.arrival[i]!r}, in the reference {twin.arrival[i]!r}",
         )  # fmt: skip
 
 
@@ -121,11 +121,11 @@ def _check_events(
     else:
         for event in list(twin.ledger.opened.values()):
             twin.ledger.close(event, end)
-    mine: dict[Key, list[Row]] = {}
+    own: dict[Key, list[Row]] = {}
     over = [event for event in twin.ledger.closed if event.end <= until]
     for event in sorted(over, key=lambda event: event.start):
         row = (event.start, event.end, event.penetration, event.closing, event.charged)
-        mine.setdefault(_key(twin, event), []).append(row)
+        own.setdefault(_key(twin, event), []).append(row)
     stored: dict[Key, list[Row]] = {}
     c = episode.contacts
     for n in range(len(c)):
@@ -134,12 +134,12 @@ def _check_events(
             continue
         row = (c.start[n], c.end[n], c.penetration[n], c.closing_speed[n], bool(c.charged[n]))
         stored.setdefault(key, []).append(tuple(map(_plain, row)))  # type: ignore[arg-type]
-    for key in sorted(mine.keys() | stored.keys()):
+    for key in sorted(own.keys() | stored.keys()):
         agent, kind, partner = key
         if doubted[agent] or (kind == Kind.AGENT and doubted[partner]):
             continue
         report.counts["twin events"] += len(stored.get(key, ()))
-        text = _compare(stored.get(key, []), mine.get(key, []))
+        text = _compare(stored.get(key, []), own.get(key, []))
         if text:
             report.find(
                 "twin", where, f"agent {agent} with {Kind(kind).name.lower()} {partner}: {text}"
@@ -155,19 +155,19 @@ def _key(twin: Twin, event: Event) -> Key:
     return event.agent, int(twin.world.bodies[k].solid.kind), -1 - k
 
 
-def _compare(stored: list[Row], mine: list[Row]) -> str:
-    """What is different between the events of one agent with one partner; ``""``: nothing."""
-    if len(stored) != len(mine):
-        stored, mine = _weighty(stored), _weighty(mine)
-    if len(stored) != len(mine):
-        return f"{len(stored)} events, by the twin {len(mine)}"
+def _compare(stored: list[Row], own: list[Row]) -> str:
+    """Return the difference between the events of one agent with one partner; ``""``: none."""
+    if len(stored) != len(own):
+        stored, own = _weighty(stored), _weighty(own)
+    if len(stored) != len(own):
+        return f"{len(stored)} events, in the reference {len(own)}"
     names = ("start", "end", "penetration", "closing speed")
-    for left, right in zip(stored, mine, strict=True):
+    for left, right in zip(stored, own, strict=True):
         for name, a, b in zip(names, left, right, strict=False):
             if not abs(a - b) <= TIME * max(1.0, abs(b)):
-                return f"{name} is {a!r}, by the twin {b!r}"
+                return f"{name} is {a!r}, in the reference {b!r}"
         if left[4] != right[4]:
-            return f"charged is {left[4]}, by the twin {right[4]}"
+            return f"charged is {left[4]}, in the reference {right[4]}"
     return ""
 
 

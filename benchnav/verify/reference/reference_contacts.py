@@ -1,9 +1,9 @@
-"""The slow twin's ledger of collision events."""
+"""The record of collision events in the reference simulator."""
 
 from dataclasses import dataclass, field
 
-RELEASE = 0.01  # [m] a contact lasts until the gap is wider
-MOST_OPEN = 8  # contacts of one agent at once; one more closes the oldest
+RELEASE = 0.01  # [m] a contact ends at a wider gap
+MAX_OPEN = 8  # contacts of one agent at one time; one more closes the oldest
 
 Partner = tuple[str, int]  # ("agent" | "solid" | "body", index)
 
@@ -23,7 +23,7 @@ class Event:
 
 @dataclass
 class Ledger:
-    """Events that go on, and those that are over."""
+    """Open and closed events."""
 
     opened: dict[tuple[int, Partner], Event] = field(default_factory=dict)
     closed: list[Event] = field(default_factory=list)
@@ -31,26 +31,26 @@ class Ledger:
     def record(
         self, agent: int, partner: Partner, time: float, closing: float, charged: bool
     ) -> None:
-        """A touch: a new event, unless it belongs to one that goes on."""
+        """Record a touch: a new event, unless an event of the two is open."""
         if (agent, partner) in self.opened:
             return
         own = [event for event in self.opened.values() if event.agent == agent]
-        if len(own) == MOST_OPEN:
+        if len(own) == MAX_OPEN:
             self.close(min(own, key=lambda event: event.start), time)
         self.opened[agent, partner] = Event(agent, partner, time, closing, charged)
 
     def close(self, event: Event, time: float) -> None:
-        """It is over."""
+        """Close an event."""
         event.end = time
         self.closed.append(self.opened.pop((event.agent, event.partner)))
 
     def close_all(self, agent: int, time: float) -> None:
-        """The attempt of ``agent`` is over."""
+        """Close all events of ``agent``, whose attempt is over."""
         for event in [event for event in self.opened.values() if event.agent == agent]:
             self.close(event, time)
 
     def follow_up(self, event: Event, gap: float, time: float) -> None:
-        """After a substep: a contact that lasts deepens, another is over."""
+        """After a substep, deepen a contact that lasts, and close one that ended."""
         if gap > RELEASE:
             self.close(event, time)
         else:

@@ -1,4 +1,4 @@
-"""Touches and motion laws for the slow twin: textbook formulas, numpy, no kernel.
+"""Touches and motion laws of the reference simulator: textbook formulas, numpy, no kernel.
 
 Shapes: N agents, P capsules (a segment a–b with a radius), leading axes broadcast.
 """
@@ -11,12 +11,12 @@ import numpy as np
 from benchnav.arena.body import Body, LawKind
 from benchnav.arrays import FloatArray
 
-APPROACH = 1e-9  # a closing speed below this, over the reach, is none
-TOUCHING = 1e-12  # [m] of a gap that is rounding
+APPROACH = 1e-9  # a lower closing speed, over the reach, counts as zero
+TOUCHING = 1e-12  # [m] a smaller gap is rounding
 
 
 def nearest(p: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
-    """(…, 2) the point of the segment a–b that is nearest to p."""
+    """Return the point (…, 2) of the segment a–b that is nearest to p."""
     d = b - a
     length2 = (d * d).sum(axis=-1)
     share = ((p - a) * d).sum(axis=-1) / np.where(length2 > 0.0, length2, 1.0)
@@ -27,10 +27,10 @@ def nearest(p: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
 def first_touch(
     p: FloatArray, v: FloatArray, a: FloatArray, b: FloatArray, reach: FloatArray
 ) -> FloatArray:
-    """(…,) when p + v t first comes within ``reach`` of the segment; inf if never.
+    """Return when p + v t first comes within ``reach`` of the segment (…,); inf if never.
 
-    The least of the times at which it crosses the circles about both ends and the two
-    lines beside the segment, as roots of polynomials.
+    It is the smallest of the times at which the point crosses the circles around both ends and the
+    two lines beside the segment, as roots of polynomials.
     """
     offset = p - nearest(p, a, b)
     gap = np.hypot(offset[..., 0], offset[..., 1]) - reach
@@ -43,7 +43,7 @@ def first_touch(
 
 
 def _circle(f: FloatArray, v: FloatArray, reach: FloatArray) -> FloatArray:
-    """Least t ≥ 0 with |f + v t| = reach."""
+    """Return the smallest t ≥ 0 with |f + v t| = reach."""
     a, b = (v * v).sum(axis=-1), 2.0 * (f * v).sum(axis=-1)
     under = b * b - 4.0 * a * ((f * f).sum(axis=-1) - reach * reach)
     hits = (a > 0.0) & (under >= 0.0)
@@ -56,7 +56,7 @@ def _circle(f: FloatArray, v: FloatArray, reach: FloatArray) -> FloatArray:
 def _line(
     p: FloatArray, v: FloatArray, a: FloatArray, b: FloatArray, reach: FloatArray, side: float
 ) -> FloatArray:
-    """Time t ≥ 0 at which p + v t lies beside the segment, at ``side`` · reach; inf if never."""
+    """Return t ≥ 0 at which p + v t lies beside the segment, at ``side`` · reach; inf if never."""
     d = b - a
     length = np.hypot(d[..., 0], d[..., 1])
     safe = np.where(length > 0.0, length, 1.0)
@@ -70,7 +70,7 @@ def _line(
 
 
 def law_position(body: Body, time: float, placed: bool) -> FloatArray:
-    """(2,) [m] where a body's law puts it at ``time`` [s]; ``placed``: it was re-placed."""
+    """Return the position (2,) [m] from a body's law at ``time`` [s]; ``placed``: relocated."""
     law = body.law
     if law.kind == LawKind.RELOCATE:
         there: FloatArray = law.points[-1 if placed else 0]
@@ -87,7 +87,7 @@ def law_position(body: Body, time: float, placed: bool) -> FloatArray:
 
 
 def inside(p: FloatArray, loops: Sequence[FloatArray]) -> bool:
-    """Is p (2,) within the loops, by the even-odd rule?"""
+    """Whether p (2,) is within the loops, by the even-odd rule."""
     crossings = 0
     for loop in loops:
         for a, b in zip(loop, np.roll(loop, -1, axis=0), strict=True):

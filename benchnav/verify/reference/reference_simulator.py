@@ -1,9 +1,9 @@
-"""The slow twin of the kernels that step a world: every pair, no grid, no shortcut.
+"""The slow reference simulator: all pairs, no grid, no shortcut.
 
-Written from what `benchnav.world.step` and the rules of `benchnav.arena.world` say, with
-other formulas, trigonometry of libm and numpy alone: a fault in a kernel is not repeated
-here. It agrees with the kernels within rounding. Whoever reads a kernel may look here
-for what it must do.
+It follows `benchnav.world.step` and the rules of `benchnav.arena.world`, with
+different formulas, trigonometry of libm and numpy only, so that it does not repeat a fault of a
+kernel. It agrees with the kernels within rounding. Read it to learn what a kernel
+must do.
 """
 
 import math
@@ -19,9 +19,9 @@ from benchnav.episode.episode import Status
 from benchnav.verify.reference.reference_contacts import Event, Ledger, Partner
 from benchnav.verify.reference.reference_geometry import first_touch, inside, law_position, nearest
 
-MAX_HITS = 8  # touches of one agent within a substep, after which it is wedged
-CLOSE = 1e-9  # [s] touches that are nearer in time than this may come in either order
-_NOBODY: Partner = ("goal", 0)
+MAX_HITS = 8  # after this many touches within a substep, an agent is wedged
+CLOSE = 1e-9  # [s] touches closer in time than this may come in either order
+_NO_AGENTS: Partner = ("goal", 0)
 
 
 @dataclass
@@ -37,23 +37,23 @@ class Twin:
 
     def __init__(self, world: World) -> None:
         self.world, self.steps = world, 0
-        crew = world.agents
-        self.position: FloatArray = crew.start.copy()
-        self.heading: FloatArray = crew.heading.copy()
-        self.status: ByteArray = np.zeros(len(crew), np.int8)
-        self.velocity = np.zeros((len(crew), 2))
-        self.arrival = np.full(len(crew), math.nan)
-        self.hits = np.zeros(len(crew), np.int64)
-        self.halted = np.zeros(len(crew), np.bool_)
+        members = world.agents
+        self.position: FloatArray = members.start.copy()
+        self.heading: FloatArray = members.heading.copy()
+        self.status: ByteArray = np.zeros(len(members), np.int8)
+        self.velocity = np.zeros((len(members), 2))
+        self.arrival = np.full(len(members), math.nan)
+        self.hits = np.zeros(len(members), np.int64)
+        self.halted = np.zeros(len(members), np.bool_)
         self.placed = [False] * len(world.bodies)
         self.bodies = np.array([law_position(b, 0.0, False) for b in world.bodies]).reshape(-1, 2)
         self.ledger = Ledger()
-        self.doubtful = False  # rounding may decide what happened in this decision
+        self.doubtful = False  # rounding may decide the outcome of this decision
         self.touches = 0  # so far
         self._flatten()
 
     def _flatten(self) -> None:
-        """All capsules of what never moves, and of bodies in their frames, in one array each."""
+        """Put all capsules of immobile solids, and of bodies in their frames, in one array each."""
         none = np.zeros((0, 5))
         solids = self.world.solids
         self._fixed = np.vstack([none, *(s.capsules for s in solids)])
@@ -64,7 +64,7 @@ class Twin:
 
     @property
     def present(self) -> BoolArray:
-        """(A,) who is a body in the arena."""
+        """The agents (A,) with a body in the arena."""
         rules = self.world.rules
         gone = (self.status == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
         gone |= (self.status == int(Status.ENDED)) & (rules.on_end == Afterwards.VANISH)
@@ -73,12 +73,12 @@ class Twin:
 
     @property
     def active(self) -> BoolArray:
-        """(A,) whose attempt goes on."""
+        """The agents (A,) whose attempt continues."""
         going_on: BoolArray = self.status == int(Status.ACTIVE)
         return going_on
 
     def step(self, command: FloatArray, twist: BoolArray) -> FloatArray:
-        """One decision: commands (A, 2) of the kinds ``twist`` (A,). Returns the executed ones."""
+        """Step by commands (A, 2), twists where ``twist`` (A,); return the executed commands."""
         clock = self.world.clock
         h = clock.dt / clock.substeps
         self._relocate(self.steps * clock.dt)
@@ -94,7 +94,7 @@ class Twin:
         return drive
 
     def _relocate(self, time: float) -> None:
-        """What stands elsewhere from now on, unless somebody is in its circle there."""
+        """Relocate obstacles that are due, unless an agent or body is in their circle there."""
         for m, body in enumerate(self.world.bodies):
             moves = body.solid.kind == Kind.STATIC and not self.placed[m]
             if not moves or time < body.law.times[-1]:
@@ -111,8 +111,8 @@ class Twin:
                 self.bodies[m] = there
 
     def _limited(self, i: int, command: FloatArray, twist: bool) -> FloatArray:
-        crew, heading = self.world.agents, self.heading[i]
-        top, turn = crew.max_speed[i], crew.max_turn_rate[i]
+        members, heading = self.world.agents, self.heading[i]
+        top, turn = members.max_speed[i], members.max_turn_rate[i]
         if not self._turning[i]:
             speed = math.hypot(*command)
             limited: FloatArray = command * (min(1.0, top / speed) if speed > 0.0 else 1.0)
@@ -159,35 +159,35 @@ class Twin:
                 self.heading[i] = math.atan2(drive[i, 1], drive[i, 0])
 
     def _earliest(self) -> _Touch | None:
-        """The next touch of all; of simultaneous ones that of the first agent."""
-        who = np.flatnonzero(self.active & (self.hits < MAX_HITS))
-        if len(who) == 0:
+        """Return the next touch; of simultaneous touches that of the first agent."""
+        agents = np.flatnonzero(self.active & (self.hits < MAX_HITS))
+        if len(agents) == 0:
             return None
-        found = self._touches(who)
+        found = self._touches(agents)
         best = min(found, key=lambda touch: (touch.time, touch.agent))
         if self.hits.max() > MAX_HITS // 2 or _rivals(best, found):
             self.doubtful = True
         return best if best.time < math.inf else None
 
-    def _touches(self, who: np.ndarray) -> list[_Touch]:
-        """The first touch of every agent in ``who`` (N,), in the order of the rules for ties."""
+    def _touches(self, agents: np.ndarray) -> list[_Touch]:
+        """Return the first touch of each of ``agents`` (N,), by the order of rules for ties."""
         world, r = self.world, self.world.agents.radius
-        p, v = self.position[who][:, None], self.velocity[who][:, None]
-        goal, tolerance = world.agents.goal[who][:, None], np.array(world.rules.goal_tolerance)
+        p, v = self.position[agents][:, None], self.velocity[agents][:, None]
+        goal, tolerance = world.agents.goal[agents][:, None], np.array(world.rules.goal_tolerance)
         away = np.hypot(*(p - goal)[:, 0].T)
         home = np.where(away <= tolerance, 0.0, first_touch(p, v, goal, goal, tolerance)[:, 0])
         f, c = self._fixed, self._carried
-        fixed = first_touch(p, v, f[:, :2], f[:, 2:4], r[who][:, None] + f[:, 4])
+        fixed = first_touch(p, v, f[:, :2], f[:, 2:4], r[agents][:, None] + f[:, 4])
         at, carry = self.bodies[self._owner], self._carry[self._owner]
-        bodies = first_touch(p - at, v - carry, c[:, :2], c[:, 2:4], r[who][:, None] + c[:, 4])
+        bodies = first_touch(p - at, v - carry, c[:, :2], c[:, 2:4], r[agents][:, None] + c[:, 4])
         zero = np.zeros(2)
-        reach = r[who][:, None] + r
+        reach = r[agents][:, None] + r
         others = first_touch(p - self.position, v - self.velocity, zero, zero, reach)
-        others[np.arange(len(who)), who] = math.inf
+        others[np.arange(len(agents)), agents] = math.inf
         others[:, ~self.present] = math.inf
         found = []
-        for row, i in enumerate(who):
-            touch = _Touch(float(home[row]), int(i), _NOBODY)
+        for row, i in enumerate(agents):
+            touch = _Touch(float(home[row]), int(i), _NO_AGENTS)
             for name, times in (("solid", fixed), ("body", bodies), ("agent", others)):
                 k = int(np.argmin(times[row])) if times.shape[1] else -1
                 if k >= 0 and times[row, k] < touch.time:
@@ -218,7 +218,7 @@ class Twin:
         self._respond(i, normal, closing, time)
 
     def _away(self, i: int, name: str, k: int, capsule: int) -> tuple[FloatArray, FloatArray]:
-        """(from the partner's nearest point to agent i, the partner's velocity)."""
+        """Return (vector from the partner's nearest point to agent i, the partner's velocity)."""
         if name == "solid":
             c = self._fixed[capsule]
             return self.position[i] - nearest(self.position[i], c[:2], c[2:4]), np.zeros(2)
@@ -229,7 +229,7 @@ class Twin:
         return away[int(np.argmin(gap))], self._carry[k]
 
     def _meet_agent(self, i: int, j: int, time: float) -> None:
-        """Each gives up only its own motion towards the other."""
+        """Remove each agent's own motion towards the other."""
         self.hits[j] += 1
         normal = _unit(self.position[i] - self.position[j])
         own, other = float(self.velocity[i] @ normal), float(self.velocity[j] @ normal)
@@ -263,7 +263,7 @@ class Twin:
             self.ledger.follow_up(event, gap, time)
 
     def gap(self, event: Event) -> float:
-        """[m] between the two of an event now; negative: overlap; inf where one is gone."""
+        """Return the current gap [m] of an event's partners; negative: overlap; inf: one left."""
         i, (name, k) = event.agent, event.partner
         p, r = self.position[i], float(self.world.agents.radius[i])
         if name == "agent":
@@ -285,11 +285,11 @@ def _unit(vector: FloatArray) -> FloatArray:
 
 
 def _rivals(best: _Touch, found: list[_Touch]) -> bool:
-    """May another touch, with one of the same two agents, just as well come first?"""
-    mine = {best.agent, best.partner[1] if best.partner[0] == "agent" else best.agent}
+    """Whether another touch, with one of the same two agents, could come first as well."""
+    own = {best.agent, best.partner[1] if best.partner[0] == "agent" else best.agent}
     for other in found:
-        theirs = {other.agent, other.partner[1] if other.partner[0] == "agent" else other.agent}
-        close = other is not best and other.time - best.time < CLOSE and theirs != mine
-        if close and mine & theirs:
+        rivals = {other.agent, other.partner[1] if other.partner[0] == "agent" else other.agent}
+        close = other is not best and other.time - best.time < CLOSE and rivals != own
+        if close and own & rivals:
             return True
     return False

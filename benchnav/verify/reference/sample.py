@@ -1,4 +1,4 @@
-"""Which episodes the slow twin replays: few, and from everywhere."""
+"""The sample of episodes that the reference simulator replays."""
 
 from collections import defaultdict
 from collections.abc import Sequence
@@ -7,10 +7,10 @@ from benchnav.verify.part_check import PartCheck
 
 
 def sampled(checks: Sequence[PartCheck], count: int) -> list[list[int]]:
-    """For every part the seeds of ``count`` episodes in all.
+    """Return for every part the seeds of its episodes in a sample of ``count``.
 
     Scenarios take turns, and so do the cells of a scenario, each with its next seed: the
-    sample is spread, and the same whenever it is taken.
+    sample is spread and reproducible.
     """
     chosen: list[list[int]] = [[] for _ in checks]
     waiting: dict[str, list[tuple[int, int, int]]] = defaultdict(list)

@@ -209,7 +209,10 @@ def test_values_that_lack_or_stand_twice(forger, findings):
     (stem,) = forger.stems("walk")
     table = pq.read_table(stem + RESULTS_FILE)
     names = Counter(table["metric"].to_pylist())
-    for kept, word in ((table.slice(1), "lacks"), (table.take([0, *range(len(table))]), "one row")):
+    for kept, word in (
+        (table.slice(1), "missing"),
+        (table.take([0, *range(len(table))]), "one row"),
+    ):
         pq.write_table(kept, stem + RESULTS_FILE)
         forger.seal(stem)
         kinds, report = findings(forger.run)
@@ -267,7 +270,7 @@ def test_parts_that_lack_or_are_too_much(forger, findings):
     kinds, report = findings(forger.run)
     assert {"coverage", "identity"} <= kinds
     said = " | ".join(f"{f.where}: {f.what}" for f in report.findings if f.kind == "coverage")
-    for text in ("stray: is no cell", "is n/a", "1 seed stored twice: 2", "2 seeds not of",
+    for text in ("stray: is not a cell", "is n/a", "1 seed stored twice: 2", "2 seeds not of",
                  "rotor: 3 seeds missing: 0, 1, 2"):  # fmt: skip
         assert text in said, said
 

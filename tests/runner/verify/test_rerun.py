@@ -102,7 +102,7 @@ def test_a_cell_that_need_not_be_n_a(forger, findings):
     assert findings(forger.run)[0] == set()  # only the navigator knows what it needs
     kinds, report = findings(forger.run, rerun=True)
     assert kinds == {"rerun"}
-    assert "but the navigator says ''" in report.findings[0].what
+    assert "but the navigator reports ''" in report.findings[0].what
 
 
 def test_nothing_that_a_strangers_pack_names_by_module_is_imported(genuine, findings, tmp_path):
@@ -146,4 +146,4 @@ def test_no_program_of_a_strangers_pack_is_started(apart, findings, tmp_path):
     kinds, report = findings(tmp_path / "theirs.bnrun", rerun=True)
     assert kinds == set()
     assert (apart / "starts").read_text() == before
-    assert any("is a program, in somebody else's pack" in note for note in report.notes)
+    assert any("is a program, in an untrusted pack" in note for note in report.notes)

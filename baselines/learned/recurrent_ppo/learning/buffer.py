@@ -9,22 +9,22 @@ from sb3_contrib.common.recurrent.buffers import RecurrentRolloutBuffer
 from sb3_contrib.common.recurrent.type_aliases import RecurrentRolloutBufferSamples, RNNStates
 
 from benchnav.arrays import IntArray
-from benchnav.envs.sb3.live_buffer import LiveBuffer
+from benchnav.envs import LiveBuffer
 
 
 class SequenceBuffer(LiveBuffer, RecurrentRolloutBuffer):
-    """Cuts what slots lived through into sequences of at most ``length`` decisions.
+    """Cuts the experience of slots into sequences of at most ``length`` decisions.
 
     A sequence ends with the episode or rollout, before idling, or at ``length``; it
     begins with the LSTM state stored there. Minibatches are random sets of sequences
-    with about as many decisions as asked for, so little is padding. ``length`` is set by
-    the learner.
+    with about the requested number of decisions, so there is little padding. The learner sets
+    ``length``.
     """
 
     length: int = 64
 
     def sequences(self) -> tuple[IntArray, IntArray, IntArray]:
-        """(slot, first step, decisions) of every sequence."""
+        """Return (slot, first step, decisions) of every sequence."""
         starts = self._by_slot(self.episode_starts) > 0.5
         live = self.live.T
         before = np.pad(live[:, :-1], ((0, 0), (1, 0)))

@@ -1,4 +1,4 @@
-"""Everything that training goes on from, as one safetensors file written atomically."""
+"""The complete state of a training, as one safetensors file written atomically."""
 
 import json
 from dataclasses import asdict, dataclass
@@ -18,7 +18,7 @@ FILE = "checkpoint.safetensors"
 
 @dataclass(frozen=True)
 class Progress:
-    """How far training is."""
+    """The progress of a training."""
 
     recipe: str  # hash
     seed: int
@@ -27,7 +27,7 @@ class Progress:
     decisions: int = 0  # of all stages
     in_stage: int = 0  # of this stage
     best: float = -1.0  # validation success in this stage
-    waited: int = 0  # checkpoints since
+    waited: int = 0  # checkpoints since the best
     seconds: float = 0.0  # of training
 
 
@@ -42,11 +42,11 @@ def save(folder: Path, learner: Learner, progress: Progress) -> None:
 
 
 def load(folder: Path, learner: Learner, recipe: str, seed: int) -> Progress:
-    """Put the checkpoint of ``folder`` into ``learner``.
+    """Load the checkpoint of ``folder`` into ``learner``.
 
     Raises:
         UsageError: it was made with another recipe or seed.
-        StoreError: the file is not whole.
+        StoreError: the file is incomplete.
     """
     path = folder / FILE
     try:
@@ -54,12 +54,12 @@ def load(folder: Path, learner: Learner, recipe: str, seed: int) -> Progress:
             progress = Progress(**json.loads(file.metadata()["progress"]))
             tensors: dict[str, torch.Tensor] = {k: file.get_tensor(k) for k in file.keys()}  # noqa: SIM118
     except Exception as error:
-        raise StoreError(f"{path}: must be a whole checkpoint: {str(error)[:200]}.") from None
+        raise StoreError(f"{path}: must be a complete checkpoint: {str(error)[:200]}.") from None
     if (progress.recipe, progress.seed) != (recipe, seed):
         raise UsageError(
             f"{folder} holds the training of recipe {progress.recipe} with seed {progress.seed}."
             f" --resume needs the same; got recipe {recipe} with seed {seed}."
-            " Choose another --out, or give the recipe and seed that it was begun with."
+            " Choose another --out, or use its recipe and seed."
         )
     policy = {k[7:]: v for k, v in tensors.items() if k.startswith("policy.")}
     learner.policy.load_state_dict(policy)

@@ -1,4 +1,4 @@
-"""The worlds that a recipe learns and validates in."""
+"""The worlds in which a recipe trains and validates."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,13 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arena.world import World
-from benchnav.envs.agent_batch import AgentBatch
-from benchnav.envs.encoders.catalogue import encoder
-from benchnav.envs.reward import RewardWeights
-from benchnav.envs.sb3.agent_vec_env import AgentVecEnv
+from benchnav.arena import World
+from benchnav.envs import AgentBatch, AgentVecEnv, RewardWeights, encoder
 from benchnav.generation.build import build
-from benchnav.navigation.plugin.configure import Spec
+from benchnav.navigation import Spec
 from benchnav.scenario.catalogue import find
 
 from .recipe import Recipe, Stage
@@ -27,7 +24,7 @@ class Pool:
 
 
 class CourseEnv(AgentVecEnv):
-    """Idle stretches are done, too: a memory is emptied before the next attempt begins."""
+    """An environment whose idle steps count as done: the memory is empty at the next attempt."""
 
     def step_wait(self) -> Any:
         observation, reward, done, infos = super().step_wait()
@@ -35,7 +32,7 @@ class CourseEnv(AgentVecEnv):
 
 
 def training_pools(recipe: Recipe, stage: Stage) -> list[Pool]:
-    """The worlds of a stage."""
+    """Return the worlds of a stage."""
     pools: dict[str, Pool] = {}
     for course in recipe.courses_of(stage):
         new = _pool(course.scenario, "train", course.worlds)
@@ -47,7 +44,7 @@ def training_pools(recipe: Recipe, stage: Stage) -> list[Pool]:
 
 
 def make_env(recipe: Recipe, pools: Sequence[Pool]) -> AgentVecEnv:
-    """Rows are shared between the pools by their numbers of worlds, at least one each."""
+    """Return an environment; pools share rows by their numbers of worlds, at least one each."""
     total = sum(len(pool.worlds) for pool in pools)
     return CourseEnv(
         [
@@ -58,10 +55,10 @@ def make_env(recipe: Recipe, pools: Sequence[Pool]) -> AgentVecEnv:
 
 
 def validation_batches(recipe: Recipe) -> dict[str, AgentBatch]:
-    """Worlds of the split `validation`, by scenario; every world has a row of its own."""
-    wanted = recipe.validation
-    names = wanted.scenarios or tuple(course.scenario for course in recipe.courses)
-    pools = {name: _pool(name, "validation", wanted.worlds) for name in names}
+    """Return worlds of the split `validation`, by scenario; every world has its own row."""
+    validation = recipe.validation
+    names = validation.scenarios or tuple(course.scenario for course in recipe.courses)
+    pools = {name: _pool(name, "validation", validation.worlds) for name in names}
     return {name: _batch(recipe, pool, len(pool.worlds)) for name, pool in pools.items()}
 
 

@@ -1,4 +1,4 @@
-"""The learners: sb3-contrib's RecurrentPPO, and SB3's PPO where a recipe has no memory."""
+"""The learners: sb3-contrib's RecurrentPPO, and SB3's PPO for a recipe without memory."""
 
 from typing import Any
 
@@ -7,8 +7,7 @@ import torch
 from sb3_contrib import RecurrentPPO
 from sb3_contrib.common.recurrent.type_aliases import RNNStates
 
-from benchnav.envs.sb3.agent_vec_env import AgentVecEnv
-from benchnav.envs.sb3.attempt_ppo import AttemptPPO
+from benchnav.envs import AgentVecEnv, AttemptPPO
 
 from ..actor import Float32Array
 from ..policy import FusedPolicy
@@ -36,7 +35,7 @@ class SequencePPO(RecurrentPPO):
         return super().collect_rollouts(env, callback, rollout_buffer, n_rollout_steps)
 
     def forget(self) -> None:
-        """Start with empty memories."""
+        """Reset all memories."""
         self._last_lstm_states = RNNStates(
             *(tuple(torch.zeros_like(t) for t in pair) for pair in self._last_lstm_states)
         )
@@ -46,7 +45,7 @@ Learner = SequencePPO | AttemptPPO
 
 
 def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Learner:
-    """A fresh learner; weights are initialised from ``seed``."""
+    """Return a new learner; its weights are initialised from ``seed``."""
     network = recipe.network
     shared: dict[str, Any] = {
         "n_steps": recipe.rollout, "gamma": recipe.gamma, "gae_lambda": recipe.gae_lambda,
@@ -66,18 +65,18 @@ def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Le
 
 
 def copy_weights(source: Learner, target: Learner) -> None:
-    """Make ``target`` go on with the policy and the optimiser of ``source``."""
+    """Copy policy and optimiser of ``source`` to ``target``."""
     target.policy.load_state_dict(source.policy.state_dict())
     target.policy.optimizer.load_state_dict(source.policy.optimizer.state_dict())
 
 
 def buffer_of(learner: Learner) -> Any:
-    """Its rollouts: a `SequenceBuffer` or a `LiveBuffer`."""
+    """Return its rollouts: a `SequenceBuffer` or a `LiveBuffer`."""
     return learner.rollout_buffer
 
 
 def enter(learner: Learner, stage: Stage, progress: float) -> None:
-    """Set what the stage says, at the share ``progress`` of its decisions."""
+    """Apply the settings of a stage, at the share ``progress`` of its decisions."""
     first, last = stage.learning_rate
     rate = first + (last - first) * min(progress, 1.0)
     learner.lr_schedule = lambda _: rate
@@ -86,13 +85,13 @@ def enter(learner: Learner, stage: Stage, progress: float) -> None:
 
 
 def reseed(learner: Learner, rng: np.random.Generator) -> None:
-    """Every draw that follows depends on ``rng`` alone."""
+    """Make every further draw depend on ``rng`` only."""
     torch.manual_seed(int(rng.integers(2**63)))
     buffer_of(learner).rng = rng
 
 
 def actor_tensors(learner: Learner) -> dict[str, Float32Array]:
-    """The actor as `Actor` reads it."""
+    """Return the actor's tensors in the format of `Actor`."""
     state = {k: v.detach().cpu().numpy() for k, v in learner.policy.state_dict().items()}
     tensors: dict[str, Float32Array] = {}
     k = 0

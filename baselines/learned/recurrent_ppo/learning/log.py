@@ -35,7 +35,7 @@ class Curve:
                 self._events.add_scalar(name, value, int(row["decisions"]))
 
     def close(self) -> None:
-        """Flush, and draw."""
+        """Flush, and draw the picture."""
         if self._events is not None:
             self._events.close()
         draw_curve(self.rows, self._folder / "curve.png")
@@ -51,13 +51,13 @@ class Curve:
 
 
 def read_curve(folder: Path) -> list[dict[str, float]]:
-    """The stored curve of a training; empty where there is none."""
+    """Return the stored curve of a training; empty if there is none."""
     path = folder / CURVE
     return read_rows(path) if path.exists() else []
 
 
 def read_rows(path: Path) -> list[dict[str, float]]:
-    """Every whole row of a curve's file."""
+    """Return every complete row of a curve's file."""
     with path.open(encoding="utf-8", newline="") as file:
         rows = csv.DictReader(file)
         return [
@@ -68,7 +68,7 @@ def read_rows(path: Path) -> list[dict[str, float]]:
 
 
 def draw_curve(rows: list[dict[str, float]], path: Path) -> None:
-    """Reward and success against decisions; nothing where matplotlib is not installed."""
+    """Draw reward and success against decisions; do nothing if matplotlib is not installed."""
     try:
         from matplotlib.figure import Figure
     except ImportError:

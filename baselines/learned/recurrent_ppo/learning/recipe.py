@@ -1,4 +1,4 @@
-"""What a recipe file says: scenarios, network, stages; everything that decides the weights."""
+"""The recipe file: scenarios, network, stages, and everything else that determines the weights."""
 
 import hashlib
 import json
@@ -8,10 +8,9 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from benchnav.config.document import PathKey
 from benchnav.config.validation import FieldError
-from benchnav.envs.encoders.catalogue import ENCODERS, encoder
-from benchnav.envs.reward import RewardWeights
+from benchnav.envs import ENCODERS, RewardWeights, encoder
 from benchnav.errors import did_you_mean
-from benchnav.navigation.navigator import Need
+from benchnav.navigation import Need
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Rate = Annotated[float, Field(gt=0, le=1)]
@@ -22,7 +21,7 @@ class _Part(BaseModel):
 
 
 class Network(_Part):
-    """Actor and critic, each of this shape and apart."""
+    """The shape of actor and critic, which share no weights."""
 
     lstm_layers: int = Field(2, ge=0, le=4, description="0: no memory")
     lstm_size: int = Field(128, ge=1, le=1024)
@@ -33,7 +32,7 @@ class Network(_Part):
 
 
 class Course(_Part):
-    """A scenario to learn in, and how many of its worlds."""
+    """A training scenario, and its number of worlds."""
 
     scenario: Annotated[str, Field(min_length=1, max_length=200)]
     worlds: int = Field(1000, ge=1, le=100_000, description="seeds 0 … worlds-1 of `train`")
@@ -89,13 +88,13 @@ class Recipe(_Part):
 
     @property
     def hash(self) -> str:
-        """16 hex digits of all that decides the weights, but the seed."""
-        said = self.model_dump(mode="json", exclude={"description"}, exclude_none=True)
-        return hashlib.sha256(json.dumps(said, sort_keys=True).encode()).hexdigest()[:16]
+        """16 hex digits of everything that determines the weights, except the seed."""
+        fields = self.model_dump(mode="json", exclude={"description"}, exclude_none=True)
+        return hashlib.sha256(json.dumps(fields, sort_keys=True).encode()).hexdigest()[:16]
 
     @property
     def decisions(self) -> int:
-        """Of all stages."""
+        """The number of decisions of all stages."""
         return sum(stage.decisions for stage in self.stages)
 
     @model_validator(mode="after")
@@ -124,7 +123,7 @@ class Recipe(_Part):
         return self
 
     def courses_of(self, stage: Stage) -> tuple[Course, ...]:
-        """Where a stage learns."""
+        """Return the training scenarios of a stage."""
         return stage.courses or self.courses
 
 

@@ -1,7 +1,7 @@
 """Training from a recipe, in segments that each start from a checkpoint and a seed.
 
-A segment resets worlds, memories and every stream of randomness, so a training that was
-killed and resumed ends in the same bits as one that was not.
+A segment resets worlds, memories and every random stream, so a training that was
+killed and resumed ends with the same bits as an uninterrupted one.
 """
 
 import json
@@ -18,9 +18,7 @@ import numpy as np
 import torch
 from stable_baselines3.common.callbacks import CallbackList
 
-from benchnav.envs.agent_batch import AgentBatch
-from benchnav.envs.sb3.agent_vec_env import AgentVecEnv
-from benchnav.envs.trainer import TrainingReport
+from benchnav.envs import AgentBatch, AgentVecEnv, TrainingReport
 from benchnav.errors import TrainingError, UsageError
 from benchnav.store.runs.lock import locked
 from benchnav.threads import core_count
@@ -32,7 +30,7 @@ from . import checkpoint
 from .checkpoint import Progress
 from .courses import make_env, training_pools, validation_batches
 from .evaluate import evaluate
-from .learner import actor_tensors, copy_weights, enter, make_learner, reseed
+from .learner import SequencePPO, actor_tensors, copy_weights, enter, make_learner, reseed
 from .log import Curve
 from .recipe import Recipe, Stage
 
@@ -48,11 +46,11 @@ class Training:
         self._device = device
 
     def run(self, resume: bool, report: Report) -> dict[str, float]:
-        """Train to the end; returns the last row of the curve.
+        """Train to the end; return the last row of the curve.
 
         Raises:
-            UsageError: the folder holds something else, or there is nothing to resume.
-            TrainingError: a number stopped being finite; the last checkpoint is kept.
+            UsageError: the folder has other content, or there is nothing to resume.
+            TrainingError: a number is not finite; the last checkpoint is kept.
             RunConflictError: another process trains into the folder.
         """
         self._claim(resume)
@@ -85,18 +83,18 @@ class Training:
         if there and not resume:
             raise UsageError(
                 f"{self.folder} must be new or empty; it holds a training."
-                " Go on with --resume, or choose another --out."
+                " Continue with --resume, or choose another --out."
             )
         if resume and not there:
             raise UsageError(f"{self.folder} must hold a checkpoint to --resume. It does not.")
 
     def _tell(self) -> None:
-        """Everything that is needed to repeat the training."""
-        said = {
+        """Write everything that is needed to repeat the training."""
+        fields = {
             "recipe": self.recipe.model_dump(mode="json"), "hash": self.recipe.hash,
             "seed": self.seed, "machine": _machine(), "versions": _versions(),
         }  # fmt: skip
-        (self.folder / "training.json").write_text(json.dumps(said, indent=1) + "\n")
+        (self.folder / "training.json").write_text(json.dumps(fields, indent=1) + "\n")
 
     def _lay_out(self, stage: Stage) -> None:
         """Draw the worlds of a stage."""
@@ -104,7 +102,7 @@ class Training:
         self._env = make_env(self.recipe, training_pools(self.recipe, stage))
 
     def _enter(self, stage: Stage, seed: int) -> AgentVecEnv:
-        """The worlds of a stage, about to start anew."""
+        """Return the restarted worlds of a stage."""
         if self.recipe.courses_of(stage) != self._courses:
             self._lay_out(stage)
             before = self.learner
@@ -117,15 +115,15 @@ class Training:
         return self._env
 
     def _segment(self, progress: Progress, curve: Curve, report: Report) -> Progress:
-        """Train until the next checkpoint; returns the progress that it holds."""
+        """Train until the next checkpoint; return its progress."""
         began, stage = perf_counter(), self.recipe.stages[progress.stage]
         rng = np.random.default_rng([self.seed, progress.segment])
         env = self._enter(stage, int(rng.integers(2**31)))
         learner = self.learner
         reseed(learner, rng)
-        learner._last_obs = None  # so that the worlds start anew
+        learner._last_obs = None  # so that the worlds restart
         _, callback = learner._setup_learn(sys.maxsize, CallbackList([]))
-        if hasattr(learner, "forget"):
+        if isinstance(learner, SequencePPO):
             learner.forget()
         here = 0
         goal = min(self.recipe.checkpoint, stage.decisions - progress.in_stage)
@@ -143,12 +141,14 @@ class Training:
         row |= {"stage": progress.stage, "seconds": progress.seconds, **success}
         curve.add(row)
         self._write_weights(progress, success)
-        checkpoint.save(self.folder, learner, progress)  # last: what it counts is on disk
+        checkpoint.save(
+            self.folder, learner, progress
+        )  # last, so that its content is on disk before
         report(TrainingReport(progress.decisions, self.recipe.decisions, reached))
         return progress
 
     def _update(self, callback: Any, decisions: int) -> None:
-        """One rollout, and learning from it."""
+        """Make one rollout, and learn from it."""
         learner = self.learner
         try:
             learner.collect_rollouts(
@@ -161,7 +161,7 @@ class Training:
         self._check_finite(decisions)
 
     def _write_weights(self, progress: Progress, success: dict[str, float]) -> None:
-        """The newest, and every checkpoint's by its decisions."""
+        """Write the newest weights, and those of every checkpoint by its decisions."""
         history = self.folder / "checkpoints"
         history.mkdir(exist_ok=True)
         tensors, about = actor_tensors(self.learner), self._about(progress, success)

@@ -1,6 +1,6 @@
-"""The plugin behind `benchnav train`: what it ships, and where the work is done.
+"""The plugin of `benchnav train`: its recipes, and the call of the training.
 
-Nothing heavy is imported before there is something to train.
+Heavy modules are imported only for a training.
 """
 
 from collections.abc import Callable
@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from pydantic import BaseModel
 
-from benchnav.envs.trainer import Trainer, TrainingReport
+from benchnav.envs import Trainer, TrainingReport
 from benchnav.errors import MissingExtraError, UsageError
 
 from . import recipe

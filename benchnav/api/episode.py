@@ -1,0 +1,154 @@
+"""An episode: the record of one run of one navigator in one world."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from benchnav.api.text_table import key_value_html
+from benchnav.arena.agents import Role
+from benchnav.arrays import BoolArray
+from benchnav.episode.episode import Episode as Record
+from benchnav.episode.episode import Status
+from benchnav.errors import UsageError, did_you_mean
+from benchnav.metrics.measure import all_metrics, load_metric
+from benchnav.metrics.metric import evaluate
+from benchnav.metrics.quantities.trajectory import cut
+from benchnav.text.plural import counted
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Episode:
+    """States, commands and collisions of all agents. `record` holds them as arrays."""
+
+    def __init__(self, record: Record) -> None:
+        self.record = record  # the plain record
+
+    @property
+    def navigator(self) -> str:
+        """The label of the navigator."""
+        return self.record.identity.navigator
+
+    @property
+    def scenario(self) -> str:
+        """The scenario with its version."""
+        return self.record.identity.scenario
+
+    @property
+    def track(self) -> str:
+        """The knowledge track."""
+        return self.record.identity.track
+
+    @property
+    def seed(self) -> int:
+        """The seed of the world."""
+        return self.record.identity.seed
+
+    @property
+    def duration(self) -> float:
+        """Seconds until the episode ended."""
+        return float(self.record.times[-1])
+
+    @property
+    def failure(self) -> str:
+        """Why the navigator failed in this world; "" where it did not."""
+        return self.record.failure
+
+    @property
+    def roles(self) -> tuple[str, ...]:
+        """The roles that are scored: leader, follower."""
+        agents = self.record.world.agents
+        found = {int(role) for role in agents.role[agents.evaluated]}
+        return tuple(role.name.lower() for role in Role if int(role) in found)
+
+    def metric(self, name: str, role: str | None = None) -> float:
+        """Return the mean of a metric over the agents that are scored; NaN where it is undefined.
+
+        Args:
+            name: of a metric, for example "success"; ``benchnav list metrics`` shows all.
+            role: leader or follower; needed where agents of both are scored.
+        """
+        metric = load_metric(name)
+        return evaluate(metric, self.record, self._members(role))[0]
+
+    def metrics(self, role: str | None = None) -> dict[str, float]:
+        """Return every installed metric by name."""
+        members = self._members(role)
+        return {metric.name: evaluate(metric, self.record, members)[0] for metric in all_metrics()}
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Return the trajectories: time, agent, x, y, heading, vx, vy, status.
+
+        One row for each agent and decision time, in metres, seconds and radians. (vx, vy) is
+        the mean velocity until the next row, 0 in the last one. The status is active, arrived,
+        ended or failed.
+        """
+        import pandas as pd
+
+        states, agents = self.record.status.shape
+        velocity = np.zeros((states, agents, 2))
+        velocity[:-1] = cut(self.record).velocity.transpose(1, 0, 2)
+        names = np.array([status.name.lower() for status in Status], dtype=object)
+        position = self.record.position
+        return pd.DataFrame(
+            {
+                "time": np.repeat(self.record.times, agents),
+                "agent": np.tile(np.arange(agents), states),
+                "x": position[..., 0].ravel(), "y": position[..., 1].ravel(),
+                "heading": self.record.heading.ravel(),
+                "vx": velocity[..., 0].ravel(), "vy": velocity[..., 1].ravel(),
+                "status": names[self.record.status.ravel()],
+            }
+        )  # fmt: skip
+
+    def svg(self) -> str:
+        """Return a picture of the world and of every agent's path, as SVG text."""
+        from benchnav.viewer.svg import episode_svg
+
+        return episode_svg(self.record)
+
+    def _members(self, role: str | None) -> BoolArray:
+        """(A,) the agents that are scored in a role."""
+        roles = self.roles
+        if role is None and len(roles) > 1:
+            raise UsageError(
+                f"The roles {' and '.join(roles)} are scored apart: give one of them as role."
+            )
+        chosen = roles[0] if role is None else role
+        if chosen not in roles:
+            raise UsageError(
+                f"The role must be one of {', '.join(roles)}. Got {role!r} instead."
+                f"{did_you_mean(chosen, roles)}"
+            )
+        agents = self.record.world.agents
+        members: BoolArray = agents.evaluated & (agents.role == int(Role[chosen.upper()]))
+        return members
+
+    def _facts(self) -> list[tuple[str, str]]:
+        record = self.record
+        last = record.status[-1][record.world.agents.evaluated]
+        counts = (
+            f"{int((last == int(status)).sum())} {status.name.lower()}"
+            for status in Status
+            if (last == int(status)).any()
+        )
+        facts = [
+            ("navigator", self.navigator), ("scenario", self.scenario), ("track", self.track),
+            ("seed", str(self.seed)), ("duration", f"{self.duration:g} s"),
+            ("agents", ", ".join(counts)),
+            ("contacts", counted(len(record.contacts), "event")),
+        ]  # fmt: skip
+        facts += [("failure", self.failure)] if self.failure else []
+        return facts + [("remark", remark) for remark in record.remarks]
+
+    def __repr__(self) -> str:
+        facts = dict(self._facts())
+        ended = f"; failed: {self.failure}" if self.failure else ""
+        return (
+            f"Episode({self.navigator!r} in {self.scenario!r}, track={self.track!r},"
+            f" seed={self.seed}: {facts['duration']}, {facts['agents']}{ended})"
+        )
+
+    def _repr_html_(self) -> str:
+        return key_value_html("Episode", self._facts()) + self.svg()

@@ -1,0 +1,96 @@
+"""The table of one or more runs."""
+
+from collections.abc import Sequence
+from functools import cached_property
+from os import PathLike
+from typing import TYPE_CHECKING
+
+from benchnav.api.text_table import written
+from benchnav.leaderboard.from_runs import StoredValues
+from benchnav.leaderboard.record import Leaderboard as Board
+from benchnav.leaderboard.record import Record
+from benchnav.leaderboard.rendering.formats import html_fragment
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Leaderboard:
+    """Means, 95 % intervals and ranks of navigators; it shows itself in a terminal or notebook.
+
+    The methods ``to_…`` return the text that ``benchnav leaderboard --format …`` prints, and also
+    write it where they are given a file.
+    """
+
+    def __init__(
+        self,
+        values: StoredValues,
+        metrics: Sequence[str] | None = None,
+        columns: Sequence[str] | None = None,
+    ) -> None:
+        self._values, self._metrics, self._columns = values, metrics, columns
+        values.shown("markdown", metrics, columns)  # refuses unknown names at once
+
+    @cached_property
+    def record(self) -> Board:
+        """The plain record of the metrics that are shown."""
+        return self._values.board(self._values.shown("markdown", self._metrics, self._columns))
+
+    @cached_property
+    def records(self) -> tuple[Record, ...]:
+        """One record for each navigator, scenario, track, role and metric, as in the CSV file."""
+        shown = self._values.shown("csv", self._metrics, self._columns)
+        return self._values.board(shown).records
+
+    @property
+    def navigators(self) -> tuple[str, ...]:
+        """The labels of the navigators."""
+        return self.record.navigators
+
+    @property
+    def metrics(self) -> tuple[str, ...]:
+        """The metrics that the runs hold, whether they are shown or not."""
+        return tuple(self._values.names)
+
+    def to_markdown(self, path: "str | PathLike[str] | None" = None) -> str:
+        """Return the tables as Markdown."""
+        return self._text("markdown", path)
+
+    def to_latex(self, path: "str | PathLike[str] | None" = None) -> str:
+        """Return matrices of navigators and scenarios as LaTeX."""
+        return self._text("latex", path)
+
+    def to_html(self, path: "str | PathLike[str] | None" = None) -> str:
+        """Return the tables as an HTML page."""
+        return self._text("html", path)
+
+    def to_csv(self, path: "str | PathLike[str] | None" = None) -> str:
+        """Return every record with every field as CSV, of all metrics unless some were named."""
+        return self._text("csv", path)
+
+    def to_json(self, path: "str | PathLike[str] | None" = None) -> str:
+        """Return every record with every field as JSON, of all metrics unless some were named."""
+        return self._text("json", path)
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Return a data frame with the columns and rows of the CSV file."""
+        from dataclasses import fields
+
+        import pandas as pd
+
+        columns = [field.name for field in fields(Record)]
+        rows = [[getattr(record, name) for name in columns] for record in self.records]
+        return pd.DataFrame(rows, columns=columns)
+
+    def text(self, format: str) -> str:
+        """Return the table as text in a format: terminal, markdown, csv, latex, html or json."""
+        return self._values.text(format, self._metrics, self._columns)
+
+    def _text(self, format: str, path: "str | PathLike[str] | None") -> str:
+        return written(self.text(format), path)
+
+    def __repr__(self) -> str:
+        return self.text("terminal").rstrip("\n")
+
+    def _repr_html_(self) -> str:
+        return html_fragment(self.record, self._metrics, self._columns)

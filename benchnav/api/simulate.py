@@ -1,0 +1,57 @@
+"""Simulate one episode in memory, without a run folder."""
+
+from dataclasses import replace
+
+from benchnav.api.episode import Episode
+from benchnav.api.navigators import NavigatorLike, navigator_spec
+from benchnav.api.world import World
+from benchnav.errors import UsageError, did_you_mean
+from benchnav.processes.main_module import stop_import_of_main
+from benchnav.runner.plan.contestant import Meeting
+from benchnav.runner.plan.job import Cell
+from benchnav.runner.rollouts.rehearsal import perform
+from benchnav.runner.rollouts.seeding import check_salt, draw_salt
+from benchnav.scenario.terms import TRACKS
+
+
+def simulate(
+    world: World, navigator: NavigatorLike, *, track: str = "known", salt: str | None = None
+) -> Episode:
+    """Run a navigator in a world, in this process, and return the episode.
+
+    Nothing is stored. Where the navigator raises an exception, the episode says so in
+    `Episode.failure`, and its agents count as failed.
+
+    Args:
+        world: from `Scenario.world`.
+        navigator: a name, ``{"type": name, …parameters}``, a class, an instance or a function.
+        track: known, stale, partial or unknown: which map the navigator gets.
+        salt: of the navigator's randomness, in hexadecimal digits; None: a new one each time.
+
+    Raises UsageError where the navigator cannot work in this scenario and track, and PluginError
+    where it cannot be made.
+    """
+    stop_import_of_main()
+    if track not in TRACKS:
+        raise UsageError(
+            f"A track must be one of {', '.join(TRACKS)}. Got {track!r} instead."
+            f"{did_you_mean(track, TRACKS)}"
+        )
+    scenario = world.scenario.record
+    meeting = Meeting((world.record.sensing,), isolate=False, here=True)
+    entry = meeting.entry(navigator_spec(navigator), "navigator")
+    cell = Cell(scenario, world.split, track, entry)
+    if cell.reason:
+        raise UsageError(f"{entry.label!r} cannot be run here: {cell.reason}.")
+    assignment = replace(cell.assignment, salt=_salt(salt))
+    (batch,) = perform(assignment, [(world.seed, world.record)])
+    return Episode(batch[0].episode)
+
+
+def _salt(text: str | None) -> str:
+    try:
+        if text is not None:
+            check_salt(text.lower())
+    except ValueError as error:
+        raise UsageError(f"The salt {error}.") from None
+    return draw_salt() if text is None else text.lower()

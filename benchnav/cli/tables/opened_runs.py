@@ -1,0 +1,18 @@
+"""The runs that a verb reads: folders or packs."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from benchnav.api.run import Run
+
+
+@contextmanager
+def opened_runs(paths: Sequence[Path]) -> Iterator["list[Run]"]:
+    """Open the runs; packs stay unpacked for as long as this lasts."""
+    from benchnav.api.run import open_run
+
+    with ExitStack() as stack:
+        yield [stack.enter_context(open_run(path)) for path in paths]

@@ -1,0 +1,107 @@
+"""A drawn world, and the paths of an episode, as SVG text."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from benchnav.arena.solid import Kind, Solid
+from benchnav.arena.world import World
+from benchnav.arrays import BoolArray, FloatArray
+from benchnav.episode.episode import Episode, Status
+from benchnav.world.simulation import Simulation
+
+WIDTH = 480  # of the picture [pixels]
+_FILL = {Kind.WALL: "#555", Kind.STATIC: "#999", Kind.DYNAMIC: "#d55e00"}
+_AGENTS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442")  # by team
+
+
+def world_svg(world: World) -> str:
+    """Return a picture of a world: walls, obstacles, agents at their starts, rings at goals."""
+    bodies = Simulation([world]).body_position[0]
+    starts = _discs(world, world.agents.start)
+    return _svg(world, [*_scene(world, bodies), *_goals(world), *starts])
+
+
+def episode_svg(episode: Episode) -> str:
+    """Return a picture of an episode: the path of every agent, which stands where it ended."""
+    world = episode.world
+    paths = [
+        f'<polyline points="{_points(_thinned(episode.position[:, a]))}" fill="none"'
+        f' stroke="{_color(world, a)}" stroke-width="0.08" opacity="0.7"/>'
+        for a in range(len(world.agents))
+    ]
+    failed = episode.status[-1] != int(Status.ARRIVED)
+    ends = _discs(world, episode.position[-1], failed)
+    scene = _scene(world, episode.body_position[-1])
+    return _svg(world, [*scene, *_goals(world), *paths, *ends])
+
+
+def _svg(world: World, parts: Sequence[str]) -> str:
+    x0, y0, x1, y1 = world.bounds
+    margin = 0.02 * max(x1 - x0, y1 - y0)
+    wide, high = x1 - x0 + 2 * margin, y1 - y0 + 2 * margin
+    height = round(WIDTH * high / wide)
+    view = f"{x0 - margin:g} {-y1 - margin:g} {wide:g} {high:g}"
+    body = "".join(parts)
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{WIDTH}" height="{height}"'
+        f' viewBox="{view}"><rect x="{x0 - margin:g}" y="{-y1 - margin:g}" width="{wide:g}"'
+        f' height="{high:g}" fill="white"/><g transform="scale(1 -1)">{body}</g></svg>'
+    )
+
+
+def _scene(world: World, bodies: FloatArray) -> Iterator[str]:
+    """Walls and obstacles, with the moving ones at ``bodies`` (M, 2) [m]."""
+    for solid in world.solids:
+        yield _solid(solid)
+    for body, position in zip(world.bodies, bodies, strict=False):
+        yield _solid(body.solid.moved(position))
+
+
+def _solid(solid: Solid) -> str:
+    color = _FILL.get(solid.kind, "#555")
+    if solid.is_disc:
+        x, y = solid.center
+        return f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{solid.radius:.3f}" fill="{color}"/>'
+    path = " ".join(f"M {_points(loop)} Z" for loop in solid.loops)
+    filled = color if any(_area(loop) > 0.0 for loop in solid.loops) else "none"
+    return (
+        f'<path d="{path}" fill="{filled}" fill-rule="evenodd" stroke="{color}"'
+        ' stroke-width="0.06"/>'
+    )
+
+
+def _goals(world: World) -> Iterator[str]:
+    for a, (x, y) in enumerate(world.agents.goal):
+        yield (
+            f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{world.agents.radius[a]:.3f}" fill="none"'
+            f' stroke="{_color(world, a)}" stroke-width="0.06" stroke-dasharray="0.2 0.15"/>'
+        )
+
+
+def _discs(world: World, position: FloatArray, hollow: BoolArray | None = None) -> Iterator[str]:
+    """Agents at ``position`` (A, 2) [m]; those in ``hollow`` (A,) are not filled."""
+    for a, (x, y) in enumerate(position):
+        fill = "#fff" if hollow is not None and hollow[a] else _color(world, a)
+        yield (
+            f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{world.agents.radius[a]:.3f}" fill="{fill}"'
+            f' stroke="{_color(world, a)}" stroke-width="0.08"/>'
+        )
+
+
+def _color(world: World, agent: int) -> str:
+    return _AGENTS[int(world.agents.team[agent]) % len(_AGENTS)]
+
+
+def _points(points: FloatArray) -> str:
+    return " ".join(f"{x:.3f},{y:.3f}" for x, y in points)
+
+
+def _thinned(points: FloatArray, most: int = 400) -> FloatArray:
+    return points[:: max(1, len(points) // most)]
+
+
+def _area(loop: FloatArray) -> float:
+    """Twice the signed area; above 0 for a loop that runs counter-clockwise."""
+    x, y = loop[:, 0], loop[:, 1]
+    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))

@@ -1,0 +1,3 @@
+"""Scenarios and suites of another package; only its files are read."""
+
+raise RuntimeError("benchnav must not import a package of scenarios")

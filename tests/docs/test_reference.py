@@ -1,0 +1,31 @@
+"""The generated pages of docs/ are those of the code."""
+
+import importlib.util
+
+import pytest
+
+from tests.docs.blocks import ROOT
+
+SPEC = importlib.util.spec_from_file_location("make_reference", ROOT / "docs/make_reference.py")
+MAKER = importlib.util.module_from_spec(SPEC)
+SPEC.loader.exec_module(MAKER)
+
+
+@pytest.mark.parametrize("file", MAKER.PAGES)
+def test_a_page_is_up_to_date(file):
+    kept = (ROOT / "docs" / file).read_text(encoding="utf-8")
+    assert kept == MAKER.PAGES[file](), "Write it again: python docs/make_reference.py"
+
+
+def test_the_keys_of_motion_laws_are_listed():
+    text = MAKER.scenario_keys()
+    law = text.partition("## BackAndForth")[2].partition("\n## ")[0]
+    assert "| `direction` | number or distribution | `{uniform: [0.0, 2π]}` | rad |" in law
+
+
+def test_fields_have_shape_unit_and_meaning():
+    text = MAKER.observations()
+    assert (
+        "| `distance` | (B, A, R) [m] travelled by the ray or its disc; range if nothing |" in text
+    )
+    assert "| `row` | names the world from `reset` to the end of its episode |" in text

@@ -1,0 +1,134 @@
+"""Names, docstrings, comments and messages are plain English: they contain no banned words."""
+
+import ast
+import io
+import re
+import tokenize
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+NAMES = frozenset(
+    {"told", "said", "says", "whom", "who", "whose", "whoever"}
+    | {"somebody", "nobody", "everybody", "anybody"}
+)
+PROSE = re.compile(r"\b(whom|whoever|nobody|everybody|somebody|anybody)\b", re.IGNORECASE)
+HEADLESS = re.compile(r"(?:^|[.:;!?]\s+)(Who|What)\b[^.?!]*(?P<end>[.?!]|$)")
+
+# Keys of stored files, which keep their old names: (file, name).
+KEYS_ON_DISK = {("benchnav/store/runs/manifest_schema.py", "says")}
+
+# Modules that still await their rewrite, as patterns. Shorten this list; never lengthen it.
+EXCEPTIONS: tuple[str, ...] = (
+    "benchmarks/**/*.py",
+    "benchnav/*.py",
+    "benchnav/cli/**/*.py",
+    "benchnav/envs/**/*.py",
+    "benchnav/episode/*.py",
+    "benchnav/metrics/*.py",
+    "benchnav/navigation/*.py",
+    "benchnav/runner/*.py",
+    "benchnav/testing/*.py",
+    "benchnav/viewer/*.py",
+    *(
+        f"benchnav/leaderboard/{name}.py"
+        for name in (
+            "absent", "caveats", "columns", "curve_table", "layout", "matrix", "price_table",
+            "remark", "render", "table", "words",
+        )
+    ),
+)  # fmt: skip
+
+
+def modules() -> list[Path]:
+    """Return all modules that the rules apply to."""
+    folders = ("benchnav", "baselines", "benchmarks")
+    return [path for folder in folders for path in sorted((ROOT / folder).rglob("*.py"))]
+
+
+def problems_of(path: Path) -> list[tuple[int, str]]:
+    """Return (line, problem) of each violation in a module that is not a key on disk."""
+    name = path.relative_to(ROOT).as_posix()
+    keys = {f"the name {key}" for file, key in KEYS_ON_DISK if file == name}
+    found = violations(path.read_text(encoding="utf-8"))
+    return [(line, problem) for line, problem in found if problem not in keys]
+
+
+def names_in(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Yield (line, name) of functions, classes, arguments, variables and attributes."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+            yield node.lineno, node.name
+        elif isinstance(node, ast.arg):
+            yield node.lineno, node.arg
+        elif isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store):
+            yield node.lineno, node.id
+        elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Store):
+            yield node.lineno, node.attr
+
+
+def is_banned(name: str) -> bool:
+    """Whether a part of a name is a banned word; parts are separated by _ or by capitals."""
+    return not NAMES.isdisjoint(re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower().split("_"))
+
+
+def prose_in(source: str, tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Yield (line, text) of comments, docstrings and messages; a message contains a space."""
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT:
+            yield token.start[0], token.string.lstrip("#: ")
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value:
+            yield node.lineno, node.value
+
+
+def violations(source: str) -> list[tuple[int, str]]:
+    """Return (line, problem) of each violation in a module's source."""
+    tree = ast.parse(source)
+    found = [(line, f"the name {name}") for line, name in names_in(tree) if is_banned(name)]
+    for line, text in prose_in(source, tree):
+        words = [match[0] for match in PROSE.finditer(text)]
+        words += [m[1] for m in HEADLESS.finditer(" ".join(text.split())) if m["end"] != "?"]
+        found += [(line, f"the word {word!r}") for word in words]
+    return sorted(found)
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "told = 1", "def f(whose): ...", "class WhoCame: ...", "x.said_last = 1",
+        "x = 1  # nobody reads it", '"""What a run holds."""', 'x = "Ask somebody else."',
+        'def f():\n    """Return x. Who asks gets it."""',
+    ],
+)  # fmt: skip
+def test_a_violation_is_found(source: str) -> None:
+    assert violations(source)
+
+
+@pytest.mark.parametrize(
+    "source", ["whole = 1", '"""What is new?"""', "x = 1  # the agents that moved", 'y["says"] = 2']
+)
+def test_plain_english_passes(source: str) -> None:
+    assert not violations(source)
+
+
+def test_code_is_written_in_plain_english() -> None:
+    skipped = {path for pattern in EXCEPTIONS for path in ROOT.glob(pattern)}
+    lines = [
+        f"{path.relative_to(ROOT)}:{line}: {problem}"
+        for path in modules()
+        if path not in skipped
+        for line, problem in problems_of(path)
+    ]
+    assert not lines, "Rewrite these by the rules in CONTRIBUTING.md:\n" + "\n".join(lines)
+
+
+def test_exceptions_are_still_needed() -> None:
+    clean = [
+        pattern
+        for pattern in EXCEPTIONS
+        if not any(problems_of(path) for path in ROOT.glob(pattern))
+    ]
+    assert not clean, f"These modules are clean. Remove from EXCEPTIONS: {', '.join(clean)}"
