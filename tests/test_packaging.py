@@ -60,10 +60,11 @@ def test_every_folder_with_code_is_a_package():
 def test_entry_points_lead_somewhere(value):
     module, _, name = value.partition(":")
     package, _, rest = module.partition(".")
-    if not name:  # a package of YAML files
-        assert list((ROOT / FOLDERS[package]).glob("*/*.yaml"))
-        return
     folder = ROOT / FOLDERS[package] / Path(*rest.split("."))
+    if not name:  # a module of metrics, or a package of YAML files
+        found = folder.with_suffix(".py").exists() or list(folder.glob("*/*.yaml"))
+        assert found, value
+        return
     source = (
         folder.with_suffix(".py") if folder.with_suffix(".py").exists() else folder / "__init__.py"
     )

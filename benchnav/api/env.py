@@ -27,7 +27,7 @@ def make_env(scenario: str | Scenario, *, num_worlds: int = ..., kind: Literal["
              ) -> "AgentVecEnv": ...  # fmt: skip
 @overload
 def make_env(scenario: str | Scenario, *, kind: Literal["gymnasium"], encoder: str = ...,
-             split: str = ..., worlds: int = ..., reward: "Reward" = ..., others: "Spec" = ...,
+             split: str = ..., worlds: int = ..., reward: "Reward" = ..., others: "Spec",
              ) -> "LeaderEnv": ...  # fmt: skip
 @overload
 def make_env(scenario: str | Scenario, *, kind: Literal["pettingzoo"], encoder: str = ...,
@@ -56,7 +56,7 @@ def make_env(
         split: train or validation. Worlds of the split test are for `benchnav.run`.
         worlds: how many different worlds of the split are drawn.
         reward: weights that are not the defaults, by name.
-        others: for "gymnasium": the navigator of the other agents; None: orca.
+        others: for "gymnasium", which needs it: the navigator of the other agents.
 
     Raises UsageError or ConfigError for a mistake in the call, and MissingExtraError where the
     extra ``learn`` is not installed.
@@ -69,6 +69,11 @@ def make_env(
         )
     if num_worlds is not None and kind in ("gymnasium", "pettingzoo"):
         raise UsageError(f"num_worlds is for the kinds vector and sb3. Got it with {kind!r}.")
+    if others is None and kind == "gymnasium":
+        raise UsageError(
+            "The kind gymnasium needs others=NAME, the navigator of the other agents."
+            " `benchnav list navigators` shows the names."
+        )
     if others is not None and kind != "gymnasium":
         raise UsageError(f"others is for the kind gymnasium. Got it with {kind!r}.")
     rows = 4 if num_worlds is None else num_worlds
@@ -90,7 +95,7 @@ def _made(
     if kind == "gymnasium":
         from benchnav.envs.gym.leader_env import LeaderEnv
 
-        return LeaderEnv(name, encoder, others="orca" if others is None else others, **options)
+        return LeaderEnv(name, encoder, others=others, **options)
     if kind == "pettingzoo":
         from benchnav.envs.parallel_env import LeadersEnv
 

@@ -10,7 +10,8 @@ from benchnav.errors import UsageError
 def test_every_kind_of_environment_is_made(kind, scenario_file):
     scenario = benchnav.load_scenario(scenario_file)
     sizes = {"num_worlds": 3} if kind in ("vector", "sb3") else {}
-    env = benchnav.make_env(scenario, kind=kind, worlds=2, **sizes)
+    others = {"others": "orca"} if kind == "gymnasium" else {}
+    env = benchnav.make_env(scenario, kind=kind, worlds=2, **sizes, **others)
     env.reset()
     if sizes:
         assert env.num_envs == 3 * 2
@@ -27,6 +28,7 @@ def test_the_default_is_a_vector_of_four_worlds(scenario_file):
     [
         ({"kind": "sb4"}, "Did you mean 'sb3'"),
         ({"kind": "gymnasium", "num_worlds": 2}, "num_worlds is for the kinds vector and sb3"),
+        ({"kind": "gymnasium"}, "needs others=NAME"),
         ({"others": "orca"}, "others is for the kind gymnasium"),
         ({"num_worlds": 0}, "at least 1 world at once"),
         ({"split": "test"}, "train or validation"),

@@ -231,7 +231,7 @@ class PatchesModules(Cheat):
     """The same for a name of a module that is there in this process."""
 
     def peek(self, observation):
-        driver = sys.modules.get("benchnav.runner.rollouts.navigator_driver")
+        driver = sys.modules.get("benchnav.navigation.observe")
         if driver is None or hasattr(driver.sense, "spy"):
             return
         honest = driver.sense

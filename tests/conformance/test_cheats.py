@@ -52,7 +52,7 @@ ONLY_APART = ["Tracer"]  # elsewhere it would trace strangers
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the means are those of Linux")
 PATCHED = {
     "Patches": "benchnav.world.simulation.Simulation.step",
-    "PatchesModules": "benchnav.runner.rollouts.navigator_driver.sense",
+    "PatchesModules": "benchnav.navigation.observe.sense",
     "PatchesCode": "benchnav.world.simulation.Simulation.step",
 }
 

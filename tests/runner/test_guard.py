@@ -19,7 +19,7 @@ def other(*_):
     [
         (Simulation, "step", "benchnav.world.simulation.Simulation.step"),
         (Simulation, "B", "benchnav.world.simulation.Simulation.B"),
-        (navigator_driver, "sense", "benchnav.runner.rollouts.navigator_driver.sense"),
+        (navigator_driver, "observe", "benchnav.runner.rollouts.navigator_driver.observe"),
         (np, "zeros_like", "numpy.zeros_like"),
         (builtins, "sorted", "builtins.sorted"),
     ],

@@ -327,7 +327,7 @@ def test_what_is_registered_here_runs_here_beside_workers(registered, edit, suit
     assert summary.stored == 10
     assert summary.in_process == ("of-this-session",)
     assert not summary.failures
-    with pytest.raises(UsageError, match="known in this process alone"):
+    with pytest.raises(UsageError, match="known only in this process"):
         run_suite(suite, tmp_path / "limited", workers=1, timeout=5.0)
 
 

@@ -83,7 +83,7 @@ def test_the_sample_is_from_everywhere(genuine):
             self.scenario = type("Scenario", (), {"identity": identity})
 
     checks = [
-        PartCheck(Cell(name), Part(first, first + 4), "", 0, "")
+        PartCheck(Cell(name), Part(first, first + 4), "", 0, "", {}, None)
         for name in ("a", "b") for first in (0, 4)
     ]  # fmt: skip
     assert sampled(checks, 4) == [[0], [4], [0], [4]]
