@@ -138,7 +138,7 @@ PARTS = {"benchnav": benchnav, "pyrvo": pyrvo, "navground": navground}
 
 
 def answer(part: str) -> dict[str, Any]:
-    """What a subprocess prints: seconds, or why there are none."""
+    """Return the output of a subprocess: seconds, or the reason why there are none."""
     try:
         return {"version": version(part), "seconds": PARTS[part]()}
     except (ImportError, PackageNotFoundError) as error:
@@ -156,8 +156,8 @@ def ask(python: str, part: str) -> dict[str, Any]:
     if done.returncode != 0 or not done.stdout:
         last = done.stderr.strip().splitlines()[-1:] or ["no output"]
         return {"skipped": f"{part} failed: {last[0]}"}
-    told: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    return told
+    times: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return times
 
 
 def measure(peers_python: str) -> list[dict[str, Any]]:
@@ -172,7 +172,7 @@ def measure(peers_python: str) -> list[dict[str, Any]]:
         for part, python in pythons.items():
             if not (rounds[part] and "skipped" in rounds[part][0]):
                 rounds[part].append(ask(python, part))
-    best = {part: _best(told) for part, told in rounds.items()}
+    best = {part: _best(times) for part, times in rounds.items()}
     ours = best["benchnav"].get("agent_steps_per_second")
     for part, wanted in (("pyrvo", 4.0), ("navground", 40.0)):
         if ours is not None and "skipped" not in best[part]:
@@ -181,13 +181,13 @@ def measure(peers_python: str) -> list[dict[str, Any]]:
     return [{"name": part, **row} for part, row in best.items()]
 
 
-def _best(told: list[dict[str, Any]]) -> dict[str, Any]:
-    skipped = next((one for one in told if "skipped" in one), None)
+def _best(times: list[dict[str, Any]]) -> dict[str, Any]:
+    skipped = next((one for one in times if "skipped" in one), None)
     if skipped is not None:
         return skipped
-    seconds = min(float(one["seconds"]) for one in told)
+    seconds = min(float(one["seconds"]) for one in times)
     rate = AGENTS * STEPS / seconds
-    return {"version": told[0]["version"], "agent_steps_per_second": rate}
+    return {"version": times[0]["version"], "agent_steps_per_second": rate}
 
 
 if __name__ == "__main__":

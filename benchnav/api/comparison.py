@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class Comparison:
-    """What differs between two navigators, by how much, and how sure that is.
+    """The differences between two navigators, with their sizes and their confidence.
 
     Worlds are paired, intervals are of 95 %, and all sentences are one family of tests.
     """

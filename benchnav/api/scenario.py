@@ -41,7 +41,7 @@ class Scenario:
 
     @property
     def title(self) -> str:
-        """What it is, in one line."""
+        """The title: one line of text."""
         return self.record.title
 
     @property

@@ -7,7 +7,7 @@ from benchnav.verify.report_text import report_json, report_text, verdict
 
 
 class Verification:
-    """What verifying a run found; true in a condition where nothing disagrees."""
+    """The result of a verification; true in a condition if it has no findings."""
 
     def __init__(self, run: str, report: Report, seconds: float) -> None:
         self.run = run
@@ -21,7 +21,7 @@ class Verification:
 
     @property
     def findings(self) -> tuple[Finding, ...]:
-        """What does not agree: kind, place, and what is stored there."""
+        """The disagreements, each with its kind, its place and the stored value."""
         return tuple(self.record.findings)
 
     def to_json(self) -> str:

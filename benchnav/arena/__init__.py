@@ -1,4 +1,4 @@
-"""What a drawn world is made of. A name is loaded when it is first used."""
+"""The parts of a drawn world. A name is loaded when it is first used."""
 
 from typing import TYPE_CHECKING
 

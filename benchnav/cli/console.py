@@ -43,13 +43,13 @@ def deliver(text: str, out: Path | None) -> None:
         say(f"{out} is written")
 
 
-def one_of(kinds: type[E], what: str, said: str) -> E:
-    """The member of ``kinds`` that was said. Raises UsageError where there is none."""
+def one_of(kinds: type[E], what: str, text: str) -> E:
+    """Return the member of ``kinds`` called ``text``. Raises UsageError if there is none."""
     try:
-        return kinds(said)
+        return kinds(text)
     except ValueError:
         known = [kind.value for kind in kinds]
         raise UsageError(
-            f"{what} must be one of {', '.join(known)}. Got {said!r} instead."
-            f"{did_you_mean(said, known)}"
+            f"{what} must be one of {', '.join(known)}. Got {text!r} instead."
+            f"{did_you_mean(text, known)}"
         ) from None

@@ -1,4 +1,4 @@
-"""What the machine refuses a command: files, memory, processes; in a sentence with the cure."""
+"""Failures of the machine (files, memory, processes) as sentences with the cure."""
 
 import errno
 

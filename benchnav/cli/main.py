@@ -94,7 +94,7 @@ def _options(
     ] = False,
     debug: Annotated[bool, typer.Option(DEBUG, help="Print the traceback of an error.")] = False,
 ) -> None:
-    """What stands before a verb."""
+    """The options before a verb."""
 
 
 def status(arguments: Sequence[str]) -> int:

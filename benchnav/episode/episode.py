@@ -10,7 +10,7 @@ from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 
 
 class Status(IntEnum):
-    """What an agent is doing at an instant."""
+    """The state of an agent at one time."""
 
     ACTIVE = 0
     ARRIVED = 1  # it touched its goal disc
@@ -55,7 +55,7 @@ class Contacts:
 
 @dataclass(frozen=True, eq=False)
 class Timings:
-    """Wall-clock seconds; the one part of an episode that nobody can verify."""
+    """Wall-clock seconds; the only part of an episode that cannot be verified."""
 
     decision: FloatArray  # (T,) of the batched call, divided by the worlds that it served
     planning: float  # within reset, this world's share

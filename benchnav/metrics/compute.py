@@ -1,4 +1,4 @@
-"""Compute: wall-clock time, the one part of an episode that nobody can verify.
+"""Compute: wall-clock time, the only part of an episode that cannot be verified.
 
 Timings are those of the navigator's calls alone. In a run a call serves a batch of worlds
 and its time is divided by them, so decision times tell throughput, describe, and never

@@ -1,4 +1,4 @@
-"""What a metric must be; the registry asks it."""
+"""The contract of a metric, which the registry checks."""
 
 from types import ModuleType
 from typing import Any

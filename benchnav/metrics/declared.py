@@ -1,4 +1,4 @@
-"""What metrics declare: unit, direction, range. Those of plugins do so in their own process."""
+"""The declarations of metrics: unit, direction, range. Plugins declare in their own process."""
 
 from typing import Annotated, Any, Literal, NoReturn
 

@@ -91,7 +91,7 @@ def _spread(
 def _order(
     place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
 ) -> FloatArray:
-    """(N,); NaN where nobody moves."""
+    """(N,); NaN if no agent moves."""
     length = np.hypot(step[..., 0], step[..., 1])
     moving = active & (length > STILL)
     unit = np.where(moving, 1.0 / np.where(moving, length, 1.0), 0.0)[..., None] * step

@@ -22,7 +22,7 @@ def load_metric(name: str) -> Metric:
 
 
 def own_metrics() -> tuple[Metric, ...]:
-    """The metrics that are part of benchnav, by name: no code of anybody else is imported."""
+    """Return the metrics of benchnav itself, by name, without importing plugins."""
     return tuple(load_metric(name) for name in METRICS.names() if is_own(name))
 
 
@@ -59,19 +59,20 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
 
 def subjects(episode: Episode) -> list[tuple[dict[str, Any], BoolArray]]:
     """(what rows say of it, members (A,)) of each role that is evaluated in an episode."""
-    agents, who, clock = episode.world.agents, episode.identity, episode.world.clock
+    agents, identity, clock = episode.world.agents, episode.identity, episode.world.clock
     found: list[tuple[dict[str, Any], BoolArray]] = []
     for role in Role:
         members = agents.evaluated & (agents.role == role)
         if not members.any():
             continue
         common = {
-            "navigator": who.navigator, "scenario": who.scenario,
-            "scenario_hash": who.scenario_hash, "track": who.track, "split": who.split,
-            "seed": who.seed, "role": role.name.lower(), "agents": int(members.sum()),
+            "navigator": identity.navigator, "scenario": identity.scenario,
+            "scenario_hash": identity.scenario_hash, "track": identity.track,
+            "split": identity.split, "seed": identity.seed, "role": role.name.lower(),
+            "agents": int(members.sum()),
             "failure": episode.failure, "horizon": clock.horizon, "dt": clock.dt,
-            "navigator_hash": who.navigator_hash, "rehearsal": episode.rehearsals,
-            "source_hash": who.source_hash,
+            "navigator_hash": identity.navigator_hash, "rehearsal": episode.rehearsals,
+            "source_hash": identity.source_hash,
             "rehearsal_decisions": episode.rehearsal_decisions,
             "rehearsal_seconds": episode.timings.rehearsal, "remarks": list(episode.remarks),
         }  # fmt: skip

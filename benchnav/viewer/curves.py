@@ -33,11 +33,11 @@ def draw_curves(points: Sequence[Point]) -> Figure:
     figure = blank(WIDTH * across + 0.4, HEIGHT * down + LEGEND * lines + 0.4)
     grid = figure.subplots(down, across, sharey=True, squeeze=False)
     style = dict(zip(names, cycle((c, d) for d, c in product(DASHES, COLOURS)), strict=False))
-    told = len({p.role for p in points}) > 1
+    several_roles = len({p.role for p in points}) > 1
     for row, axes_of_row in zip(rows, grid, strict=True):
         for axes, panel in zip_longest(axes_of_row, row):
             if panel:
-                _panel(axes, panel, style, told)
+                _panel(axes, panel, style, several_roles)
             else:
                 axes.set_visible(False)
         axes_of_row[0].set_ylabel(_named(points[0].metric, points[0].unit))

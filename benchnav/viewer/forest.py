@@ -53,7 +53,7 @@ def _row(c: Comparison) -> Row:
 
 
 def _label(row: Row, rows: Sequence[Row]) -> str:
-    """What tells a row apart from the others."""
+    """Return the text that distinguishes a row from the others."""
     split, track, role, scenario = row
     parts = ["all scenarios" if scenario == ALL else scenario, track]
     parts += [f"{role}s"] if len({r[2] for r in rows}) > 1 else []
@@ -86,7 +86,7 @@ def _panel(axes: Axes, found: Sequence[Comparison | None], metric: Metric) -> No
 
 
 def _sides(metric: Metric) -> str:
-    """Who is better to the left and to the right of 0."""
+    """Label which navigator is better on each side of 0."""
     if metric.better is None or metric.conditional:
         return ""
     return "\n← B better   A better →" if metric.better == "higher" else "\n← A better   B better →"

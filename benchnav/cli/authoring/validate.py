@@ -6,7 +6,7 @@ from typing import Annotated
 import typer
 
 from benchnav.cli.console import put
-from benchnav.cli.viewing.scenario_page import said_of_worlds
+from benchnav.cli.viewing.scenario_page import worlds_text
 from benchnav.text.plural import counted
 
 
@@ -59,4 +59,4 @@ def _scenario(file: Path, draw: bool) -> None:
         f" obstacles: {len(world.solids)}, moving ones: {len(world.bodies)}; draws before it that"
         f" were not solvable: {world.redraws}"
     )
-    put(f"its worlds {said_of_worlds(scenario)}")
+    put(f"its worlds {worlds_text(scenario)}")

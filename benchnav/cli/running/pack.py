@@ -1,4 +1,4 @@
-"""`benchnav pack`: a run as one file for somebody else."""
+"""`benchnav pack`: a run as one file for other people."""
 
 from pathlib import Path
 from typing import Annotated

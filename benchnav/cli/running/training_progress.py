@@ -1,4 +1,4 @@
-"""What a training tells on stderr: a bar on a terminal, plain lines elsewhere, or nothing."""
+"""The progress of a training on stderr: a bar on a terminal, plain lines elsewhere, or nothing."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -52,16 +52,16 @@ def _bar() -> Iterator[Report]:
 
 
 def _lines() -> Report:
-    began = said = monotonic()
+    began = reported = monotonic()
     first: int | None = None
 
     def report(now: TrainingReport) -> None:
-        nonlocal said, first
+        nonlocal reported, first
         first = now.decisions if first is None else first
         time = monotonic()
-        if time - said < EVERY and now.success is None:
+        if time - reported < EVERY and now.success is None:
             return
-        said = time
+        reported = time
         rate = (now.decisions - first) / max(time - began, 1e-9)
         text = f"{now.decisions:,} of {now.total:,} decisions"
         if rate > 0 and now.decisions < now.total:

@@ -18,7 +18,7 @@ def verify(
     ] = 20,
     referee: Annotated[
         str | None,
-        typer.Option(help="Who judges every contact a second time: fcl."),
+        typer.Option(help="Library that checks every contact a second time: fcl."),
     ] = None,
     rerun: Annotated[
         bool, typer.Option("--rerun", help="Run the navigators again where they are deterministic.")

@@ -64,7 +64,7 @@ def _page(registry: Registry, name: str) -> Iterator[str]:
 
 
 def _background(thing: object) -> Iterator[str]:
-    """What its package says, where that is about it and not about all that ships."""
+    """Return the docstring of its package, if the package holds only this component."""
     module = inspect.getmodule(thing)
     package = module.__package__ if module is not None else None
     if package and package not in ("benchnav_baselines", "benchnav.navigation"):

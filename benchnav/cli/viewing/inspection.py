@@ -1,4 +1,4 @@
-"""What `list`, `show` and `doctor` say of plugins, which processes of their own are asked."""
+"""The facts about plugins for `list`, `show` and `doctor`, from processes of their own."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -31,7 +31,7 @@ _REGISTRIES = {r.kind: r for r in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, T
 def inspect_plugins(
     registry: Registry, names: Iterable[str], what: str
 ) -> dict[str, str | BenchnavError]:
-    """What each of the plugins says, or why it cannot be used.
+    """Return the facts about each plugin, or the reason why it cannot be used.
 
     Those of one distribution share a process. What is part of benchnav alone, or is known in
     this process alone, is asked in it.

@@ -22,7 +22,7 @@ from benchnav.text.columns import columns
 
 
 class Kind(StrEnum):
-    """What can be listed."""
+    """The kinds that can be listed."""
 
     NAVIGATORS = "navigators"
     PLANNERS = "planners"

@@ -1,4 +1,4 @@
-"""What a plugin takes and needs, as text."""
+"""The parameters and the needs of a plugin, as text."""
 
 import re
 from typing import Any
@@ -7,7 +7,7 @@ from benchnav.errors import BenchnavError
 from benchnav.plugins import Registry
 
 WIDEST = 40  # characters of a type
-SAID_ONCE_MADE = "what it says once it is made"
+UNKNOWN_BEFORE_CONSTRUCTION = "what it says once it is made"
 
 
 def parameters(plugin: Any) -> list[tuple[str, str, str, str]]:
@@ -19,7 +19,7 @@ def parameters(plugin: Any) -> list[tuple[str, str, str, str]]:
 
 
 def needs(registry: Registry, name: str) -> str:
-    """What it needs as it is made without parameters."""
+    """Return the needs of the plugin with its default parameters."""
     made = _made(registry, name)
     if isinstance(made, str):
         return made
@@ -27,7 +27,7 @@ def needs(registry: Registry, name: str) -> str:
 
 
 def answers(registry: Registry, name: str) -> str:
-    """What it answers as it is made without parameters."""
+    """Return the command kind of the plugin with its default parameters."""
     made = _made(registry, name)
     return f"a {'command' if isinstance(made, str) else made.command} per agent"
 
@@ -39,7 +39,7 @@ def _made(registry: Registry, name: str) -> Any:
     if name in registry.names():  # and not a pair
         declared = registry.load(name).Config.model_fields.values()
         if any(field.is_required() for field in declared):
-            return SAID_ONCE_MADE
+            return UNKNOWN_BEFORE_CONSTRUCTION
     try:
         return make(registry, name)
     except BenchnavError as error:

@@ -11,7 +11,7 @@ from benchnav.text.columns import columns
 
 
 def plugin_page(registry: Registry, name: str) -> str:
-    """What the plugin ``name`` is, needs and takes."""
+    """Return the page of the plugin ``name``: description, needs and parameters."""
     thing, source = registry.load(name), registry.source(name)
     facts = [("is", f"a {registry.kind}: {sentence(thing)}")]
     facts.append(("comes from", f"{source.distribution}, {source.value}{_place(thing)}"))
@@ -73,7 +73,7 @@ def _place(thing: Any) -> str:
 
 
 def sentence(thing: object) -> str:
-    """What a plugin says that it is: a metric's title, or the first line of a docstring."""
+    """Return the description of a plugin: a metric's title, or the first line of a docstring."""
     title = getattr(thing, "title", None)
     if isinstance(title, str):
         return title

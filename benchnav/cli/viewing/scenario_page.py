@@ -27,11 +27,11 @@ _PLACES = {
 
 
 def scenario_page(scenario: "Scenario") -> str:
-    """What a scenario says, in lines that fit a screen. Draws six worlds to compare them."""
+    """Return the page of a scenario. Draws six worlds to compare them."""
     from benchnav.errors import UnsolvableError
 
     try:
-        worlds = said_of_worlds(scenario)
+        worlds = worlds_text(scenario)
     except UnsolvableError as error:
         worlds = f"none: {error}"
     facts = [
@@ -52,8 +52,8 @@ def scenario_page(scenario: "Scenario") -> str:
 
 def _parameters(scenario: "Scenario") -> Iterator[str]:
     for name, p in scenario.parameters.items():
-        told = f" ({p.description})" if p.description else ""
-        yield f"{name} = {p.default:g} unless chosen, from {p.low:g} to {p.high:g}{told}"
+        note = f" ({p.description})" if p.description else ""
+        yield f"{name} = {p.default:g} unless chosen, from {p.low:g} to {p.high:g}{note}"
 
 
 def _line(key: str, value: str) -> str:
@@ -61,7 +61,7 @@ def _line(key: str, value: str) -> str:
     return fill(value, WIDTH, initial_indent=first, subsequent_indent=rest, break_on_hyphens=False)
 
 
-def said_of_worlds(scenario: "Scenario") -> str:
+def worlds_text(scenario: "Scenario") -> str:
     """Whether worlds differ from seed to seed and between the splits, of seeds 0 and 1 of each.
 
     Raises UnsolvableError where a world cannot be drawn.

@@ -87,7 +87,7 @@ def frame_times(trajectories: Trajectories, rate: float = FRAME_RATE) -> FloatAr
 def bodies_at(
     trajectories: Trajectories, times: FloatArray
 ) -> tuple[IntArray, IntArray, FloatArray]:
-    """Agent (N,), frame (N,) and place (N, 2) [m] of everybody who is a body at ``times``."""
+    """Agent (N,), frame (N,) and place (N, 2) [m] of every agent that is present at ``times``."""
     ids, frames = np.nonzero(present_at(trajectories, times))
     return ids, frames, positions_at(trajectories, times)[ids, frames]
 

@@ -21,7 +21,7 @@ from benchnav.geometry.sweep import segment_distance2
 from benchnav.kernels import kernel
 from benchnav.metrics.quantities.trajectory import Trajectories
 
-TTC_CAP = 5.0  # [s] a collision that is farther off than this threatens nobody yet
+TTC_CAP = 5.0  # [s] a collision that is later than this counts as no threat
 RECORDED = 2.4  # [m] gaps between agents are recorded up to this
 NEAR = 4.0  # radii between centres: two diameters
 SLACK = 1e-9  # [m] rounding, where steps are left out that cannot matter
@@ -48,7 +48,7 @@ class Encounters(NamedTuple):
 
 
 def things_of(world: World, body_position: FloatArray) -> Things:
-    """What stands in a world whose bodies were at ``body_position`` (T+1, M, 2)."""
+    """Return the obstacles of a world with bodies at ``body_position`` (T+1, M, 2)."""
     parts = [(solid.capsules, -1) for solid in world.solids]
     parts += [(body.solid.capsules, m) for m, body in enumerate(world.bodies)]
     capsules = np.vstack([np.zeros((0, 5)), *(part for part, _ in parts)])

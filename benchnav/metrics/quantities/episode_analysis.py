@@ -1,4 +1,4 @@
-"""What several metrics of one episode share, computed once.
+"""Quantities that several metrics of one episode share, computed once.
 
 `analyse(episode)` is pure from outside: an episode is immutable, its analysis is
 kept as long as the episode lives, and nothing in it may be written to.
@@ -92,7 +92,7 @@ class Analysis:
 
     @cached_property
     def encounters(self) -> Encounters:
-        """How near everybody came to everything."""
+        """The smallest distances between agents and obstacles."""
         things = things_of(self.world, self.body_position)
         return encounters(self.trajectories, self.world.agents.radius, things)
 

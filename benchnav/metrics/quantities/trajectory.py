@@ -19,7 +19,7 @@ INSTANT = 1e-9  # [s] a segment that is shorter than this has no velocity
 
 @dataclass(frozen=True, eq=False)
 class Trajectories:
-    """What all agents did, agents first."""
+    """The motion of all agents, agents first."""
 
     dt: float  # [s]
     last: IntArray  # (A,) index of the first state that is not active, T if all are

@@ -90,8 +90,8 @@ def _refuse_other_source(one: RunFolder, other: RunFolder) -> None:
             )
 
 
-def _short(said: object) -> str:
-    return shortened(str(said), 200)
+def _short(value: object) -> str:
+    return shortened(str(value), 200)
 
 
 def _joined(manifests: Sequence[Manifest]) -> Manifest:
