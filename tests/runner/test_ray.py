@@ -76,9 +76,9 @@ class Kills(Progress):
 @pytest.mark.long
 def test_a_machine_that_dies_changes_nothing(suite, tmp_path, cluster, monkeypatch):
     lost = []
-    lose = ray_executor._Site._lose
+    lose = ray_executor._RayJobs._replace
     monkeypatch.setattr(
-        ray_executor._Site, "_lose", lambda *said: (lost.append(said[2]), lose(*said))
+        ray_executor._RayJobs, "_replace", lambda *said: (lost.append(said[2]), lose(*said))
     )
     told = Kills(cluster)
 
@@ -89,7 +89,7 @@ def test_a_machine_that_dies_changes_nothing(suite, tmp_path, cluster, monkeypat
     summary = run_suite(suite, there, executor=on_the_cluster, progress=told)
     assert (summary.stored, told.done) == (8, 8)
     assert not cluster.worker_nodes
-    assert lost, "the machine had a foreman"
+    assert lost, "the machine had an actor"
     run_suite(suite, here, workers=2)
     assert facts(there) == facts(here)
     died = {why for (who, _), (_, why) in facts(there)[0].items() if who == "dies" and why}
