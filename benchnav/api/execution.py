@@ -110,7 +110,7 @@ def _execute(
         run_suite(suite, folder, progress=progress(quiet), summary=summary, **options)
     except KeyboardInterrupt as stopped:
         stopped.add_note(f"{summary.stored} of {counted(summary.total, 'episode')} stored.")
-        stopped.add_note(f"The same command with --out {folder} continues there.")
+        stopped.add_note(f"To continue, run the same suite with the folder {folder} as out.")
         if kept := kept_for_now(summary):
             stopped.add_note(kept)
         raise
@@ -166,17 +166,17 @@ def _new_folder(suite: "Suite") -> Path:
 def _executor(name: str, address: str | None, workers: int | None) -> "Executor | None":
     if name not in EXECUTORS:
         raise UsageError(
-            f"--executor must be one of {', '.join(EXECUTORS)}. Got {name!r} instead."
+            f"The executor must be one of {', '.join(EXECUTORS)}. Got {name!r} instead."
             f"{did_you_mean(name, EXECUTORS)}"
         )
     if name == "local":
         if address is not None:
             raise UsageError(
-                "--address must be that of a Ray cluster. Got it without --executor ray."
+                "An address belongs to a Ray cluster. Got one without the executor 'ray'."
             )
         return None
     if workers == 0:
-        raise UsageError("--executor ray must have workers. Got --workers 0, which has none.")
+        raise UsageError("The executor 'ray' needs workers. Got 0 workers.")
     from benchnav.runner.ray.ray_executor import execute_on_ray
 
     return partial(execute_on_ray, address=address or "")
@@ -188,7 +188,7 @@ def _shard(text: str | None) -> "Shard | None":
     try:
         return None if text is None else Shard.parse(text)
     except ValueError as error:
-        raise UsageError(f"--shard {error}.") from None
+        raise UsageError(f"The shard {error}.") from None
 
 
 def _announcement(suite: "Suite", folder: Path) -> str:

@@ -3,19 +3,16 @@
 from collections.abc import Sequence
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING
 
+from benchnav.api.exports import Exports
 from benchnav.api.text_table import written
 from benchnav.leaderboard.from_runs import StoredValues
 from benchnav.leaderboard.record import Leaderboard as Board
 from benchnav.leaderboard.record import Record
 from benchnav.leaderboard.rendering.formats import html_fragment
 
-if TYPE_CHECKING:
-    import pandas as pd
 
-
-class Leaderboard:
+class Leaderboard(Exports):
     """Means, 95 % intervals and ranks of navigators; it shows itself in a terminal or notebook.
 
     The methods ``to_…`` return the text that ``benchnav leaderboard --format …`` prints, and also
@@ -52,42 +49,21 @@ class Leaderboard:
         """The metrics that the runs hold, whether they are shown or not."""
         return tuple(self._values.names)
 
-    def to_markdown(self, path: "str | PathLike[str] | None" = None) -> str:
-        """Return the tables as Markdown."""
-        return self._text("markdown", path)
-
     def to_latex(self, path: "str | PathLike[str] | None" = None) -> str:
         """Return matrices of navigators and scenarios as LaTeX."""
-        return self._text("latex", path)
+        return written(self.text("latex"), path)
 
     def to_html(self, path: "str | PathLike[str] | None" = None) -> str:
         """Return the tables as an HTML page."""
-        return self._text("html", path)
+        return written(self.text("html"), path)
 
-    def to_csv(self, path: "str | PathLike[str] | None" = None) -> str:
-        """Return every record with every field as CSV, of all metrics unless some were named."""
-        return self._text("csv", path)
-
-    def to_json(self, path: "str | PathLike[str] | None" = None) -> str:
-        """Return every record with every field as JSON, of all metrics unless some were named."""
-        return self._text("json", path)
-
-    def to_pandas(self) -> "pd.DataFrame":
-        """Return a data frame with the columns and rows of the CSV file."""
-        from dataclasses import fields
-
-        import pandas as pd
-
-        columns = [field.name for field in fields(Record)]
-        rows = [[getattr(record, name) for name in columns] for record in self.records]
-        return pd.DataFrame(rows, columns=columns)
+    @property
+    def _record_type(self) -> type:
+        return Record
 
     def text(self, format: str) -> str:
         """Return the table as text in a format: terminal, markdown, csv, latex, html or json."""
         return self._values.text(format, self._metrics, self._columns)
-
-    def _text(self, format: str, path: "str | PathLike[str] | None") -> str:
-        return written(self.text(format), path)
 
     def __repr__(self) -> str:
         return self.text("terminal").rstrip("\n")

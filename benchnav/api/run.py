@@ -143,7 +143,7 @@ class Run:
         runs: "Iterable[Run | str | PathLike[str]]" = (),
         recompute: bool = False,
     ) -> "Comparison":
-        """Return what differs between two navigators, by how much, and how sure that is.
+        """Return the differences between two navigators, their sizes and their confidence.
 
         Args:
             first: the label of a navigator.
@@ -187,7 +187,7 @@ class Run:
         workers: int | None = None,
         quiet: bool = False,
     ) -> "Verification":
-        """Check the run without its navigators, and return what was found.
+        """Check the run without its navigators, and return the findings.
 
         Worlds are drawn again, commands are simulated again, and metrics are measured again.
         A receipt on this machine then marks the run in leaderboards.
@@ -207,7 +207,7 @@ class Run:
 
         stop_import_of_main()
         if referee not in (None, "fcl"):
-            raise UsageError(f"--referee must be fcl. Got {referee!r} instead.")
+            raise UsageError(f"The referee must be fcl. Got {referee!r} instead.")
         wanted, began = Wanted(twin, referee is not None, rerun), perf_counter()
         report = verify(self.folder, wanted, workers=workers, progress=progress(quiet))
         seconds = perf_counter() - began
@@ -239,7 +239,7 @@ class Run:
         default = self.path.with_name(self.path.resolve().name + SUFFIX)
         target = Path(out) if out is not None else default
         if target.suffix != SUFFIX:
-            raise UsageError(f"--out must end in {SUFFIX}. Got {target} instead.")
+            raise UsageError(f"The file of a pack must end in {SUFFIX}. Got {target} instead.")
         pack(self.folder, target)
         if not quiet:
             size = target.stat().st_size / 1e6
@@ -247,7 +247,7 @@ class Run:
         return target
 
     def tell_missing(self, notify: Any = message) -> None:
-        """Print which episodes the run misses; nothing for a complete run."""
+        """Print which episodes are missing; nothing for a complete run."""
         from benchnav.store.runs.completeness import missing_episodes
 
         for line in missing_episodes(self.folder):

@@ -218,7 +218,7 @@ def _settings(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
             )
     if not found:
         raise UsageError(
-            f"--curve must be {HORIZON!r}, or a parameter of a scenario that was run:"
+            f"The axis of a curve must be {HORIZON!r}, or a parameter of a scenario that was run:"
             f" {', '.join(sorted(axes - {HORIZON})) or 'here is none'}. Got {axis!r} instead."
             f"{did_you_mean(axis, sorted(axes))}"
         )

@@ -10,12 +10,12 @@ from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.spans import count, twice, union, without
 from benchnav.text.plural import counted
 from benchnav.verify.finding import Report
-from benchnav.verify.rebuilt_suite import Restored
+from benchnav.verify.rebuilt_suite import RebuiltSuite
 
 _SHOWN = 10  # seeds of each kind
 
 
-def covered(run: RunFolder, suite: Restored, report: Report) -> Iterator[tuple[Cell, Part]]:
+def covered(run: RunFolder, suite: RebuiltSuite, report: Report) -> Iterator[tuple[Cell, Part]]:
     """Yield every part with its cell; report missing and surplus seeds and parts."""
     stored = {str(c["key"]): c for c in run.manifest.cells}
     for cell in suite.cells:

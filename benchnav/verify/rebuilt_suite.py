@@ -29,14 +29,14 @@ _SPLITS = ("train", "validation", "test")
 
 
 @dataclass(frozen=True)
-class Restored:
+class RebuiltSuite:
     """The rebuilt suite of a run."""
 
     seeds: range
     cells: tuple[Cell, ...]  # every cell, n/a ones included, in the order of the manifest
 
 
-def restore(run: RunFolder, root: Path, report: Report) -> Restored | None:
+def restore(run: RunFolder, root: Path, report: Report) -> RebuiltSuite | None:
     """Return the suite of ``run``; None if it cannot be rebuilt, with a finding in the report.
 
     Args:
@@ -75,7 +75,7 @@ def restore(run: RunFolder, root: Path, report: Report) -> Restored | None:
         return None
     _compare_cells(run, cells, where, report)
     _check_claims(run, where, report)
-    return Restored(whole_suite.seeds, tuple(cells))
+    return RebuiltSuite(whole_suite.seeds, tuple(cells))
 
 
 def _check_claims(run: RunFolder, where: str, report: Report) -> None:

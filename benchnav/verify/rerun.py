@@ -29,14 +29,33 @@ from benchnav.verify.finding import Report
 from benchnav.verify.part_check import PartCheck
 from benchnav.verify.untrusted_spec import is_by_module, is_program
 
-_REPRODUCIBLE = (
-    "act ",
-    "reset ",
-    "in rehearsal ",
-    "the scenario's background ",
-)  # raised or answered
+# Failures that a navigator caused by an exception or an invalid command, and so repeats:
+_REPEATED = ("act ", "reset ", "in rehearsal ", "the scenario's background ")
 
 Installed = Mapping[str, tuple[Entry | None, str]]  # by label: `installed`
+
+
+def rerun(
+    run: RunFolder, cells: Sequence[Cell], checks: Sequence[PartCheck], folder: Path,
+    report: Report, *, workers: int, progress: Progress | None = None,
+) -> None:  # fmt: skip
+    """Run the installed navigators again, and report every difference from the run.
+
+    Args:
+        run: the run.
+        cells: all its cells, of which the navigators also report whether they are n/a.
+        checks: the parts to run again.
+        folder: an empty folder for the new episodes.
+        report: receives the findings, counts and notes.
+        workers: processes; 0: this process.
+        progress: is notified of every episode.
+    """
+    entries = all_installed(run, cells)
+    check_reasons(run, cells, entries, report)
+    parts = Rerun(folder, Limits.of(run.manifest.limits), report, progress or Progress())
+    for check in checks:
+        parts.add(check, entries[check.cell.entry.label])
+    parts.run(workers)
 
 
 @dataclass(frozen=True)
@@ -61,7 +80,8 @@ class Rerun:
             self._leave_out(seeds, why)
             return
         try:
-            failures = {e.identity.seed: e.failure for e in check.part.episodes()}
+            rows = check.part.results().select(["seed", "failure"]).to_pylist()
+            failures = {row["seed"]: row["failure"] for row in rows}
         except CorruptPartError:
             self._leave_out(seeds, "its part cannot be read")
             return
@@ -84,14 +104,13 @@ class Rerun:
         with closing(execute(tasks, workers, self.progress, self.limits)) as finished:
             for task, outcome in finished:
                 if outcome.lacks:
-                    self._leave_out(task.seeds, outcome.lacks, counted=True)
+                    self._leave_out(task.seeds, outcome.lacks)
                 else:
                     self._compare(task)
 
-    def _leave_out(self, seeds: Sequence[int], why: str, counted: bool = False) -> None:
+    def _leave_out(self, seeds: Sequence[int], why: str) -> None:
         self.report.notes[f"episode not run again: {why}"] += len(seeds)
-        if not counted:
-            self.progress.advance(len(seeds))
+        self.progress.advance(len(seeds))
 
     def _compare(self, task: Task) -> None:
         check = self.stored[task.cell.key, task.first]
@@ -125,7 +144,7 @@ def _place(episode: Episode) -> tuple[int, int]:
 
 
 def _may_fail_again(failure: str) -> bool:
-    return not failure or failure.startswith(_REPRODUCIBLE)
+    return not failure or failure.startswith(_REPEATED)
 
 
 def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry | None, str]:

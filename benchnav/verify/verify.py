@@ -29,10 +29,10 @@ from benchnav.verify.examination import Examination, examine
 from benchnav.verify.finding import Report
 from benchnav.verify.installed_source import compare_source
 from benchnav.verify.part_check import PartCheck
-from benchnav.verify.rebuilt_suite import restore
+from benchnav.verify.rebuilt_suite import RebuiltSuite, restore
 from benchnav.verify.reference.fcl_check import require_referee
 from benchnav.verify.reference.sample import sampled
-from benchnav.verify.rerun import Rerun, all_installed, check_reasons
+from benchnav.verify.rerun import rerun
 
 VERIFIABLE = 3  # first schema in which a run holds everything that verifying needs
 
@@ -72,13 +72,15 @@ def verify(
     report = Report(content=pinned_digest(run))
     with TemporaryFolder("verify") as root:
         count = core_count() if workers is None else workers
-        tasks = tasks_of(run, root.path, wanted, report, guarded=count > 0)
+        suite = rebuilt(run, root.path, report)
+        tasks = tasks_of(run, suite, wanted, report, guarded=count > 0) if suite else []
         episodes = sum(len(task.check.part.seeds) for task in tasks)
         reporter.begin(episodes * (2 if wanted.rerun else 1), 0)
         try:
             fit = _examined(tasks, count, report, reporter)
-            if wanted.rerun:
-                _rerun(run, fit, root.path / "rerun", count, report, reporter)
+            if wanted.rerun and suite:
+                folder = root.path / "rerun"
+                rerun(run, suite.cells, fit, folder, report, workers=count, progress=reporter)
         finally:
             reporter.end()
     changed = changed_since(run)
@@ -106,23 +108,10 @@ def _examined(
     return fit
 
 
-def _rerun(
-    run: RunFolder, checks: Sequence[PartCheck], folder: Path, workers: int, report: Report,
-    reporter: Progress,
-) -> None:  # fmt: skip
-    again = Rerun(folder, Limits.of(run.manifest.limits), report, reporter)
-    entries = all_installed(run, [check.cell for check in checks])
-    for check in checks:
-        again.add(check, entries[check.cell.entry.label])
-    again.run(workers)
+def rebuilt(run: RunFolder, root: Path, report: Report) -> RebuiltSuite | None:
+    """Return the suite of a pinned run, built again in ``root``; None after fatal findings.
 
-
-def tasks_of(
-    run: RunFolder, root: Path, wanted: Wanted, report: Report, *, guarded: bool = True
-) -> list[Examination]:
-    """Return the examinations of a pinned run; report the findings in its manifest.
-
-    ``guarded``: metrics of plugins are measured in separate processes.
+    Raises StoreError if the run stores too little to be verified.
     """
     if run.manifest.schema < VERIFIABLE:
         raise StoreError(
@@ -130,15 +119,20 @@ def tasks_of(
             f" schema {run.manifest.schema}, which stores too little. Run the suite again."
         )
     _note_versions(run, report)
-    suite = restore(run, root, report)
-    if suite is None:
-        return []
+    return restore(run, root, report)
+
+
+def tasks_of(
+    run: RunFolder, suite: RebuiltSuite, wanted: Wanted, report: Report, *, guarded: bool = True
+) -> list[Examination]:
+    """Return the examinations of a pinned run; report the findings in its manifest.
+
+    ``guarded``: metrics of plugins are measured in separate processes.
+    """
     report.caveats += [caveat.text for caveat in caveats_of(run.manifest)]
     report.claims = _claims(run.manifest) if report.clean else ""
     entries = {cell.entry.label: cell.entry for cell in suite.cells}
     report.sources += [compare_source(e, run.packed is not None) for e in entries.values()]
-    if wanted.rerun:
-        check_reasons(run, suite.cells, all_installed(run, suite.cells), report)
     version = str(run.manifest.versions.get("benchnav", ""))
     metrics = {name: metric.verifiable for name, metric in declared_metrics()[0].items()}
     measuring = _measuring(run) if guarded else None
@@ -198,7 +192,7 @@ def _done(tasks: Sequence[Examination], workers: int) -> Iterator[tuple[Examinat
 def _collected(
     pool: Executor, tasks: Sequence[Examination]
 ) -> Iterator[tuple[Examination, Report]]:
-    with without_main():  # which the check of a run has no use for
+    with without_main():  # the workers need no definitions of the script
         running: dict[Future[Report], Examination] = {pool.submit(examine, t): t for t in tasks}
     try:
         for future in as_completed(running):

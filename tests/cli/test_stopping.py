@@ -98,7 +98,7 @@ def test_every_signal_is_told_in_a_sentence_and_has_its_status(number, run, begi
 VERBS = {
     "run": (["run", "{suite}", "--out", "new", "--workers", "0"],
             "benchnav.runner.execute.executor:work",
-            "0 of 4 episodes stored. The same command with --out new continues there."),
+            "0 of 4 episodes stored. To continue, run the same suite with the folder new as out."),
     "merge": (["merge", "run", "--out", "new"], "benchnav.store.runs.merge:_copy",
               "what was copied is kept. The same command continues in new."),
     "verify": (["verify", "run.bnrun", "--workers", "0"], "benchnav.verify.verify:examine",
@@ -158,6 +158,6 @@ def test_workers_and_isolated_processes_go_too(more, suite, begin, tmp_path):
     process = begin("run", suite, *arguments)
     code, stderr = stopped(process, signal.SIGTERM)
     assert code == 143
-    assert "Interrupted by SIGTERM: 0 of 2 episodes stored. The same command" in stderr
+    assert "Interrupted by SIGTERM: 0 of 2 episodes stored. To continue, run" in stderr
     assert list((tmp_path / "temporary").iterdir()) == []
     assert not list(tmp_path.glob("new/parts/*/*"))

@@ -132,6 +132,6 @@ def test_what_is_no_run_is_refused(call, arguments, complaint):
 
 def test_who_asks_wrongly_is_corrected(call, runs, tmp_path):
     code, _, stderr = call("pack", runs[0], "--out", tmp_path / "x.zip")
-    assert (code, "--out must end in .bnrun" in stderr) == (2, True)
+    assert (code, "must end in .bnrun" in stderr) == (2, True)
     code, _, stderr = call("verify", runs[0], "--twin", "-1")
     assert (code, "--twin" in stderr) == (2, True)

@@ -33,7 +33,8 @@ from benchnav.store.runs.pinned_run import pinned
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.verify.examination import examine
 from benchnav.verify.finding import Report
-from benchnav.verify.verify import Wanted, tasks_of
+from benchnav.verify.rerun import rerun
+from benchnav.verify.verify import Wanted, rebuilt, tasks_of
 from tests.conformance.refit import refit_manifest, refit_seal, write_manifest
 
 SCENARIO = """
@@ -202,10 +203,15 @@ def _noticed(run: Path, again: bool) -> list[str] | None:
     report, wanted = Report(), Wanted(0, rerun=again)
     with TemporaryDirectory() as root:
         try:
-            tasks = tasks_of(pinned(RunFolder.open(run)), Path(root), wanted, report)
+            folder = pinned(RunFolder.open(run))
+            suite = rebuilt(folder, Path(root), report)
+            tasks = tasks_of(folder, suite, wanted, report) if suite else []
             for task in tasks:
                 if report.clean:
                     report.add(examine(task))
+            if again and suite and report.clean:
+                checks = [task.check for task in tasks]
+                rerun(folder, suite.cells, checks, Path(root) / "rerun", report, workers=0)
         except BenchnavError:
             return None
     lines = [*report.checked, *report.unchecked, *report.sources, *report.versions]

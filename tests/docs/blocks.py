@@ -103,7 +103,7 @@ class Reader:
 
     def shortened(self, name):
         """A shipped recipe that ends after a few decisions."""
-        path = ROOT / "baselines" / "recurrent_ppo" / "recipes" / f"{name}.yaml"
+        path = ROOT / "baselines/learned/recurrent_ppo/recipes" / f"{name}.yaml"
         recipe = yaml.safe_load(path.read_text(encoding="utf-8"))
         recipe |= {"rows": 4, "checkpoint": 300, "validation": {"worlds": 2}}
         recipe["courses"] = [{**recipe["courses"][0], "worlds": 5}]

@@ -325,7 +325,7 @@ def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file,
     assert process.returncode == 130
     assert stdout == ""
     assert "Interrupted by SIGINT: " in stderr
-    assert f"--out {out} continues there" in stderr
+    assert f"with the folder {out} as out" in stderr
     assert "Traceback" not in stderr
     stored = len(list(read_episodes(out)))
     assert 0 < stored < seeds

@@ -27,7 +27,7 @@ def train(
     device: Annotated[
         str, typer.Option(metavar="NAME", help="cpu, cuda, or auto; same weights on cpu only.")
     ] = "cpu",
-    quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print errors only.")] = False,
 ) -> None:
     """Train a navigator from a recipe.
 

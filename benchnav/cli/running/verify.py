@@ -1,4 +1,4 @@
-"""`benchnav verify`: is what a run says true?"""
+"""`benchnav verify`: check everything that a run stores."""
 
 from pathlib import Path
 from typing import Annotated
@@ -28,12 +28,12 @@ def verify(
         typer.Option(metavar="N", min=0, max=1024, help="Processes. [default: one per core]"),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the findings as JSON.")] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Say nothing but errors.")] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print errors only.")] = False,
 ) -> None:
     """Check a run without its navigators.
 
     Draws its worlds again, re-simulates its commands, measures its metrics, and names every
-    stored number that does not agree. Exit status 1 where there are any.
+    stored number that does not agree. The exit status is 1 if there are any.
     """
     from benchnav.api.run import open_run
 

@@ -1,4 +1,4 @@
-"""The episodes that a run still misses."""
+"""The episodes that a run does not have yet."""
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -11,13 +11,13 @@ _SHOWN = 10  # cells that are named
 
 
 def missing_episodes(folder: RunFolder) -> Iterator[str]:
-    """Yield lines that say which episodes a run misses; none for a complete run."""
+    """Yield lines that name the missing episodes of a run; none for a complete run."""
     missing = dict(folder.missing())
     if not missing:
         return
     total = sum(count(seeds) for _, seeds in folder.planned())
     stored = total - sum(map(count, missing.values()))
-    advice = f": run the same suite with --out {folder.path} to finish it."
+    advice = f": to finish it, run the same suite with the folder {folder.path} as out."
     end = "." if folder.packed else advice
     yield f"{folder.shown} holds {stored} of {counted(total, 'episode')}{end}"
     for key, seeds in islice(missing.items(), _SHOWN):
