@@ -30,6 +30,7 @@ navigators: [orca, straight-line]
 seeds: 2
 """
 RECIPE = """\
+trainer: recurrent-ppo
 name: tiny
 courses: [{scenario: leaders/static, worlds: 20}]
 rows: 8

@@ -1,1 +1,1 @@
-"""Speed against peers and limits: ratios in one run, never timed tests. `make bench` runs all."""
+"""Speed relative to peers and limits: ratios within one run. `make bench` runs all benchmarks."""

@@ -14,10 +14,10 @@ PACKAGES = ("benchnav", "numpy", "numba", "shapely", "pyarrow")
 
 
 def main() -> None:
-    """Measure and print; keep the table where asked, unless a row was not measured."""
+    """Measure and print the table, and write it to ``--out`` if all rows were measured."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--peers", required=True, help="interpreter that has pyrvo and navground")
-    parser.add_argument("--out", type=Path, help="Markdown file that keeps the table")
+    parser.add_argument("--out", type=Path, help="Markdown file to write the table to")
     arguments = parser.parse_args()
     rows = crowd_rows(orca_peers.measure(arguments.peers))
     rows += leader_arena.measure() + end_to_end.measure() + isolation.measure()
@@ -30,7 +30,7 @@ def main() -> None:
 
 
 def crowd_rows(measured: list[dict[str, object]]) -> list[dict[str, object]]:
-    """The crowd against each peer; `value` is our own rate, the ratio is against the peer's."""
+    """Return rows of the crowd and each peer: our rate, its rate, and their ratio."""
     own = next(m for m in measured if m["name"] == "benchnav")
     rows = []
     for peer in measured:
@@ -52,7 +52,7 @@ def crowd_rows(measured: list[dict[str, object]]) -> list[dict[str, object]]:
 
 
 def page(rows: list[dict[str, object]]) -> str:
-    """The table, with machine and versions."""
+    """Return the table, with machine and versions."""
     versions = ", ".join(f"{name} {version(name)}" for name in PACKAGES)
     lines = [
         "# Benchmarks",
@@ -60,8 +60,8 @@ def page(rows: list[dict[str, object]]) -> str:
         f"Measured {datetime.now(UTC):%Y-%m-%d} with `make bench` on {platform.machine()},"
         f" {thread_count()} cores, {platform.system()}, Python {platform.python_version()};"
         f" {versions}.",
-        "Peers and limits are measured side by side in the same run; what each row times stands at"
-        " the head of its file in `benchmarks/`.",
+        "Peers and limits are measured side by side in the same run; the head of each file in"
+        " `benchmarks/` describes the timed part.",
         "",
         "| what | measured | against | wanted | reached |",
         "| --- | ---: | ---: | ---: | --- |",
@@ -70,7 +70,7 @@ def page(rows: list[dict[str, object]]) -> str:
 
 
 def line(row: dict[str, object]) -> str:
-    """One row of the table."""
+    """Return one row of the table."""
     if "note" in row:
         return f"| {row['name']} | – | – | – | {row['note']} |"
     value, ratio, wanted = (float(str(row[key])) for key in ("value", "ratio", "wanted"))
@@ -83,7 +83,7 @@ def line(row: dict[str, object]) -> str:
 
 
 def number(value: float) -> str:
-    """Three significant digits, with M for millions."""
+    """Return a number with three significant digits, with M for millions."""
     return f"{value / 1e6:.2f} M" if value >= 1e5 else f"{value:.3g}"
 
 

@@ -1,8 +1,8 @@
-"""How often comparisons of navigators see a difference, where there is none and where there is.
+"""False alarms and power of comparisons of navigators, from simulated tables.
 
     python -m benchmarks.comparisons [--tables N] [--part PART]
 
-docs/statistics.md keeps the output for 2,000 tables. The inference is that of
+docs/statistics.md contains the output for 2,000 tables. The inference is that of
 `benchnav.leaderboard.statistics.difference`; power is compared with sign flips of all worlds
 on the same simulated values.
 """
@@ -24,11 +24,11 @@ from studies.simulated_tables import CROWDS, EACH_FOR_ITSELF, Crowd, unit_rates,
 TABLES = 2000
 CHANCES = (0.5, 0.8, 0.9, 0.95, 0.98, 0.99)
 FAMILY = 20
-FALSE_ALARMS = 0.06  # at most
-NEAR = 0.9  # of that, from which on it is measured again
-AGAIN = 10  # with so many times as many tables
+FALSE_ALARMS = 0.06  # upper limit
+NEAR = 0.9  # share of FALSE_ALARMS above which a rate is measured again
+AGAIN = 10  # factor of the number of tables in the second measurement
 FLIPS = 9_999
-FLOATS = 20_000_000  # drawn at once
+FLOATS = 20_000_000  # largest number drawn at once
 
 
 @dataclass(frozen=True)
@@ -37,15 +37,15 @@ class Design:
 
     scenarios: int
     worlds: int  # of each scenario
-    apart: float = 0.0  # and in the others worse by as much, so that the mean differs by nothing
+    apart: float = 0.0  # in the others it is worse by as much, so that the means are equal
 
     @property
     def name(self) -> str:
-        """``5 × 20, ± 0.16``."""
+        """The name, ``5 × 20, ± 0.16``."""
         return f"{self.scenarios} × {self.worlds}{f', ± {self.apart:g}' if self.apart else ''}"
 
     def chances(self, chance: float, behind: float = 0.0) -> list[tuple[float, float]]:
-        """Both rates in each scenario: halfway between them is ``chance`` − ``behind`` / 2."""
+        """Return both rates in each scenario; their mean is ``chance`` − ``behind`` / 2."""
         middle = chance - behind / 2
         reach = min(self.apart, (0.999 - middle) * 2 - behind) / 2
         sign = [(-1) ** s if s < self.scenarios // 2 * 2 else 0 for s in range(self.scenarios)]
@@ -57,7 +57,7 @@ NULLS = (
     Design(30, 2), Design(30, 2, 0.16), Design(10, 10, 0.16),
 )  # fmt: skip
 PAIRS = (*((crowd, crowd) for crowd in CROWDS[:4]), (CROWDS[3], EACH_FOR_ITSELF))
-POWER = (  # how much worse the second navigator is in the mean
+POWER = (  # design, rate of the first navigator, mean deficit of the second
     (Design(1, 10), 0.8, 0.4), (Design(1, 20), 0.8, 0.3), (Design(1, 50), 0.9, 0.15),
     (Design(1, 50), 0.99, 0.08), (Design(5, 20), 0.9, 0.1), (Design(5, 20), 0.99, 0.06),
     (Design(5, 20, 0.3), 0.8, 0.1), (Design(5, 20, 0.6), 0.7, 0.1), (Design(10, 5), 0.9, 0.12),
@@ -69,7 +69,7 @@ def rate_differences(
     chances: list[tuple[float, float]], worlds: int, crowds: tuple[Crowd, Crowd], tables: int,
     rng: np.random.Generator,
 ) -> list[FloatArray]:  # fmt: skip
-    """(n, T) of every scenario; the two crowds are those of the two navigators."""
+    """Return differences (n, T) of every scenario; ``crowds`` are those of the two navigators."""
     parts = []
     for one, other in chances:
         first, second = world_rates((one, other), crowds[0], (worlds, tables), rng)
@@ -80,14 +80,14 @@ def rate_differences(
 
 
 def p_values(parts: list[FloatArray], column: Column) -> FloatArray:
-    """(T,) by the inference of the leaderboard."""
+    """Return p-values (T,) by the inference of the leaderboard."""
     return difference([Moments.of(part) for part in parts], column).p
 
 
 def rate_p(
     design: Design, chance: float, crowds: tuple[Crowd, Crowd], tables: int, behind: float = 0.0
 ) -> FloatArray:
-    """(T,) p-values, drawn in blocks that fit into memory."""
+    """Return p-values (T,), from values that are drawn in blocks that fit into memory."""
     rng = np.random.default_rng([3, design.scenarios, design.worlds])
     chances = design.chances(chance, behind)
     block = max(1, FLOATS // (2 * design.worlds * crowds[0].agents))
@@ -100,15 +100,16 @@ def rate_p(
 
 
 def called(p: FloatArray, family: int) -> float:
-    """Share of families of independent comparisons, with these p-values, that call any.
+    """Return the share of families of independent comparisons with any significant one.
 
-    Holm's procedure calls none where its first step does not.
+    The p-values of the comparisons are distributed like ``p``. In Holm's procedure, a family has
+    a significant comparison exactly if the first step finds one.
     """
     return float(1.0 - (1.0 - np.mean(p < ALPHA / family)) ** family)
 
 
 def alarms(design: Design, chance: float, crowds: tuple[Crowd, Crowd], tables: int) -> FloatArray:
-    """False alarms of one comparison and of `FAMILY`; measured again where they are near."""
+    """Return false alarms of one comparison and of `FAMILY`, more exactly near the limit."""
     p = rate_p(design, chance, crowds, tables)
     shares = np.array([called(p, 1), called(p, FAMILY)])
     if (shares > NEAR * FALSE_ALARMS).any():
@@ -126,7 +127,7 @@ SHAPES = {
 
 
 def mean_alarms(shape: str, design: Design, tables: int) -> FloatArray:
-    """False alarms of means of other quantities, both navigators' values alike in law."""
+    """Return false alarms for means of other quantities, of equal distribution for both."""
     rng = np.random.default_rng([4, design.scenarios, design.worlds])
     size = (design.worlds, tables)
     parts = [SHAPES[shape](rng, size) - SHAPES[shape](rng, size) for _ in range(design.scenarios)]
@@ -137,7 +138,7 @@ def mean_alarms(shape: str, design: Design, tables: int) -> FloatArray:
 
 
 def table_alarms(entries: int, design: Design, chance: float, crowd: Crowd, tables: int) -> float:
-    """Share of tables of equal entries in which any is called better than any other."""
+    """Return the share of tables of equal entries with any significant difference."""
     rng = np.random.default_rng([5, entries, design.worlds])
     first, second = pairs(entries)
     parts = []
@@ -150,7 +151,7 @@ def table_alarms(entries: int, design: Design, chance: float, crowd: Crowd, tabl
 
 
 def sign_flips(parts: list[FloatArray]) -> FloatArray:
-    """(T,) p-values of the inference that ranks had before: all worlds flip, scenarios alike."""
+    """Return p-values (T,) of the former inference: sign flips of all worlds."""
     value = np.concatenate([part / len(part) for part in parts])
     signs = np.random.default_rng(len(value)).choice((-1.0, 1.0), size=(FLIPS, len(value)))
     observed = np.abs(value.sum(axis=0)) - 1e-12 * np.abs(value).sum(axis=0)
@@ -165,7 +166,7 @@ Row = tuple[str, ...]
 
 
 def alarm_rows(tables: int) -> Iterator[Row]:
-    """False alarms of rates: of one comparison, and of a family of 20."""
+    """Yield false alarms of rates: of one comparison, and of a family of 20."""
     yield ("crowd of A; of B", "scenarios × worlds", *(f"{p:g}" for p in CHANCES), "as asked")
     for crowds, design in product(PAIRS, NULLS):
         found = np.array([alarms(design, p, crowds, 5 * tables) for p in CHANCES])
@@ -175,7 +176,7 @@ def alarm_rows(tables: int) -> Iterator[Row]:
 
 
 def shape_rows(tables: int) -> Iterator[Row]:
-    """The same of means of other quantities."""
+    """Yield false alarms of means of other quantities."""
     designs = (Design(1, 5), Design(1, 20), Design(1, 50), Design(5, 20), Design(30, 2))
     yield ("values of a world", *(design.name for design in designs))
     for shape in SHAPES:
@@ -184,7 +185,7 @@ def shape_rows(tables: int) -> Iterator[Row]:
 
 
 def table_rows(tables: int) -> Iterator[Row]:
-    """False alarms of whole tables of equal entries."""
+    """Yield false alarms of whole tables of equal entries."""
     yield ("crowd", "entries", "scenarios × worlds", *(f"{p:g}" for p in CHANCES))
     for crowd, entries, design in product(CROWDS[2:4], (3, 10), (Design(1, 20), Design(5, 20))):
         shares = [table_alarms(entries, design, p, crowd, tables // 2) for p in CHANCES]
@@ -192,7 +193,7 @@ def table_rows(tables: int) -> Iterator[Row]:
 
 
 def power_rows(tables: int) -> Iterator[Row]:
-    """Sign flips of all worlds, then the leaderboard's inference, on the same values."""
+    """Yield power by sign flips of all worlds, and by the leaderboard, on the same values."""
     yield (
         "crowd", "scenarios × worlds", "A", "B", "alone: flips", "now", f"one of {FAMILY}: flips",
         "now",

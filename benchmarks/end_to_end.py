@@ -1,7 +1,7 @@
-"""The command line as its users run it: episodes a second, and how long it takes to start.
+"""The command line as users run it: episodes per second, and the time to start.
 
-Whole processes from outside. Episodes a second is measured as the difference of a
-long and a short run, and once with the start included.
+Whole processes are timed from outside. Episodes per second include the start. The time of the
+first compilation is the difference of a first and a second short run.
 """
 
 import os
@@ -16,7 +16,7 @@ COMMAND = [str(Path(sys.executable).with_name("benchnav"))]
 
 
 def measure() -> list[dict[str, object]]:
-    """Rows: episodes a second with `orca`, `--help`, the first compilation."""
+    """Return rows: episodes per second with `orca`, time of `--help`, and first compilation."""
     with tempfile.TemporaryDirectory() as folder:
         fresh = {**os.environ, "XDG_CACHE_HOME": str(Path(folder) / "cache")}
         first = seconds(run(2, Path(folder) / "first"), fresh)
@@ -31,7 +31,7 @@ def measure() -> list[dict[str, object]]:
 
 
 def run(seeds: int, out: Path) -> list[str]:
-    """Arguments of a run of `orca` in `leaders/dynamic`."""
+    """Return the arguments of a run of `orca` in `leaders/dynamic`."""
     return [
         "run", "quick", "--scenario", "leaders/dynamic", "--navigator", "orca",
         "--seeds", str(seeds), "--out", str(out), "--quiet",
@@ -39,14 +39,14 @@ def run(seeds: int, out: Path) -> list[str]:
 
 
 def seconds(arguments: list[str], environment: dict[str, str]) -> float:
-    """Wall-clock time of one process."""
+    """Return the wall-clock time [s] of one process."""
     began = perf_counter()
     subprocess.run([*COMMAND, *arguments], env=environment, check=True, capture_output=True)
     return perf_counter() - began
 
 
 def row(name: str, value: float, unit: str, wanted: float, less: bool = False) -> dict[str, object]:
-    """One measured figure; its ratio to what is wanted is above 1 where that is reached."""
+    """Return one row; its ratio is at least 1 if ``wanted`` is reached."""
     ratio = wanted / value if less else value / wanted
     return {"name": name, "value": value, "unit": unit, "wanted": wanted, "ratio": ratio}
 

@@ -1,7 +1,8 @@
-"""What it costs to put a navigator into a process of its own: agents' decisions a second.
+"""The cost of a navigator in a separate process: agents' decisions per second.
 
-The same worlds in-process and isolated, in turns in one run, processes and kernels warm;
-the simulation is in both. The best of several turns each: the rest is other processes'.
+The same worlds are run in-process and isolated, in turns within one run, with warm processes
+and kernels; both include the simulation. The best of several turns counts, because other
+processes slow down the others.
 """
 
 from dataclasses import replace
@@ -13,7 +14,7 @@ from benchnav.runner.rollouts.rollout import Assignment, Seeded, rollout
 from benchnav.scenario.catalogue import find
 
 TURNS = 5
-CASES = (  # navigator, scenario, worlds, least share of the rate in-process that is wanted
+CASES = (  # navigator, scenario, worlds, wanted ratio to the in-process rate
     ("orca", "leaders/dynamic", 64, 0.8),
     ("recurrent-ppo", "leaders/dynamic", 64, 0.8),
     ("orca", "bottleneck/door", 16, 0.8),
@@ -22,7 +23,7 @@ CASES = (  # navigator, scenario, worlds, least share of the rate in-process tha
 
 
 def measure() -> list[dict[str, object]]:
-    """A row for each case: the rate isolated, against the rate in-process."""
+    """Return a row for each case: the isolated rate, and the in-process rate as its peer."""
     rows = []
     for navigator, name, count, wanted in CASES:
         scenario = find(name)
@@ -47,7 +48,7 @@ def measure() -> list[dict[str, object]]:
 
 
 def rate(assignment: Assignment, worlds: list[Seeded]) -> float:
-    """Agents' decisions a second."""
+    """Return agents' decisions per second."""
     began = perf_counter()
     episodes = [e for batch in rollout(assignment, worlds) for e in batch]
     seconds = perf_counter() - began

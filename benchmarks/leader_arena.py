@@ -1,8 +1,8 @@
 """Leader arena: 7 thick rays and a step with contacts, 1,024 worlds of `leaders/dynamic`.
 
-Four unicycles a world drive at random. Contacts block and slide instead of ending an
+Four unicycles per world drive at random. Contacts block and slide instead of ending an
 attempt, so that all stay active among walls, cubes and movers; only active agents count.
-What is timed is sensing and stepping.
+Sensing and stepping are timed.
 """
 
 from dataclasses import replace
@@ -17,12 +17,12 @@ from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
 
 WORLDS, DRAWN, STEPS, ROUNDS = 1024, 128, 25, 7
-WANTED = 1e6  # agent-steps a second
+WANTED = 1e6  # agent-steps per second
 RAYS = frozenset({"rays"})
 
 
 def measure() -> list[dict[str, object]]:
-    """One row: agent-steps a second, the best of some rounds."""
+    """Return one row: agent-steps per second, the best of `ROUNDS`."""
     scenario = find("leaders/dynamic")
     drawn = [sliding(build(scenario, "train", seed)) for seed in range(DRAWN)]
     worlds = [drawn[k % DRAWN] for k in range(WORLDS)]
@@ -37,12 +37,12 @@ def measure() -> list[dict[str, object]]:
 
 
 def sliding(world: World) -> World:
-    """The same world, in which a contact ends nothing."""
+    """Return the same world with agents that slide after a contact."""
     return replace(world, rules=replace(world.rules, contact=ContactRule.SLIDE))
 
 
 def rate(simulation: Simulation, rng: np.random.Generator) -> float:
-    """Agent-steps a second over STEPS steps of random driving."""
+    """Return agent-steps per second over STEPS steps of random driving."""
     chosen = np.tile(np.arange(simulation.A), (simulation.B, 1))
     twist = np.ones(chosen.shape, np.bool_)
     seconds, steps = 0.0, 0

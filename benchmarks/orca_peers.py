@@ -1,14 +1,14 @@
 """ORCA crowd: sensing + ORCA + step of benchnav against the ORCA of its peers, side by side.
 
-A thousand agents on a circle of 100 m change places, each heeding the nearest ten
-others within 10 m, time step 0.25 s. What is timed, after the same warm-up of 20 steps:
+A thousand agents on a circle of 100 m exchange places. Each avoids the nearest ten
+others within 10 m; the time step is 0.25 s. The timed part, after the same warm-up of 20 steps:
 
-- benchnav: observation (sensing), decision (`orca` as it ships) and simulator step,
-  contacts included, with everything that the runner does between them;
-- pyrvo: `do_step` alone, without the Python loop that sets preferred velocities;
+- benchnav: observation (sensing), decision (`orca` with its defaults) and simulator step,
+  with contacts and all work of the runner between them;
+- pyrvo: only `do_step`, without the Python loop that sets preferred velocities;
 - navground: the update of a world of ORCA agents.
 
-Every measurement runs in an interpreter of its own; the parts take turns, and the
+Every measurement runs in a separate interpreter; the parts run in turns, and the
 best of three rounds counts. ``python -m benchmarks.orca_peers PEERS_PYTHON`` prints
 the rows; PEERS_PYTHON is an interpreter that has pyrvo and navground.
 """
@@ -32,13 +32,13 @@ Places = list[tuple[float, float]]
 
 
 def places() -> Places:
-    """Where the agents start; their goals are opposite."""
+    """Return the starts of the agents; their goals are opposite."""
     angles = [2.0 * math.pi * k / AGENTS for k in range(AGENTS)]
     return [(CIRCLE * math.cos(a), CIRCLE * math.sin(a)) for a in angles]
 
 
 def benchnav() -> float:
-    """Seconds of STEPS steps."""
+    """Return the time of STEPS steps [s]."""
     import numpy as np
 
     from benchnav.navigation.plugin.configure import make
@@ -60,7 +60,7 @@ def benchnav() -> float:
 
 
 def crowd_world() -> Any:
-    """The circle as a world without walls."""
+    """Return the circle as a world without walls."""
     import numpy as np
 
     from benchnav.arena.agents import Agents
@@ -83,7 +83,7 @@ def crowd_world() -> Any:
 
 
 def pyrvo() -> float:
-    """Seconds of STEPS steps."""
+    """Return the time of STEPS steps [s]."""
     from pyrvo import RVOSimulator
 
     simulator, start = RVOSimulator(), places()
@@ -106,7 +106,7 @@ def pyrvo() -> float:
 
 
 def navground() -> float:
-    """Seconds of STEPS steps."""
+    """Return the time of STEPS steps [s]."""
     from navground import core, sim
 
     world = sim.World()
@@ -146,10 +146,10 @@ def answer(part: str) -> dict[str, Any]:
 
 
 def ask(python: str, part: str) -> dict[str, Any]:
-    """Run one part in an interpreter of its own.
+    """Run one part in a separate interpreter.
 
-    It runs as a module: the folder of a script comes first on the path, where a file of
-    ours may have the name of a package that a library imports.
+    It runs as a module: the folder of a script would be first on the path, and one of our files
+    may have the name of a package that a library imports.
     """
     command = [python, "-m", "benchmarks.orca_peers", "--part", part]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
@@ -161,10 +161,10 @@ def ask(python: str, part: str) -> dict[str, Any]:
 
 
 def measure(peers_python: str) -> list[dict[str, Any]]:
-    """One row for each part: agent-steps per second, and the ratio of benchnav's to it.
+    """Return a row for each part: agent-steps per second, and the ratio of benchnav to it.
 
     Rows have ``name``, ``version``, ``agent_steps_per_second``, ``ratio`` and ``wanted``
-    (the ratio to reach), or ``name`` and ``skipped`` (why).
+    (the ratio to reach), or ``name`` and ``skipped`` (the reason).
     """
     pythons = {"benchnav": sys.executable, "pyrvo": peers_python, "navground": peers_python}
     rounds: dict[str, list[dict[str, Any]]] = {part: [] for part in PARTS}

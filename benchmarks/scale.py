@@ -1,8 +1,8 @@
-"""What a thousand navigators × scenarios × seeds would cost: ``python -m benchmarks.scale``.
+"""The cost of a thousand navigators × scenarios × seeds: ``python -m benchmarks.scale``.
 
-Every cell of a suite is run in this process on one thread, once to warm caches with few seeds
-and then in full; the processor's time (which a busy machine hardly changes) and
-the bytes of the run folder are taken for each navigator. Prices are arguments.
+Every cell of a suite is run in this process on one thread, first with few seeds to warm caches
+and then in full. For each navigator, the processor time (which hardly depends on the load of the
+machine) and the bytes of the run folder are measured. Prices are arguments.
 """
 
 import argparse
@@ -15,7 +15,7 @@ from pathlib import Path
 from time import process_time
 
 for name in ("BENCHNAV", "NUMBA_NUM", "OMP_NUM", "OPENBLAS_NUM", "MKL_NUM"):
-    os.environ[f"{name}_THREADS"] = "1"  # before anything reads it
+    os.environ[f"{name}_THREADS"] = "1"  # before any import reads it
 
 from benchnav.runner.plan.suite import Selection, load_suite  # noqa: E402
 from benchnav.runner.run import run_suite  # noqa: E402
@@ -26,7 +26,7 @@ HOURS = 3600.0
 
 @dataclass(frozen=True)
 class Cost:
-    """Of one navigator, mean over scenarios."""
+    """The cost of one navigator, mean over scenarios."""
 
     navigator: str
     seconds: float  # of one core for an episode: drawing, running, measuring, storing
@@ -34,6 +34,7 @@ class Cost:
 
 
 def measure(suite: str, seeds: int) -> list[Cost]:
+    """Run the suite, and return the cost of each navigator."""
     costs = []
     whole = load_suite(suite)
     for entry in whole.entries:
@@ -64,19 +65,19 @@ def processor() -> str:
 
 
 def main() -> None:
-    """Measure and compute."""
+    """Measure, and print the projected cost."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--suite", default="quick")
     parser.add_argument("--seeds", type=int, default=64)
     parser.add_argument("--core-hour", type=float, default=0.0408, help="[$]")
     parser.add_argument("--gb-month", type=float, default=0.0186, help="[$]")
-    asked = parser.parse_args()
-    costs = measure(asked.suite, asked.seeds)
+    arguments = parser.parse_args()
+    costs = measure(arguments.suite, arguments.seeds)
     mean = Cost(
         "all alike", statistics.mean(c.seconds for c in costs),
         statistics.mean(c.bytes for c in costs),
     )  # fmt: skip
-    print(f"\n{asked.suite}, {asked.seeds} seeds a cell, one thread of {processor()}\n")
+    print(f"\n{arguments.suite}, {arguments.seeds} seeds a cell, one thread of {processor()}\n")
     print("| navigator | core-seconds | kB | core-years | TB | computing | storing, a month |")
     print("| --- | ---: | ---: | ---: | ---: | ---: | ---: |")
     for cost in (*costs, mean):
@@ -84,8 +85,8 @@ def main() -> None:
         terabytes = cost.bytes * EPISODES / 1e12
         print(
             f"| {cost.navigator} | {cost.seconds:.4f} | {cost.bytes / 1e3:.1f}"
-            f" | {hours / 8766:.1f} | {terabytes:.1f} | ${hours * asked.core_hour:,.0f}"
-            f" | ${terabytes * 1e3 * asked.gb_month:,.0f} |"
+            f" | {hours / 8766:.1f} | {terabytes:.1f} | ${hours * arguments.core_hour:,.0f}"
+            f" | ${terabytes * 1e3 * arguments.gb_month:,.0f} |"
         )
 
 

@@ -1,11 +1,11 @@
-"""One registry over entry points: lazy, collision-safe, and honest about what is broken.
+"""One registry over entry points: lazy, safe against collisions, and clear about broken plugins.
 
-Names are read from installed distributions without importing code of plugins. What ships
-with benchnav is registered through the same entry points as anybody's plugin; its metrics
-by module, each of which is imported for the names of those that it holds. A
-script or notebook registers with a decorator, and ``module:attribute`` is accepted
-wherever a name is. A kind may name its contract, by which plugins of the wrong type are
-found: it is a function of a higher layer, loaded by its name as plugins are.
+Names are read from installed distributions without importing code of plugins. Plugins of
+benchnav are registered through the same entry points as others, except that an entry point of
+its metrics is a module, which is imported to find the names of its metrics. A script or notebook
+registers a plugin with a decorator, and ``module:attribute`` is accepted wherever a name is. A kind
+of plugin may have a contract, which detects plugins of the wrong type: a function of a higher
+layer, which is loaded by its name as plugins are.
 """
 
 import sys
@@ -27,12 +27,12 @@ from benchnav.errors import (
 from benchnav.named_module import load_by_module
 
 T = TypeVar("T")
-_LONGEST = 500  # letters of what an exception says
+_LONGEST = 500  # characters of the text of an exception
 
 
 @dataclass(frozen=True)
 class Source:
-    """Where a name comes from."""
+    """The origin of a name."""
 
     name: str
     distribution: str  # "benchnav 0.1.0", or "registered in this process"
@@ -40,28 +40,28 @@ class Source:
 
     @property
     def is_own(self) -> bool:
-        """Whether it is part of benchnav itself, and no code of a plugin."""
+        """Whether the plugin is part of benchnav itself."""
         ours = self.distribution.partition(" ")[0] == "benchnav"
         return ours and self.value.startswith("benchnav.")
 
 
 @dataclass
 class Registry:
-    """Names of one kind of plugin → what they stand for."""
+    """The plugins of one kind, by name."""
 
     group: str  # entry-point group, "benchnav.navigators"
     kind: str  # "navigator", for messages
-    contract: str = ""  # "module:function": (name, plugin) -> what it must be; "" if it is that
-    members: str = ""  # "module:function": (module) -> {name: attribute} of what a module holds
+    contract: str = ""  # "module:function": (name, plugin) -> the violated rule, or ""
+    members: str = ""  # "module:function": (module) -> {name: attribute} of plugins in a module
     _local: dict[str, tuple[Any, str]] = field(default_factory=dict)
     _found: dict[str, list[Source]] | None = None
-    _path: list[str] = field(default_factory=list)  # in which they were found
+    _path: list[str] = field(default_factory=list)  # sys.path when they were found
 
     def register(self, name: str) -> Callable[[T], T]:
-        """Decorator that registers in this process only.
+        """Return a decorator that registers a plugin in this process only.
 
-        Raises PluginConflictError where the name is taken by something else, and PluginError
-        where the name or the plugin is one that a run would refuse.
+        Raises PluginConflictError if another plugin has the name, and PluginError if a run would
+        refuse the name or the plugin.
         """
         if not isinstance(name, str) or not name.strip() or ":" in name:
             raise PluginError(
@@ -83,43 +83,43 @@ class Registry:
         return decorate
 
     def replace(self, name: str, thing: Any) -> None:
-        """Register ``thing`` in this process, in place of what this process registered before.
+        """Register ``thing`` in this process; replace a plugin that this process registered before.
 
-        Raises PluginConflictError where an installed plugin has the name.
+        Raises PluginConflictError if an installed plugin has the name.
         """
         self._local.pop(name, None)
         self.register(name)(thing)
 
     def names(self) -> list[str]:
-        """Every name, sorted, without importing any plugin."""
+        """Return all names, sorted, without importing any plugin."""
         return sorted({*self._entries(), *self._local})
 
     def __contains__(self, name: str) -> bool:
         return name in self._local or name in self._entries()
 
     def is_local(self, name: str) -> bool:
-        """True where ``name`` is known in this process alone."""
+        """Whether ``name`` is registered in this process only."""
         return name in self._local
 
     def registered(self, value: str) -> Any:
-        """Return what was registered in this process and is defined at ``value``; else None."""
+        """Return the plugin of this process that is defined at ``value``; None if there is none."""
         return next((thing for thing, place in self._local.values() if place == value), None)
 
     def registrations(self) -> "list[Registration]":
-        """Return all that was registered in this process."""
+        """Return all registrations of this process."""
         return [(self.group, name, value) for name, (_, value) in self._local.items()]
 
     def adopt(self, name: str, value: str) -> None:
-        """Register what stands at ``value``, as another process did; nothing if it is not there."""
+        """Register the plugin at ``value``, as another process did; ignore it if it is broken."""
         with suppress(BrokenPluginError):
             self._local[name] = (self._load_by_module(value), value)
 
     def sources(self) -> list[Source]:
-        """Every entry point of the group, without importing anything."""
+        """Return all entry points of the group, without importing any plugin."""
         return [source for claims in self._entries().values() for source in claims]
 
     def source(self, name: str) -> Source:
-        """Where ``name`` comes from."""
+        """Return the origin of ``name``. Raises as `load` for an unknown name or a conflict."""
         if name in self._local:
             return Source(name, "registered in this process", self._local[name][1])
         if ":" in name and name not in self._entries():
@@ -127,7 +127,7 @@ class Registry:
         return self._entry(name)
 
     def load(self, name: str) -> Any:
-        """What ``name`` stands for.
+        """Return the plugin that is registered as ``name``.
 
         Raises:
             UnknownPluginError: no such name.
@@ -143,14 +143,14 @@ class Registry:
             thing = EntryPoint(name, entry.value, self.group).load()
         except (Exception, SystemExit) as error:
             raise BrokenPluginError(
-                f"The {self.kind} {name!r} cannot be used: {_said(error)}"
+                f"The {self.kind} {name!r} cannot be used: {_exception_text(error)}"
                 f" (while importing {entry.value}, from {entry.distribution})."
             ) from error
         self._require_contract(name, thing, f"{entry.value}, from {entry.distribution}")
         return thing
 
     def broken(self) -> Iterator[tuple[str, str]]:
-        """(name, cause) of every plugin that cannot be loaded. Imports everything."""
+        """Yield (name, cause) of each plugin that cannot be loaded. Imports all plugins."""
         for name in self.names():
             try:
                 self.load(name)
@@ -168,7 +168,7 @@ class Registry:
         return self._found
 
     def _sources(self, entry: EntryPoint) -> list[Source]:
-        """What an entry point stands for; a whole module, of benchnav itself, for all it holds.
+        """Return the sources of an entry point; a module of benchnav itself holds several.
 
         A module of a plugin is not imported for its names: it must name its plugins one by one.
         """
@@ -178,7 +178,7 @@ class Registry:
         try:
             held = _function(self.members)(import_module(entry.module))
         except Exception:
-            return [source]  # loading it tells why
+            return [source]  # `load` reports the cause
         return [
             Source(name, source.distribution, f"{entry.module}:{attribute}")
             for name, attribute in held.items()
@@ -201,8 +201,8 @@ class Registry:
         try:
             thing = load_by_module(name)
         except (Exception, SystemExit) as error:
-            told = str(error) if isinstance(error, PluginError) else f"{_said(error)}."
-            raise BrokenPluginError(f"The {self.kind} {name!r} cannot be used: {told}") from error
+            text = str(error) if isinstance(error, PluginError) else f"{_exception_text(error)}."
+            raise BrokenPluginError(f"The {self.kind} {name!r} cannot be used: {text}") from error
         self._require_contract(name, thing, _value(thing))
         return thing
 
@@ -223,13 +223,13 @@ class Registry:
 
 
 def _value(thing: Any) -> str:
-    """Where a plugin was written; a metric was where its function was."""
+    """Return the place, module:attribute, of a plugin; for a metric, the place of its function."""
     named = thing if hasattr(thing, "__qualname__") else getattr(thing, "function", thing)
     return f"{getattr(named, '__module__', '?')}:{getattr(named, '__qualname__', named)}"
 
 
 def _function(place: str) -> Any:
-    """The function ``module:function`` of a higher layer."""
+    """Return the function ``module:function`` of a higher layer."""
     module, _, function = place.partition(":")
     return getattr(import_module(module), function)
 
@@ -241,10 +241,10 @@ def _kind_of(thing: Any) -> str:
     return f"the {type(thing).__name__} {called}" if called else f"a {type(thing).__name__}"
 
 
-def _said(error: BaseException) -> str:
+def _exception_text(error: BaseException) -> str:
     try:
         return f"{type(error).__name__}: {error}"[:_LONGEST]
-    except BaseException:  # its text is code of the plugin too
+    except BaseException:  # str(error) may run code of the plugin
         return type(error).__name__
 
 
@@ -255,7 +255,7 @@ def _source(entry: EntryPoint) -> Source:
 
 @cache
 def _owner(dist: Distribution) -> str:
-    """Name and version; both parse the metadata anew, which takes a millisecond."""
+    """Return name and version. Cached: each access parses the metadata again, which takes 1 ms."""
     return f"{dist.name} {dist.version}"
 
 
@@ -277,12 +277,12 @@ Registration = tuple[str, str, str]
 
 
 def registrations() -> list[Registration]:
-    """Return what was registered in this process, of every kind that episodes are made with."""
+    """Return the registrations of this process, of all kinds of plugins that episodes need."""
     return [one for registry in _FOR_WORKERS for one in registry.registrations()]
 
 
 def adopt(registrations: Iterable[Registration]) -> None:
-    """Register what another process did, as far as it can be imported here."""
+    """Register the plugins of another process that can be imported here."""
     by_group = {registry.group: registry for registry in _FOR_WORKERS}
     for group, name, value in registrations:
         by_group[group].adopt(name, value)

@@ -20,98 +20,6 @@ HEADLESS = re.compile(r"(?:^|[.:;!?]\s+)(Who|What)\b[^.?!]*(?P<end>[.?!]|$)")
 # Keys of stored files, which keep their old names: (file, name).
 KEYS_ON_DISK = {("benchnav/store/runs/manifest_schema.py", "says")}
 
-# Modules that still await their rewrite. Shorten this list; never lengthen it.
-EXCEPTIONS: tuple[str, ...] = (
-    "baselines/learned/q_learning/recipe.py",
-    "benchmarks/isolation.py",
-    "benchmarks/leader_arena.py",
-    "benchmarks/orca_peers.py",
-    "benchmarks/scale.py",
-    "benchnav/cli/running/pack.py",
-    "benchnav/cli/running/train.py",
-    "benchnav/cli/viewing/inspection.py",
-    "benchnav/envs/agent_batch.py",
-    "benchnav/envs/autoreset.py",
-    "benchnav/envs/background_agents.py",
-    "benchnav/envs/encoders/encoder.py",
-    "benchnav/envs/encoders/surround.py",
-    "benchnav/envs/gym/leader_env.py",
-    "benchnav/envs/gym/spaces.py",
-    "benchnav/envs/parallel_env.py",
-    "benchnav/envs/trainer.py",
-    "benchnav/leaderboard/caveats.py",
-    "benchnav/leaderboard/columns.py",
-    "benchnav/leaderboard/remarks.py",
-    "benchnav/leaderboard/rendering/curve_table.py",
-    "benchnav/leaderboard/rendering/knowledge_gap_table.py",
-    "benchnav/leaderboard/rendering/layout.py",
-    "benchnav/leaderboard/rendering/matrix.py",
-    "benchnav/leaderboard/rendering/prose.py",
-    "benchnav/leaderboard/statistics/not_comparable.py",
-    "benchnav/leaderboard/table.py",
-    "benchnav/metrics/compute.py",
-    "benchnav/metrics/congestion.py",
-    "benchnav/metrics/following.py",
-    "benchnav/metrics/groups.py",
-    "benchnav/metrics/page.py",
-    "benchnav/metrics/quantities/encounters.py",
-    "benchnav/metrics/quantities/trajectory.py",
-    "benchnav/metrics/success.py",
-    "benchnav/navigation/__init__.py",
-    "benchnav/navigation/agent_view.py",
-    "benchnav/navigation/briefing.py",
-    "benchnav/navigation/command_check.py",
-    "benchnav/navigation/controller.py",
-    "benchnav/navigation/hierarchy/composition.py",
-    "benchnav/navigation/hierarchy/hierarchical.py",
-    "benchnav/navigation/hierarchy/hierarchical_config.py",
-    "benchnav/navigation/hierarchy/learned_map.py",
-    "benchnav/navigation/hierarchy/mapping.py",
-    "benchnav/navigation/hierarchy/plan_log.py",
-    "benchnav/navigation/hierarchy/replanning.py",
-    "benchnav/navigation/navigator.py",
-    "benchnav/navigation/observation.py",
-    "benchnav/navigation/planner.py",
-    "benchnav/navigation/plugin/capabilities.py",
-    "benchnav/navigation/plugin/configure.py",
-    "benchnav/navigation/plugin/contract.py",
-    "benchnav/navigation/plugin/guarded_capabilities.py",
-    "benchnav/navigation/plugin/plugin_process.py",
-    "benchnav/navigation/randomness/briefing_seed.py",
-    "benchnav/navigation/rehearsal.py",
-    "benchnav/navigation/row_table.py",
-    "benchnav/navigation/tracks.py",
-    "benchnav/plugins.py",
-    "benchnav/runner/conclusion.py",
-    "benchnav/runner/execute/plugin_metrics.py",
-    "benchnav/runner/execute/progress.py",
-    "benchnav/runner/plan/contestant.py",
-    "benchnav/runner/plan/installed_differences.py",
-    "benchnav/runner/plan/job.py",
-    "benchnav/runner/plan/limits.py",
-    "benchnav/runner/plan/prepare.py",
-    "benchnav/runner/plan/renewal.py",
-    "benchnav/runner/plan/shard.py",
-    "benchnav/runner/plan/source_check.py",
-    "benchnav/runner/plan/suite.py",
-    "benchnav/runner/plan/suite_file.py",
-    "benchnav/runner/plan/task.py",
-    "benchnav/runner/rollouts/latency.py",
-    "benchnav/runner/rollouts/navigator_driver.py",
-    "benchnav/runner/rollouts/rehearsal.py",
-    "benchnav/runner/rollouts/rollout.py",
-    "benchnav/runner/rollouts/seeding.py",
-    "benchnav/runner/rollouts/tamper_guard.py",
-    "benchnav/runner/run.py",
-    "benchnav/testing/check_controller.py",
-    "benchnav/testing/check_metric.py",
-    "benchnav/testing/check_navigator.py",
-    "benchnav/testing/check_planner.py",
-    "benchnav/testing/episodes.py",
-    "benchnav/testing/observations.py",
-    "benchnav/testing/requirement.py",
-)
-
 
 def modules() -> list[Path]:
     """Return all modules that the rules apply to."""
@@ -186,20 +94,9 @@ def test_plain_english_passes(source: str) -> None:
 
 
 def test_code_is_written_in_plain_english() -> None:
-    skipped = {path for pattern in EXCEPTIONS for path in ROOT.glob(pattern)}
     lines = [
         f"{path.relative_to(ROOT)}:{line}: {problem}"
         for path in modules()
-        if path not in skipped
         for line, problem in problems_of(path)
     ]
     assert not lines, "Rewrite these by the rules in CONTRIBUTING.md:\n" + "\n".join(lines)
-
-
-def test_exceptions_are_still_needed() -> None:
-    clean = [
-        pattern
-        for pattern in EXCEPTIONS
-        if not any(problems_of(path) for path in ROOT.glob(pattern))
-    ]
-    assert not clean, f"These modules are clean. Remove from EXCEPTIONS: {', '.join(clean)}"

@@ -1,1 +1,1 @@
-"""One file per verb."""
+"""The command `benchnav`, with one file per verb."""

@@ -1,4 +1,4 @@
-"""Where words go: results to stdout, talk to stderr."""
+"""Output of the command: results to stdout, messages to stderr."""
 
 import sys
 from enum import StrEnum
@@ -17,10 +17,11 @@ E = TypeVar("E", bound=StrEnum)
 
 
 def put(text: str, safe: bool = False) -> None:
-    """Print a result. Characters that control a terminal are marked, unless ``safe`` says that
-    all of them are our own. Raises StoreError where it cannot be written.
+    """Print a result to stdout. Raises StoreError if it cannot be written.
 
-    A reader that leaves early has seen enough: the rest is dropped, and the work goes on.
+    Control characters of terminals are made visible, unless ``safe``: the text then contains only
+    our own. If the reader of a pipe closes it early, the rest of the output is dropped without an
+    error.
     """
     try:
         sys.stdout.write((text if safe else visible_lines(text)) + "\n")
@@ -35,7 +36,7 @@ def put(text: str, safe: bool = False) -> None:
 
 
 def deliver(text: str, out: Path | None) -> None:
-    """A result to stdout, or to a file where one is named."""
+    """Write a result to the file ``out``, or to stdout if it is None."""
     if out is None:
         put(text.rstrip("\n"))
     else:
@@ -43,13 +44,13 @@ def deliver(text: str, out: Path | None) -> None:
         say(f"{out} is written")
 
 
-def one_of(kinds: type[E], what: str, text: str) -> E:
-    """Return the member of ``kinds`` called ``text``. Raises UsageError if there is none."""
+def one_of(kinds: type[E], name: str, text: str) -> E:
+    """Return the member of ``kinds`` with value ``text``; raises UsageError if there is none."""
     try:
         return kinds(text)
     except ValueError:
         known = [kind.value for kind in kinds]
         raise UsageError(
-            f"{what} must be one of {', '.join(known)}. Got {text!r} instead."
+            f"{name} must be one of {', '.join(known)}. Got {text!r} instead."
             f"{did_you_mean(text, known)}"
         ) from None

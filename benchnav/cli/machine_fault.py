@@ -8,16 +8,16 @@ _CURES = {
     errno.ENOMEM: "Allow this process more memory (ulimit -v), or give fewer --workers.",
     errno.EAGAIN: "Allow this user more processes (ulimit -u), or give fewer --workers.",
 }
-_NO_THREAD = "can't start new thread"  # all that tells Python's error from others of its class
+_NO_THREAD = "can't start new thread"  # distinguishes it from other RuntimeErrors
 
 
 def machine_fault(error: BaseException) -> str:
-    """Return the sentence for an error that is the machine's; "" for any other."""
+    """Return the sentence for an error of the machine; "" for any other error."""
     if isinstance(error, MemoryError):
         return f"Memory is short. {_CURES[errno.ENOMEM]}"
     if isinstance(error, RuntimeError) and str(error) == _NO_THREAD:
         return f"No further thread can be started. {_CURES[errno.EAGAIN]}"
-    if isinstance(error, ImportError):  # of a library that cannot be mapped, or is not whole
+    if isinstance(error, ImportError):  # a library is incomplete or does not fit
         return (
             f"{error}. Allow this process more memory and files (ulimit -v, -n), or install again."
         )

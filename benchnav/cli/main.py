@@ -1,4 +1,4 @@
-"""The command `benchnav`: one verb a file, nothing heavy imported before a verb needs it."""
+"""The command `benchnav`: one file per verb; heavy imports wait until a verb needs them."""
 
 import sys
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from benchnav.cli.running.pack import pack
 from benchnav.cli.running.run import run
 from benchnav.cli.running.train import train
 from benchnav.cli.running.verify import verify
-from benchnav.cli.stopping import stop_on_signals, stoppable, tell
+from benchnav.cli.stopping import report_stop, stop_on_signals, stoppable
 from benchnav.cli.tables.compare import compare
 from benchnav.cli.tables.leaderboard import leaderboard
 from benchnav.cli.viewing.doctor import doctor
@@ -37,8 +37,8 @@ from benchnav.navigation.plugin.trace import notes, trace
 from benchnav.system.streams import drop, prepare_streams
 
 DEBUG = "--debug"
-_Usage: type[Any] = typer.BadParameter.mro()[2]  # click's, which typers carry in changing places
-_ASKED_WRONGLY = (
+_Usage: type[Any] = typer.BadParameter.mro()[2]  # click's UsageError; typer moves its module
+_USAGE_ERRORS = (
     UsageError, InputError, PluginError, UnsolvableError, MissingExtraError, NoRunError,
 )  # fmt: skip
 
@@ -46,7 +46,7 @@ app = typer.Typer(
     name="benchnav",
     help="Crowd navigation in unknown and dynamic environments: every method measured alike.",
     epilog=(
-        "Exit status: 0 done, 1 the work failed, 2 asked wrongly, 130 interrupted (143 by SIGTERM,"
+        "Exit status: 0 done, 1 the work failed, 2 wrong usage, 130 interrupted (143 by SIGTERM,"
         " 129 by SIGHUP)."
     ),
     no_args_is_help=True,
@@ -70,14 +70,14 @@ app.add_typer(new_app, name="new")
 app.command("doctor")(stoppable(doctor))
 
 
-def _version(asked: bool) -> None:
-    if asked:
-        put(f"{benchnav.__version__}\n{_made_of()}")
+def _version(requested: bool) -> None:
+    if requested:
+        put(f"{benchnav.__version__}\n{_build_facts()}")
         raise typer.Exit
 
 
-def _made_of() -> str:
-    """Return the commit, where there is one, and the machine that a manifest would name."""
+def _build_facts() -> str:
+    """Return the commit, if known, the processor and the version of Python."""
     from benchnav.store.runs.provenance import commit, processor
 
     code = commit()
@@ -94,23 +94,23 @@ def _options(
     ] = False,
     debug: Annotated[bool, typer.Option(DEBUG, help="Print the traceback of an error.")] = False,
 ) -> None:
-    """The options before a verb."""
+    """Handle the options before a verb."""
 
 
 def status(arguments: Sequence[str]) -> int:
-    """Do what ``arguments`` ask; the exit status."""
+    """Run the command with ``arguments``, and return the exit status."""
     try:
         code = app(list(arguments), standalone_mode=False)
     except BenchnavError as error:
         say(f"benchnav: {error}")
         if DEBUG in arguments:
             say(notes(error) or trace(error))
-        return 2 if isinstance(error, _ASKED_WRONGLY) else 1
+        return 2 if isinstance(error, _USAGE_ERRORS) else 1
     except KeyboardInterrupt as stopped:
-        return tell(stopped)
+        return report_stop(stopped)
     except typer.Abort as aborted:
-        return tell(aborted.__cause__)
-    except SystemExit as left:  # typer's: after completion, or where a reader of the help left
+        return report_stop(aborted.__cause__)
+    except SystemExit as left:  # after completion, or if the reader of the help left
         return 0 if left.code in (0, None) or isinstance(left.__context__, BrokenPipeError) else 1
     except (OSError, MemoryError, ImportError, RuntimeError) as error:
         if not (sentence := machine_fault(error)):
@@ -127,7 +127,7 @@ def status(arguments: Sequence[str]) -> int:
 
 
 def main() -> None:
-    """Entry point of the command."""
+    """Run the command: its entry point."""
     prepare_streams()
     stop_on_signals()
     raise SystemExit(status(sys.argv[1:]))

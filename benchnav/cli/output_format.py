@@ -14,10 +14,10 @@ SUFFIXES = {
 def out_format(
     formats: Sequence[str], format: str | None, out: Path | None, pictures: Sequence[str] = ()
 ) -> str:
-    """Return the one of ``formats`` to write in; the first where nothing says which.
+    """Return the format of ``formats`` to write; by default the first one.
 
-    A file that ends in one of ``pictures`` has no say: text then goes elsewhere.
-    Raises UsageError for another format, for a suffix that stands for none, and where
+    The suffix of a file that ends in one of ``pictures`` has no influence, because text then goes
+    to stdout. Raises UsageError for an unknown format, for a suffix without a format, and if
     ``format`` and the suffix of ``out`` disagree.
     """
     if format is not None and format not in formats:

@@ -1,4 +1,4 @@
-"""Signals that end the command: in one sentence, in order, with the status of the signal."""
+"""Signals that end the command: an orderly end, one sentence, and the status of the signal."""
 
 import signal
 from collections.abc import Callable
@@ -13,13 +13,13 @@ from benchnav.cli.console import say
 
 P = ParamSpec("P")
 R = TypeVar("R")
-PATIENCE = 3.0  # [s] in which further signals do not disturb the end
+PATIENCE = 3.0  # [s] after a signal during which further signals are ignored
 _ENDING = ("SIGINT", "SIGTERM", "SIGHUP")
 _AGAIN = "the work is not finished. Give the same command again."
 
 
 class Stopped(KeyboardInterrupt):
-    """A signal asks this process to end."""
+    """A signal requests the end of this process."""
 
     def __init__(self, number: int) -> None:
         super().__init__()
@@ -27,7 +27,7 @@ class Stopped(KeyboardInterrupt):
 
 
 def stop_on_signals() -> None:
-    """Raise Stopped in the main thread at each signal that ends, unless it is ignored."""
+    """Raise Stopped in the main thread at each signal of `_ENDING` that is not ignored."""
     quiet_until = 0.0
 
     def stop(number: int, frame: FrameType | None) -> None:
@@ -43,9 +43,9 @@ def stop_on_signals() -> None:
 
 
 def stoppable(verb: Callable[P, R]) -> Callable[P, R]:
-    """Return a verb that says what a signal left, and ends with the signal's exit status.
+    """Return a verb that reports a signal, and ends with the signal's exit status.
 
-    Notes on the exception say what is kept and how to go on.
+    Notes on the exception describe the kept work and how to continue.
     """
 
     @wraps(verb)
@@ -53,13 +53,13 @@ def stoppable(verb: Callable[P, R]) -> Callable[P, R]:
         try:
             return verb(*args, **kwargs)
         except KeyboardInterrupt as stopped:
-            raise typer.Exit(tell(stopped)) from None
+            raise typer.Exit(report_stop(stopped)) from None
 
     return until_stopped
 
 
-def tell(stopped: BaseException | None) -> int:
-    """Say which signal stopped the command, and what now; return the exit status."""
+def report_stop(stopped: BaseException | None) -> int:
+    """Report the signal that stopped the command and its notes; return the exit status."""
     number = stopped.number if isinstance(stopped, Stopped) else signal.SIGINT
     notes = " ".join(getattr(stopped, "__notes__", ())) or _AGAIN
     say(f"Interrupted by {signal.Signals(number).name}: {notes}")

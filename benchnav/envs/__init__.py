@@ -1,6 +1,6 @@
 """Learning environments over the benchmark's own worlds, sensors and contacts.
 
-A name is loaded when it is first used. `benchnav.make_env` makes environments.
+Names are loaded at their first use. `benchnav.make_env` makes environments.
 """
 
 from typing import TYPE_CHECKING

@@ -1,9 +1,9 @@
 """The decision process of every agent of a batch of worlds; all environments are views of it.
 
-A slot is one agent of one row; agents of the scenario's own drivers attempt nothing. When
-its attempt is over (it arrived, touched something, or time ran out) the slot idles,
-unobserved and unrewarded, until the row's last attempt is over; then the row starts again
-with the next world of the pool.
+A slot is one agent of one row; agents that the scenario's own drivers move have no attempts.
+When an attempt is over (the agent arrived, touched something, or time ran out), the slot is
+idle, without observation and reward, until the last attempt of the row is over. Then the row
+starts again with the next world of the pool.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,8 +13,8 @@ import numpy as np
 
 from benchnav.arena.world import Afterwards, ContactRule, World
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
-from benchnav.envs.autoreset import Relay
-from benchnav.envs.background_agents import Instead, Others
+from benchnav.envs.autoreset import AutoresetSimulation
+from benchnav.envs.background_agents import BackgroundCommands, BackgroundNavigator
 from benchnav.envs.collision_probability import collision_probability
 from benchnav.envs.encoders.encoder import Bodies, Encoder, Float32Array
 from benchnav.envs.reward import RewardTerms, RewardWeights, reward_terms
@@ -28,16 +28,16 @@ from benchnav.navigation.plugin.configure import Spec
 
 @dataclass(frozen=True, eq=False)
 class Transition:
-    """What one decision led to, (B, A) each; entries of slots that idled say nothing."""
+    """The results of one decision, (B, A) each; entries of idle slots have no meaning."""
 
-    acted: BoolArray  # attempts that were going on before the decision
+    acted: BoolArray  # attempts that were active before the decision
     reward: FloatArray  # scaled
     terms: RewardTerms  # unscaled
-    arrived: BoolArray  # the attempt ended at the goal, untouched
+    arrived: BoolArray  # the attempt ended at the goal, without a contact
     touched: BoolArray  # the attempt ended in a contact
-    timed_out: BoolArray  # the horizon came first
+    timed_out: BoolArray  # the attempt ended at the horizon
     restarted: BoolArray  # the observation is the first of another world
-    observation: Float32Array  # (B, A, D) after restarts; zero where the slot idles
+    observation: Float32Array  # (B, A, D) after restarts; zero for idle slots
     final: Float32Array  # (B, A, D) before restarts
 
     @property
@@ -47,7 +47,7 @@ class Transition:
 
 
 Correction = Callable[[Observation, Bodies, FloatArray, FloatArray], FloatArray]
-"""(what is seen, bodies, twists (B, A, 2), goal tolerance (B, A) [m]) → twists."""
+"""(observation, bodies, twists (B, A, 2), goal tolerance (B, A) [m]) → twists."""
 
 
 class AgentBatch:
@@ -63,35 +63,37 @@ class AgentBatch:
         correct: Correction | None = None,
         drivers: Sequence[Spec] = (),
     ) -> None:
-        """Nothing is drawn before `reset`.
+        """Prepare the batch. No world is drawn before `reset`.
 
         Args:
             pool: worlds that share clock, rules and sensing.
             rows: B.
-            encoder: of what learners observe.
+            encoder: encodes the observations of the learners.
             weights: of the reward.
-            rng: of the order of worlds, and for the drivers.
-            correct: executes what it makes of the learners' commands; it sees what the
-                encoder needs, and neighbours.
+            rng: for the order of worlds, and for the drivers.
+            correct: changes the learners' commands before their execution; its observation
+                has the needs of the encoder, and neighbours.
             drivers: navigators of the teams that are not evaluated.
 
-        Raises UsageError where no world of the pool has an agent that learns.
+        Raises UsageError if no world of the pool has an agent that learns.
         """
         self.learnable = np.flatnonzero([world.agents.evaluated.any() for world in pool])
         if not len(self.learnable):
             raise UsageError(
                 f"At least one agent must learn. In all {len(pool)} worlds of the pool every"
-                " agent has a driver: leave out `driver` of the team that is to learn."
+                " agent has a driver: leave out `driver` of the team that must learn."
             )
         self.encoder, self.weights, self.correct = encoder, weights, correct
-        self.simulation = Relay([_strict(world) for world in pool], rows)
+        self.simulation = AutoresetSimulation([_strict(world) for world in pool], rows)
         self._rng = rng
         self._queue = np.zeros(0, np.int64)
         self._needs = frozenset(str(need) for need in {*encoder.needs, Need.NEIGHBOURS})
         s = self.simulation
         self._twist = np.ones((s.B, s.A), np.bool_)
         self._drivers = [
-            Others(spec, s, max(int((w.agents.driver == k).sum()) for w in pool), "driver")
+            BackgroundNavigator(
+                spec, s, max(int((w.agents.driver == k).sum()) for w in pool), "driver"
+            )
             for k, spec in enumerate(drivers, 1)
         ]
         self._limits = s.agents  # (B, A) records: max_speed, max_turn_rate, radius
@@ -115,13 +117,13 @@ class AgentBatch:
         return self._encoded(self._observe(self.active))
 
     def reseed(self, rng: np.random.Generator) -> None:
-        """Draw the order of the worlds that are still to come from ``rng``."""
+        """Draw the order of all further worlds from ``rng``."""
         self._rng, self._queue = rng, np.zeros(0, np.int64)
 
-    def step(self, action: AnyArray, instead: Instead | None = None) -> Transition:
-        """Decide. ``action`` (B, A, 2) in [-1, 1]: speed from 0 to the limit, turn rate.
+    def step(self, action: AnyArray, background: BackgroundCommands | None = None) -> Transition:
+        """Execute a decision. ``action`` (B, A, 2) in [-1, 1]: speed from 0 to limit, turn rate.
 
-        Slots in ``instead`` that are active follow what stands there, whatever their action.
+        Active slots in ``background`` execute its commands instead of their action.
         """
         s, acted = self.simulation, self.active.copy()
         before = self._goal_distance()
@@ -130,16 +132,16 @@ class AgentBatch:
             tolerance = np.repeat(s.records["tolerance"][:, None], s.A, axis=1)
             command = self.correct(self._observe(acted), self._bodies, command, tolerance)
         command[~acted] = 0.0
-        for told in (*([] if instead is None else [instead]), *self._driven()):
-            command = np.where(told.who[..., None], told.command, command)
-            twist = np.where(told.who, told.twist, twist)
+        for other in (*([] if background is None else [background]), *self._driven()):
+            command = np.where(other.mask[..., None], other.command, command)
+            twist = np.where(other.mask, other.twist, twist)
         executed = s.step(command, twist)
         arrived = acted & (s.status == int(Status.ARRIVED))
         touched = acted & (s.status == int(Status.ENDED))
         timed_out = acted & ~arrived & ~touched & ~s.running[:, None]
         self.active = acted & ~(arrived | touched | timed_out)
         seen = self._observe(self.active | timed_out)
-        assert seen.neighbours is not None  # noqa: S101 - always asked for
+        assert seen.neighbours is not None  # noqa: S101 - `_needs` contains them
         terms = reward_terms(
             self.weights,
             arrived=arrived,
@@ -184,13 +186,13 @@ class AgentBatch:
             mine = [np.flatnonzero(s.pool[w].agents.driver == k) for w in worlds]
             driver.start(rows, mine, self._rng.spawn(len(rows)))
 
-    def _driven(self) -> list[Instead]:
+    def _driven(self) -> list[BackgroundCommands]:
         s = self.simulation
         acting = s.present & (s.status == int(Status.ACTIVE)) & ~s.agents["evaluated"]
         return [driver.decide(acting) for driver in self._drivers]
 
     def _next(self, count: int) -> IntArray:
-        """The next worlds: every one with learners once in random order, then again in another."""
+        """Return the next worlds, from repeated random orders of all worlds with learners."""
         while len(self._queue) < count:
             again = self._rng.permutation(self.learnable)
             self._queue = np.concatenate([self._queue, again])
@@ -211,6 +213,6 @@ class AgentBatch:
 
 
 def _strict(world: World) -> World:
-    """Strict success allows no contact, so a contact ends the attempt also where it slides."""
+    """Return the world with attempts that end at a contact, because success allows none."""
     rules = replace(world.rules, contact=ContactRule.END, on_end=Afterwards.VANISH)
     return replace(world, rules=rules)

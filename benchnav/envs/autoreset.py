@@ -12,11 +12,11 @@ from benchnav.world.simulation import Simulation, partners
 KINDS = len(Kind)
 
 
-class Relay(Simulation):
+class AutoresetSimulation(Simulation):
     """B rows over a pool of W worlds that share clock, rules and sensing.
 
-    What never changes (walls, shapes, motion laws) is laid out once for the whole pool;
-    a restart copies a few records.
+    Walls, shapes and motion laws never change and are prepared once for the whole pool; a
+    restart copies a few records.
     """
 
     def __init__(self, pool: Sequence[World], rows: int) -> None:
@@ -45,7 +45,7 @@ class Relay(Simulation):
         self.worlds = tuple(held)
 
     def begun(self) -> IntArray:
-        """(B, A, KINDS) collision events that began in the last step, by kind, if charged."""
+        """Return numbers (B, A, KINDS) of charged events that began in the last step, by kind."""
         counts = np.zeros((self.B, self.A, KINDS), np.int64)
         since = (self.records["steps_done"] - 1) * self.records["dt"] - 1e-9  # rounding
         going = (self._opened["code"] >= 0) & (self._opened["start"] >= since[:, None, None])

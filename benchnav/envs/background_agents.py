@@ -1,4 +1,4 @@
-"""Who drives the agents that do not learn: a navigator, told anew whenever a row restarts."""
+"""A navigator for the agents that do not learn; it is reset when a row restarts."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.envs.autoreset import Relay
+from benchnav.envs.autoreset import AutoresetSimulation
 from benchnav.errors import NavigatorError
 from benchnav.navigation.briefing import brief
 from benchnav.navigation.command_check import CallFailed, checked
@@ -18,27 +18,29 @@ from benchnav.plugins import NAVIGATORS
 
 
 @dataclass(frozen=True, eq=False)
-class Instead:
-    """Commands of slots that somebody else than the learner drives, in the simulator's units."""
+class BackgroundCommands:
+    """Commands of the slots that the learner does not drive, in the simulator's units."""
 
-    who: BoolArray  # (B, A)
+    mask: BoolArray  # (B, A) slots with a command
     command: FloatArray  # (B, A, 2) planar velocities [m/s] or twists [m/s, rad/s]
-    twist: bool  # which of the two
+    twist: bool  # the commands are twists
 
 
-class Others:
-    """A navigator that drives some agents of each row; it has the map, as a scenario's drivers do.
+class BackgroundNavigator:
+    """A navigator that drives some agents of each row; like drivers of scenarios, it has the map.
 
     Args:
         spec: the navigator.
         simulation: the rows.
-        at_most: how many agents of a row it drives.
-        blame: what its errors begin with.
+        at_most: largest number of agents of a row that it drives.
+        blame: the first words of its error messages.
 
-    Raises what `benchnav.navigation.plugin.configure.make` raises.
+    Raises the errors of `benchnav.navigation.plugin.configure.make`.
     """
 
-    def __init__(self, spec: Spec, simulation: Relay, at_most: int, blame: str) -> None:
+    def __init__(
+        self, spec: Spec, simulation: AutoresetSimulation, at_most: int, blame: str
+    ) -> None:
         self._blame = f"{blame}={split(NAVIGATORS, spec)[0]!r}"
         self._navigator: Navigator = make(NAVIGATORS, spec)
         self._needs = frozenset(map(str, self._navigator.required))
@@ -49,7 +51,7 @@ class Others:
     def start(
         self, rows: IntArray, mine: Sequence[IntArray], streams: Sequence[np.random.Generator]
     ) -> None:
-        """Brief the navigator for the agents ``mine`` of each of the ``rows`` that began."""
+        """Reset the navigator for the agents ``mine`` of each of the ``rows`` that started."""
         briefings = []
         for row, agents, rng in zip(rows.tolist(), mine, streams, strict=True):
             world = self._simulation.worlds[row]
@@ -66,15 +68,15 @@ class Others:
         if self._mine.shape[1]:
             self._navigator.reset(briefings, rows)
 
-    def decide(self, acting: BoolArray) -> Instead:
-        """What those of ``acting`` (B, A) do now that it drives.
+    def decide(self, acting: BoolArray) -> BackgroundCommands:
+        """Return the commands of the driven agents among ``acting`` (B, A).
 
-        Raises NavigatorError where the navigator answers what is no command.
+        Raises NavigatorError if the navigator returns no valid command.
         """
         row = np.arange(len(acting))[:, None]
         active = (self._mine >= 0) & acting[row, self._mine]
         command = np.zeros((*acting.shape, 2))
-        who = np.zeros_like(acting)
+        mask = np.zeros_like(acting)
         if active.any():
             try:
                 maps = self._maps.now()
@@ -84,5 +86,5 @@ class Others:
                 raise NavigatorError(f"{self._blame}: {failed.reason}.") from None
             world, slot = np.nonzero(active)
             command[world, self._mine[world, slot]] = answer[world, slot]
-            who[world, self._mine[world, slot]] = True
-        return Instead(who, command, self._navigator.command == "twist")
+            mask[world, self._mine[world, slot]] = True
+        return BackgroundCommands(mask, command, self._navigator.command == "twist")

@@ -1,9 +1,9 @@
-"""The probability of colliding with a mover (Eq. 22–24 of the paper), from velocity obstacles.
+"""The probability of a collision with a mover (Eq. 22–24 of the paper), by velocity obstacles.
 
-The agent is shrunk to a point and the mover grown by its radius. Inside the collision
-cone p = min(1, 1/t), where t [s] is the time until the ray of the relative velocity
-meets the grown disc; outside p = 0. Overlap: p = 1. The line of Eq. 22 is read as a
-ray: what is left behind does not count.
+The agent is shrunk to a point, and the mover is grown by the agent's radius. Inside the
+collision cone p = min(1, 1/t), with the time t [s] until the ray of the relative velocity
+meets the grown disc; outside p = 0. For an overlap p = 1. The line of Eq. 22 is read as a
+ray, so movers behind the agent do not count.
 """
 
 import math
@@ -19,7 +19,7 @@ from benchnav.sensors.readings import Neighbours
 
 @kernel
 def probability(x: float, y: float, vx: float, vy: float, reach: float) -> float:
-    """Of one mover at (x, y) [m] from the agent, approached at (vx, vy) [m/s] = v_A − v_B.
+    """Return p of one mover at (x, y) [m] from the agent; (vx, vy) [m/s] = v_A − v_B.
 
     ``reach`` [m] is the sum of the radii.
     """
@@ -34,7 +34,7 @@ def _highest(
     position: FloatArray, velocity: FloatArray, radius: FloatArray, other_position: FloatArray,
     other_velocity: FloatArray, other_radius: FloatArray, counts: BoolArray, out: FloatArray,
 ) -> None:  # fmt: skip
-    """``out`` (N,): the highest over the K others that count."""
+    """Set ``out`` (N,) to the highest probability over the K others in ``counts``."""
     for i in range(len(position)):
         out[i] = 0.0
         for k in range(other_position.shape[1]):
@@ -52,13 +52,13 @@ def _highest(
 def collision_probability(
     position: FloatArray, velocity: FloatArray, radius: FloatArray, seen: Neighbours
 ) -> FloatArray:
-    """(B, A) highest probability over the dynamic obstacles that each agent sees; 0 if none.
+    """Return the highest probability (B, A) over dynamic obstacles in each observation; else 0.
 
     Args:
         position: (B, A, 2) [m].
         velocity: (B, A, 2) [m/s].
         radius: (B, A) [m].
-        seen: what the agents sense; circumscribed radii stand for dynamic obstacles.
+        seen: the sensed neighbours; dynamic obstacles have circumscribed radii.
     """
     K = seen.position.shape[2]
     movers = (seen.kind == int(Kind.DYNAMIC)) & (np.arange(K) < seen.count[..., None])

@@ -1,4 +1,4 @@
-"""Counts of what became of attempts, and sums of the reward's terms."""
+"""Counts of the outcomes of attempts, and sums of the reward's terms."""
 
 from collections import Counter, defaultdict
 from dataclasses import fields
@@ -10,14 +10,14 @@ from benchnav.envs.reward import RewardTerms
 
 
 class Tally:
-    """Adds up until it is taken."""
+    """Statistics since the last call of `take`."""
 
     def __init__(self) -> None:
         self.counts: Counter[str] = Counter()
         self._terms: defaultdict[str, float] = defaultdict(float)
 
     def add(self, step: Transition) -> None:
-        """One decision of a batch."""
+        """Add one decision of a batch."""
         self.counts["decisions"] += int(step.acted.sum())
         for name in ("arrived", "touched", "timed_out"):
             self.counts[name] += int(getattr(step, name).sum())
@@ -26,7 +26,7 @@ class Tally:
             self._terms[f.name] += float(np.sum(getattr(step.terms, f.name), where=step.acted))
 
     def take(self) -> dict[str, float]:
-        """Attempts, their shares, and every term's mean per attempt; starts anew."""
+        """Return attempts, shares of outcomes, and means of terms per attempt, and reset them."""
         counts, terms = self.counts, self._terms
         attempts = counts["arrived"] + counts["touched"] + counts["timed_out"]
         each = max(attempts, 1)

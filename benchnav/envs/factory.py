@@ -1,4 +1,4 @@
-"""A decision process from names and numbers, as environments are asked for."""
+"""Make the decision process of an environment from names and numbers."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -18,7 +18,7 @@ from benchnav.scenario.catalogue import find
 
 
 class NoRenderingError(UsageError, TypeError):
-    """A wish to render; SB3's `make_vec_env` tries rgb_array and goes on without on a TypeError."""
+    """Rendering is not possible. It is a TypeError, after which SB3's `make_vec_env` continues."""
 
 
 Reward = RewardWeights | Mapping[str, Any] | None
@@ -26,7 +26,7 @@ LEARNING_SPLITS = ("train", "validation")
 
 
 def make_worlds(scenario: str, split: str, count: int) -> list[World]:
-    """The worlds 0 to ``count`` - 1 of a scenario's split.
+    """Return the worlds 0 to ``count`` - 1 of a scenario's split.
 
     Raises:
         UsageError: no such split, or no worlds.
@@ -45,9 +45,9 @@ def make_worlds(scenario: str, split: str, count: int) -> list[World]:
 
 
 def weights_of(reward: Reward) -> RewardWeights:
-    """The weights that ``reward`` says; None: the defaults.
+    """Return the weights of ``reward``; None: the defaults.
 
-    Raises ConfigError where it says what is none.
+    Raises ConfigError if ``reward`` has an unknown or invalid weight.
     """
     if isinstance(reward, RewardWeights):
         return reward
@@ -61,11 +61,11 @@ def make_batch(
     scenario: str, encoder: str, split: str, worlds: int, reward: Reward, slots: int | None = None,
     *, rows: int = 1,
 ) -> AgentBatch:  # fmt: skip
-    """As many rows as have ``slots`` learning agents, or ``rows``, over a pool of worlds.
+    """Return a batch of rows with ``slots`` learning agents in total, or of ``rows`` rows.
 
-    The order of worlds is random until `AgentBatch.reseed` decides it. Raises UsageError where
-    ``slots`` is no multiple of a world's learning agents, and what `make_worlds`, `weights_of`
-    and the catalogue of encoders raise.
+    The order of worlds is random until `AgentBatch.reseed` is called. Raises UsageError if
+    ``slots`` is no multiple of a world's learning agents, and the errors of `make_worlds`,
+    `weights_of` and the catalogue of encoders.
     """
     chosen, weights = encoder_called(encoder), weights_of(reward)
     pool, drivers = make_worlds(scenario, split, worlds), find(scenario).driver_specs
@@ -88,10 +88,10 @@ def make_batch(
 def drawn_index(
     rng: np.random.Generator, name: str, options: Mapping[str, Any] | None, allowed: IntArray
 ) -> int:
-    """The option ``name``, or one of ``allowed`` (in rising order) if it is not given.
+    """Return the option ``name``, or draw one of ``allowed`` (in rising order) if it is not given.
 
-    It is drawn in both cases, so that an option does not change what is drawn later. Raises
-    UsageError where the option is not allowed.
+    One is drawn in both cases, so that an option does not change later draws. Raises UsageError
+    if the option is not allowed.
     """
     drawn = int(allowed[int(rng.integers(len(allowed)))])
     chosen = int((options or {}).get(name, drawn))

@@ -1,4 +1,4 @@
-"""The learning agents of a batch of worlds, one slot each, as the environments count them."""
+"""The learning agents of a batch of worlds, with one slot of the environments each."""
 
 from dataclasses import fields, replace
 from typing import TypeVar
@@ -16,11 +16,11 @@ S = TypeVar("S", bound=np.generic)
 
 
 class LearnerSlots:
-    """B rows of L slots over a batch; L is the most learning agents of any world of its pool.
+    """B rows of L slots over a batch; L is the largest number of learning agents in a world.
 
-    Agents that a scenario's own drivers move have no slot. A slot is idle after its attempt,
-    until its row starts again, and in a world with fewer learning agents than L. Such worlds
-    fill the slots in turn, so that no slot is left out.
+    Agents that a scenario's own drivers move have no slot. A slot is idle after its attempt until
+    its row starts again, and it may be idle in a world with fewer learning agents than L. Such
+    worlds use the slots in turn, so that all slots are used.
     """
 
     def __init__(self, batch: AgentBatch) -> None:
@@ -38,11 +38,11 @@ class LearnerSlots:
 
     @property
     def active(self) -> BoolArray:
-        """(B, L) attempts that are going on."""
+        """(B, L) slots with an active attempt."""
         return self._of_slots(self.batch.active)
 
     def reset(self, worlds: IntArray | None = None) -> Float32Array:
-        """(B, L, D). As `AgentBatch.reset`; learners then fill their row's slots from the first."""
+        """Return (B, L, D) of `AgentBatch.reset`; learners then use slots from the first one on."""
         seen = self.batch.reset(worlds)
         self._first[:] = 0
         self._begun = True
@@ -50,7 +50,10 @@ class LearnerSlots:
         return self._of_slots(seen)
 
     def step(self, action: AnyArray) -> Transition:
-        """Decide. ``action`` (B, L, 2) or flat; idle slots' is ignored. Arrays are (B, L, …)."""
+        """Execute one decision. ``action`` is (B, L, 2) or flat, ignored for idle slots.
+
+        The arrays of the result are (B, L, …).
+        """
         if not self._begun:
             raise UsageError("An environment must be started before it is stepped: call reset().")
         action = np.asarray(action, np.float64).reshape(*self.agent.shape, 2)
@@ -70,7 +73,7 @@ class LearnerSlots:
         )  # fmt: skip
 
     def _assign(self, rows: IntArray) -> None:
-        """Give the learners of the worlds that began in ``rows`` their slots."""
+        """Assign slots to the learners of the worlds that started in ``rows``."""
         L = self.agent.shape[1]
         for row in rows.tolist():
             learners = np.flatnonzero(self.batch.simulation.worlds[row].agents.evaluated)
@@ -79,7 +82,7 @@ class LearnerSlots:
             self._first[row] = (self._first[row] + len(learners)) % L
 
     def _of_slots(self, array: npt.NDArray[S]) -> npt.NDArray[S]:
-        """(B, L, …) of (B, A, …); zero where a slot has no agent."""
+        """Return (B, L, …) from (B, A, …); 0 for slots without an agent."""
         taken: npt.NDArray[S] = array[self._row, self.agent]
         taken[self.agent < 0] = 0
         return taken

@@ -1,4 +1,4 @@
-"""PettingZoo's ParallelEnv: the learning agents of one world, each of which leaves when done."""
+"""PettingZoo's ParallelEnv: the learning agents of one world; each leaves after its attempt."""
 
 from typing import Any, ClassVar
 
@@ -13,17 +13,17 @@ from benchnav.envs.learner_slots import LearnerSlots
 from benchnav.envs.seeding import plain_seed
 from benchnav.errors import UsageError
 
-Told = dict[str, dict[str, Any]]
+Infos = dict[str, dict[str, Any]]
 Stepped = tuple[
-    dict[str, Float32Array], dict[str, float], dict[str, bool], dict[str, bool], Told
+    dict[str, Float32Array], dict[str, float], dict[str, bool], dict[str, bool], Infos
 ]  # fmt: skip
 
 
 class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[misc]
-    """Agents ``leader_0``, ``leader_1``, … of a world that is drawn anew in each episode.
+    """Agents ``leader_0``, ``leader_1``, … of a world that is newly drawn in each episode.
 
-    These are the agents that learn; those that the scenario's own drivers move have no name. An
-    agent is terminated on arriving or touching anything and truncated by time. It leaves then.
+    These are the agents that learn; agents that the scenario's own drivers move have no name. An
+    agent is terminated by arrival or contact, and truncated by time. Then it leaves.
     """
 
     metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "name": "benchnav_leaders_v0"}
@@ -38,7 +38,7 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         reward: Reward = None,
         render_mode: str | None = None,
     ) -> None:
-        """Draws the worlds. The parameters are those of `LeaderEnv`.
+        """Draw the worlds. The parameters are those of `LeaderEnv`.
 
         Raises BenchnavError for a mistake in any of these.
         """
@@ -55,17 +55,17 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         self._rng: np.random.Generator | None = None
 
     def observation_space(self, agent: str) -> Space:
-        """(D,) of one agent, always the same object."""
+        """Return the space (D,) of one agent, always the same object."""
         return self.observation_spaces[agent]
 
     def action_space(self, agent: str) -> Space:
-        """(2,) of one agent, always the same object."""
+        """Return the space (2,) of one agent, always the same object."""
         return self.action_spaces[agent]
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[dict[str, Float32Array], Told]:
-        """Start a world: the one of the pool that ``options["world"]`` gives, or any."""
+    ) -> tuple[dict[str, Float32Array], Infos]:
+        """Start the world ``options["world"]`` of the pool; by default, draw one."""
         if seed is not None or self._rng is None:
             self._rng, _ = np_random(plain_seed(seed))
         world = drawn_index(self._rng, "world", options, self.batch.learnable)
@@ -79,10 +79,11 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         )
 
     def step(self, actions: dict[str, Float32Array]) -> Stepped:
-        """Decide. ``actions``: (2,) in [-1, 1] of each of ``agents``; nothing where none is left.
+        """Execute one decision. ``actions``: (2,) in [-1, 1] for each of ``agents``.
 
-        Infos hold the reward's ``terms`` before scaling and ``is_success``: it arrived, and
-        touched nothing before. Raises UsageError where an agent gets no action.
+        Infos contain the reward's ``terms`` before scaling, and ``is_success``: the agent arrived
+        without a contact. Returns empty dicts if no agent is left. Raises UsageError if an agent
+        gets no action.
         """
         if not self.agents:
             return {}, {}, {}, {}, {}
@@ -112,4 +113,4 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         return stepped
 
     def render(self) -> None:
-        """Draws nothing."""
+        """Do nothing: there is no rendering."""

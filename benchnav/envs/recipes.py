@@ -1,7 +1,7 @@
-"""The recipes of installed trainers. A trainer of another package is asked in its own process.
+"""The recipes of installed trainers. A trainer of another package is loaded in its own process.
 
-So a trainer that hangs, exits or fails to import is reported as broken, and hides no recipe of
-another one.
+Therefore a trainer that hangs, exits or fails to import is reported as broken, and does not
+hide recipes of other trainers.
 """
 
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class RecipeFile:
 
     @property
     def description(self) -> str:
-        """The key `description` of the file; "" where there is none."""
+        """The value of the key `description` of the file; "" if there is none."""
         data = read_yaml(self.path).data
         text = data.get("description", "") if isinstance(data, dict) else ""
         return " ".join(str(text).split())
@@ -36,7 +36,7 @@ class RecipeFile:
 def recipe_files() -> tuple[dict[str, RecipeFile], dict[str, BenchnavError]]:
     """Return name → recipe, and trainer → error for each trainer that cannot be used.
 
-    Raises PluginConflictError where two trainers ship a recipe of one name.
+    Raises PluginConflictError if two trainers have recipes with one name.
     """
     found: dict[str, RecipeFile] = {}
     broken: dict[str, BenchnavError] = {}
@@ -62,8 +62,8 @@ def _answers() -> dict[str, list[str] | BenchnavError]:
             answers[name] = _paths(name, lambda step: None)
         else:
             plugins.append(Plugin(TRAINERS.kind, name, "", name))
-    asked = ask_plugins(f"{__name__}:tell_recipes", [[plugin] for plugin in plugins], _TIMEOUT)
-    for plugin, (answer,) in zip(plugins, asked, strict=True):
+    replies = ask_plugins(f"{__name__}:tell_recipes", [[plugin] for plugin in plugins], _TIMEOUT)
+    for plugin, (answer,) in zip(plugins, replies, strict=True):
         answers[plugin.name] = _checked(plugin, answer)
     return answers
 
@@ -77,7 +77,7 @@ def _checked(plugin: Plugin, answer: Any) -> list[str] | BenchnavError:
 
 
 def tell_recipes(channel: Channel, notes: "memoryview[float]") -> None:
-    """Answer which recipes trainers ship. Runs in a process of its own."""
+    """Send the recipes of trainers. Runs in a separate process."""
     tell(channel, notes, _paths)
 
 

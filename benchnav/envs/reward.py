@@ -1,7 +1,7 @@
 """The reward of the paper, Eq. 2–10, term by term.
 
 Weights are magnitudes; Eq. 2 subtracts the penalties. Approach, time, turning and the
-penalty for p > T_c are paid for every decision, the others for every event.
+penalty for p > T_c apply to every decision, the others to every event.
 """
 
 from dataclasses import dataclass, fields
@@ -15,7 +15,7 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 
 
 class RewardWeights(BaseModel):
-    """Magnitudes. Readings of Table 1: docs/learning.md."""
+    """Magnitudes of the weights. docs/learning.md explains the interpretation of Table 1."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
@@ -30,18 +30,18 @@ class RewardWeights(BaseModel):
     threshold: float = Field(0.6, ge=0, le=1, description="T_c")
     moving: Literal["sign", "progress"] = Field(
         "sign",
-        description="how the approach is paid: whole on any approach (Eq. 4 as printed), or by the"
-        " share of the way that full speed would have made (negative when it recedes)",
+        description="reward of approach: in full for any approach (Eq. 4 as printed), or by share"
+        " of the way at full speed (negative for an increase of the distance)",
     )
     turning: float = Field(
         0.0, ge=0, description="not in the paper: per decision at full turn rate, else its share"
     )
-    scale: float = Field(0.01, gt=0, description="factor on the whole, for the learner's sake")
+    scale: float = Field(0.01, gt=0, description="factor of the total reward")
 
 
 @dataclass(frozen=True, eq=False)
 class RewardTerms:
-    """(B, A) each, signed as they enter Eq. 2, before scaling."""
+    """(B, A) each, with their signs in Eq. 2, before scaling."""
 
     goal: FloatArray
     approach: FloatArray
@@ -71,12 +71,12 @@ def reward_terms(
     probability: FloatArray,
     turned: FloatArray,
 ) -> RewardTerms:
-    """Every term of one decision.
+    """Return every term of one decision.
 
     Args:
         weights: magnitudes.
         arrived: (B, A) touched the goal within this decision.
-        nearer: (B, A) decrease of the distance to the goal over what full speed allows, ≤ 1.
+        nearer: (B, A) decrease of the distance to the goal over that at full speed, ≤ 1.
         contacts: (B, A, kinds) new contacts by Kind.
         probability: (B, A) Eq. 24 after the decision.
         turned: (B, A) |turn rate| over its limit, 0 to 1.

@@ -1,4 +1,4 @@
-"""Seeds as Gymnasium and PettingZoo take them."""
+"""Conversion of seeds for Gymnasium and PettingZoo."""
 
 from collections.abc import Sequence
 
@@ -8,14 +8,14 @@ from benchnav.errors import UsageError
 
 
 def plain_seed(seed: int | None) -> int | None:
-    """``seed`` as Gymnasium wants it: it refuses the integers of NumPy."""
+    """Return ``seed`` as a Python integer, because Gymnasium refuses the integers of NumPy."""
     return int(seed) if isinstance(seed, np.integer) else seed
 
 
 def joint_seed(seeds: Sequence[int | None], count: int) -> tuple[int, ...] | None:
-    """One seed of environments that share worlds, from one for each; None where all are None.
+    """Return a joint seed of environments that share worlds, from their seeds; None if all are.
 
-    Raises UsageError where there are not ``count``, only some are None, or one is below 0.
+    Raises UsageError if there are not ``count`` seeds, only some are None, or one is below 0.
     """
     if len(seeds) != count:
         raise UsageError(f"A list of seeds must have {count}, one for each. Got {len(seeds)}.")

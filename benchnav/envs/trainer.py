@@ -1,4 +1,4 @@
-"""What a trainer is: it turns a recipe into weights, driven by `benchnav train`.
+"""The contract of a trainer: it turns a recipe into weights, for `benchnav train`.
 
 A trainer is registered in the entry-point group `benchnav.trainers` under the name that
 its recipes give as `trainer`.
@@ -17,7 +17,7 @@ R = TypeVar("R", bound=BaseModel)
 
 @dataclass(frozen=True)
 class TrainingReport:
-    """How far a training is."""
+    """The progress of a training."""
 
     decisions: int
     total: int
@@ -27,8 +27,8 @@ class TrainingReport:
 class Trainer(ABC, Generic[R]):
     """One kind of learner."""
 
-    Recipe: ClassVar[type[BaseModel]]  # what its recipe files say
-    recipes: ClassVar[Path]  # folder of the recipes that it ships, NAME.yaml
+    Recipe: ClassVar[type[BaseModel]]  # the model of its recipe files
+    recipes: ClassVar[Path]  # folder of its recipes, NAME.yaml
 
     @abstractmethod
     def train(
@@ -41,16 +41,16 @@ class Trainer(ABC, Generic[R]):
         device: str,
         report: Callable[[TrainingReport], None],
     ) -> None:
-        """Train into the folder ``out``, which then holds weights, curve and checkpoint.
+        """Train, and write weights, curve and checkpoint to the folder ``out``.
 
         Raises:
-            UsageError: the folder holds something else, or nothing to resume.
-            TrainingError: learning went wrong.
+            UsageError: the folder has other content, or nothing to resume.
+            TrainingError: the training failed.
         """
 
 
 def trainer_rule(name: str, plugin: Any) -> str:
-    """Return what the trainer ``name`` must be and is not; "" if there is nothing."""
+    """Return the requirement that the trainer ``name`` violates, as a verb phrase; "" if none."""
     if not (isinstance(plugin, type) and issubclass(plugin, Trainer)):
         return f"be a class derived from {Trainer.__module__}.{Trainer.__qualname__}"
     missing = [part for part in ("Recipe", "recipes") if not hasattr(plugin, part)]

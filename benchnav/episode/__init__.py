@@ -1,4 +1,4 @@
-"""The record of one run of one navigator in one world. A name is loaded when it is first used."""
+"""The record of one run of one navigator in one world. Names are loaded at their first use."""
 
 from typing import TYPE_CHECKING
 

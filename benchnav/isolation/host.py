@@ -19,7 +19,7 @@ from benchnav.isolation.briefing_codec import decode_briefings
 from benchnav.isolation.frame import HEAD, decode, encode, head
 from benchnav.isolation.observation_codec import decode_changed_maps, decode_observation
 from benchnav.named_module import search_in
-from benchnav.navigation.command_check import CallFailed, checked, remarks_of, said
+from benchnav.navigation.command_check import CallFailed, checked, exception_text, remarks_of
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.plugin.capabilities import meet
@@ -53,7 +53,7 @@ class Host:
             refused = kind == "hello" and isinstance(error, BenchnavError)
             known = {"error": type(error).__name__} if refused else {}
             return "failed", {
-                "reason": plain(error) if refused else f"{kind} raised {said(error)}",
+                "reason": plain(error) if refused else f"{kind} raised {exception_text(error)}",
                 "traceback": trace(error),
                 **known,
             }

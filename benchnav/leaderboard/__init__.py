@@ -1,4 +1,4 @@
-"""Tables that refuse to mislead: intervals, ties, and no ranking of what cannot be compared."""
+"""Leaderboard tables with intervals and ties; entries that are not comparable are not ranked."""
 
 from benchnav.leaderboard.record import Leaderboard, NotApplicable, Record
 from benchnav.leaderboard.rendering.formats import render

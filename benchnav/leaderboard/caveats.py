@@ -1,4 +1,4 @@
-"""What must be known of a table's runs before their numbers are believed."""
+"""Caveats: facts about the runs of a table that a reader must know."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _KEYS = ["navigator", "scenario", "track", "split", "metric"]
 
 
 def table_caveats(folders: Sequence[RunFolder], tables: Sequence[pa.Table]) -> Iterator[Caveat]:
-    """Where runs are not what their names say, of the labels and scenarios that have rows."""
+    """Yield the caveats of the runs that are about labels and scenarios with rows."""
     for folder, results in zip(folders, tables, strict=True):
         labels, scenarios = labels_of(results), set(results["scenario"].unique().to_pylist())
         for caveat in caveats_of(folder.manifest):
@@ -29,25 +29,25 @@ def table_caveats(folders: Sequence[RunFolder], tables: Sequence[pa.Table]) -> I
 
 
 def metric_caveats(tables: Sequence[pa.Table], metrics: Collection[str]) -> Iterator[Caveat]:
-    """Metrics that are installed and were not measured everywhere, and those not installed."""
-    lacking: dict[str, set[str]] = defaultdict(set)  # label → metrics
-    strange: set[str] = set()
+    """Yield caveats about metrics not measured in all episodes, and about metrics not installed."""
+    unmeasured: dict[str, set[str]] = defaultdict(set)  # label → metrics
+    unknown: set[str] = set()
     for results in tables:
         held: dict[tuple[str, ...], set[str]] = defaultdict(set)
         for row in results.select(_KEYS).group_by(_KEYS).aggregate([]).to_pylist():
             held[tuple(row[key] for key in _KEYS[:-1])].add(row["metric"])
         for (label, *_), names in held.items():
-            strange |= names - set(metrics)
-            lacking[label] |= set(metrics) - names
-    for label, names in sorted(lacking.items()):
+            unknown |= names - set(metrics)
+            unmeasured[label] |= set(metrics) - names
+    for label, names in sorted(unmeasured.items()):
         if names:
             yield Caveat(f"Not measured in all episodes of {label}: {_listed(names)}.", "", label)
-    if strange:
-        yield Caveat(f"Not installed here, so that nothing says what it is: {_listed(strange)}.")
+    if unknown:
+        yield Caveat(f"Not installed here, so its definition is unknown: {_listed(unknown)}.")
 
 
 def with_caveats(record: Record, caveats: Sequence[Caveat]) -> Record:
-    """Return the record, with what must be known of its scenario, navigator and runs."""
+    """Return the record with the caveats about its scenario, navigator and runs."""
     whole = record.scenario in (ALL, ALL_INTERQUARTILE)
     own = [
         caveat.text

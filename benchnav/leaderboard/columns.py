@@ -1,4 +1,4 @@
-"""What a table may show, by name."""
+"""The columns that a table can show, by name."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -7,7 +7,7 @@ from benchnav.leaderboard.record import Record
 from benchnav.leaderboard.rendering.cell import Cell, rank, rehearsal, training, verified
 
 DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
-FEW = 4  # metrics that are shown where none of the default ones is held
+FEW = 4  # metrics to show if the results contain none of the default ones
 
 DESCRIPTIVE: Mapping[str, Callable[[Record], Cell]] = {
     "rank": rank,
@@ -16,16 +16,16 @@ DESCRIPTIVE: Mapping[str, Callable[[Record], Cell]] = {
     "rehearsal": rehearsal,
     "verified": verified,
 }
-"""Columns that are no metric, and what they show of a navigator's record."""
+"""Columns that are not metrics → the function from a navigator's record to its cell."""
 MIDDLE_HALF = "middle_half"
 """A column that shows another record: the interquartile mean over scenarios."""
 NAMES = (*DESCRIPTIVE, MIDDLE_HALF)
 
 
 def choose(held: Sequence[str], metrics: Sequence[str] | None) -> tuple[str, ...]:
-    """The metrics to show of those ``held``: the default few, ``["all"]``, or those named.
+    """Return the metrics of ``held`` to show: the default ones, all (``["all"]``), or ``metrics``.
 
-    Raises UsageError for a metric that is not held.
+    Raises UsageError for a metric that is not in ``held``.
     """
     if metrics is None:
         return tuple(name for name in DEFAULT if name in held) or tuple(held[:FEW])
@@ -41,9 +41,9 @@ def choose(held: Sequence[str], metrics: Sequence[str] | None) -> tuple[str, ...
 
 
 def choose_columns(held: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:
-    """The columns to show, each once: metrics of those ``held``, or descriptive ones.
+    """Return the columns to show, each once: metrics of ``held``, or descriptive columns.
 
-    Raises UsageError for another name, and where no metric is among them.
+    Raises UsageError for an unknown name, and if none of the columns is a metric.
     """
     known = [*held, *NAMES]
     for name in columns:

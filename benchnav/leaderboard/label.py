@@ -1,4 +1,4 @@
-"""One label stands for one navigator: other configurations and other code are never merged."""
+"""Check that a label names one navigator: different configurations or code are never merged."""
 
 from __future__ import annotations
 
@@ -14,21 +14,21 @@ _COLUMNS = {
     "navigator_hash": "configuration (parameters, version, weights or mode)",
     "source_hash": "source",
 }
-"""Columns that must hold one value for a label → what differs where they hold two."""
+"""Columns that must have one value for a label → the name of the difference if they have two."""
 
 
 def require_one_navigator_per_label(tables: Mapping[str, pa.Table]) -> None:
-    """Raise UsageError where rows with one label come from two configurations or sources.
+    """Raise UsageError if rows with one label come from two configurations or sources.
 
-    ``tables`` maps names, such as run folders, to results (RESULTS). Rows that hold no
-    hash, as those of older runs, agree with all.
+    ``tables`` maps names, such as run folders, to results (RESULTS). Rows without a
+    hash, such as those of older runs, agree with all.
     """
-    for column, what in _COLUMNS.items():
-        _require_one(tables, column, what)
+    for column, difference in _COLUMNS.items():
+        _require_one(tables, column, difference)
 
 
-def _require_one(tables: Mapping[str, pa.Table], column: str, what: str) -> None:
-    seen: dict[str, tuple[str, str]] = {}  # label -> hash, where it was met first
+def _require_one(tables: Mapping[str, pa.Table], column: str, difference: str) -> None:
+    seen: dict[str, tuple[str, str]] = {}  # label → hash, and the table where it occurs first
     for name, table in tables.items():
         if column not in table.column_names:
             continue
@@ -43,7 +43,7 @@ def _require_one(tables: Mapping[str, pa.Table], column: str, what: str) -> None
             if known != found:
                 raise UsageError(
                     f"The label {label!r} must stand for one navigator. It stands for two: their"
-                    f" {what} differs ({known[:12]} in {where} and {found[:12]} in {name})."
+                    f" {difference} differs ({known[:12]} in {where} and {found[:12]} in {name})."
                     f" {_CURES[column]}, or give one of them a label of its own"
                     f" ({{type: …, label: {label}-2}} in the suite) and run that one again."
                 )

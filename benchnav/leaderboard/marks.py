@@ -17,8 +17,9 @@ def marked(
 ) -> set[str]:
     """Return the labels all of whose rows come from runs that were verified here.
 
-    ``tables`` are the results of each of ``folders``, and ``verified`` says whether exactly
-    these were verified; empty: none was. A label that ran unguarded in any run is never marked.
+    ``tables`` are the results of each of ``folders``, and ``verified`` contains whether
+    exactly these results were verified; empty if none were. A label that ran
+    unguarded in any run is never marked.
     """
     good: dict[str, bool] = {}
     checks = verified or [False] * len(folders)

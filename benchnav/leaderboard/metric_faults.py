@@ -1,4 +1,4 @@
-"""Values that are missing because their metric failed: how many, and why."""
+"""Values that are missing because their metric failed: their number, and the reason."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ if TYPE_CHECKING:
 
 KEYS = ("split", "track", "role", "navigator", "metric")
 Faults = Mapping[tuple[str, ...], Mapping[tuple[str, int], str]]
-"""By `KEYS` and scenario, or `ALL`: (scenario, seed) → why the metric failed there."""
+"""By `KEYS` and scenario, or `ALL`: (scenario, seed) → the reason why the metric failed."""
 
 
 def faults(results: pa.Table) -> Faults:
-    """Those among results of the schema `benchnav.store.parts.results.RESULTS`."""
+    """Return the faults in results of the schema `benchnav.store.parts.results.RESULTS`."""
     import pyarrow.compute as pc
 
     found: dict[tuple[str, ...], dict[tuple[str, int], str]] = {}
@@ -34,7 +34,7 @@ def faults(results: pa.Table) -> Faults:
 
 
 def with_fault(record: Record, found: Faults) -> Record:
-    """The record, with what is to be told of its missing values."""
+    """Return the record with the reason for its missing values."""
     key = *(getattr(record, name) for name in KEYS), record.scenario
     if key not in found:
         return record

@@ -56,11 +56,11 @@ class Record:
     rehearsal_decisions: float = math.nan  # in rehearsals, mean over worlds; NaN without a grant
     rehearsal_seconds: float = math.nan  # of the leading navigator, mean over worlds
     mode: str = ""  # "in-process" or "isolated"; "" if the runs are unknown
-    fault: str = ""  # where and how the metric failed; "" if it did not
+    fault: str = ""  # number of failures of the metric, and the reason; "" for none
     failure: str = ""  # number of worlds in which the navigator failed, and why; "" for none
     remark: str = ""  # the navigator's remarks, and their number of episodes; "" for none
     verified: bool = False  # its runs were verified here, and it is not a timing
-    caveat: str = ""  # difference of its runs from what their names mean here; "" for none
+    caveat: str = ""  # caveats about its runs; "" for none
 
 
 @dataclass(frozen=True)

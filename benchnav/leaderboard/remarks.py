@@ -1,4 +1,4 @@
-"""What stands beside a table: why navigators failed, and what they remark, in how many worlds."""
+"""Notes below a table: reasons of failures and remarks of navigators, with numbers of worlds."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 KEYS = ("split", "track", "role", "navigator")
 SHOWN = 3  # texts of one navigator
 Texts = Mapping[tuple[str, ...], Counter[str]]
-"""By `KEYS` and scenario, or `ALL`: text → the worlds of which it is told."""
+"""By `KEYS` and scenario, or `ALL`: text → the worlds that it is about."""
 
 
 def failures(results: pa.Table) -> Texts:
-    """Why navigators failed, of results of the schema `benchnav.store.parts.results.RESULTS`."""
+    """Return the reasons of failures in results (`benchnav.store.parts.results.RESULTS`)."""
     import pyarrow.compute as pc
 
     failed = results.filter(pc.not_equal(results["failure"], ""))
@@ -28,27 +28,27 @@ def failures(results: pa.Table) -> Texts:
 
 
 def remarks(results: pa.Table) -> Texts:
-    """What navigators remark; of results without that column, nothing."""
+    """Return the remarks of navigators; none for results without that column."""
     import pyarrow.compute as pc
 
     if "remarks" not in results.column_names:
         return {}
-    told = results.filter(pc.greater(pc.list_value_length(results["remarks"]), 0))
-    return _counted((row, row["remarks"]) for row in _worlds(told, "remarks"))
+    remarked = results.filter(pc.greater(pc.list_value_length(results["remarks"]), 0))
+    return _counted((row, row["remarks"]) for row in _worlds(remarked, "remarks"))
 
 
 def with_texts(record: Record, failed: Texts, remarked: Texts) -> Record:
-    """The record, with what is to be told of its episodes."""
+    """Return the record with the failures and remarks of its episodes."""
     key = *(getattr(record, name) for name in KEYS), record.scenario
     return replace(
         record,
-        failure=_told(failed.get(key, Counter()), record.episodes),
-        remark=_told(remarked.get(key, Counter()), record.episodes),
+        failure=_summary(failed.get(key, Counter()), record.episodes),
+        remark=_summary(remarked.get(key, Counter()), record.episodes),
     )
 
 
 def _worlds(rows: pa.Table, column: str) -> Iterator[dict[str, Any]]:
-    """One row for each episode and role, whatever the metrics."""
+    """Yield one row for each episode and role, for any number of metrics."""
     names = [*KEYS, "scenario", "scenario_hash", "seed"]
     seen: set[tuple[Any, ...]] = set()
     for row in rows.select([*names, column]).to_pylist():
@@ -60,17 +60,17 @@ def _worlds(rows: pa.Table, column: str) -> Iterator[dict[str, Any]]:
 
 def _counted(found: Iterator[tuple[dict[str, Any], list[str]]]) -> Texts:
     texts: dict[tuple[str, ...], Counter[str]] = {}
-    for row, told in found:
+    for row, remarked in found:
         for scenario in (row["scenario"], ALL):
             key = *(str(row[name]) for name in KEYS), str(scenario)
-            texts.setdefault(key, Counter()).update(set(told))
+            texts.setdefault(key, Counter()).update(set(remarked))
     return texts
 
 
-def _told(texts: Counter[str], episodes: int) -> str:
-    """``in 12 of 40 worlds: …; in 1 of 40 worlds: …``."""
+def _summary(texts: Counter[str], episodes: int) -> str:
+    """Return ``in 12 of 40 worlds: …; in 1 of 40 worlds: …``."""
     groups = grouped(texts)
     worlds = "world" if episodes == 1 else "worlds"
-    said = [f"in {n} of {episodes} {worlds}: {text}" for text, n in groups[:SHOWN]]
+    parts = [f"in {n} of {episodes} {worlds}: {text}" for text, n in groups[:SHOWN]]
     more = len(groups) - SHOWN
-    return "; ".join([*said, *([f"and {more} more"] if more > 0 else [])])
+    return "; ".join([*parts, *([f"and {more} more"] if more > 0 else [])])

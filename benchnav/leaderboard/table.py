@@ -1,4 +1,4 @@
-"""Results → leaderboard."""
+"""Build a leaderboard from results."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from benchnav.runner.plan.installed_differences import Caveat
 if TYPE_CHECKING:
     import pyarrow as pa
 
-MIDDLE_HALF = 4  # scenarios from which the interquartile mean differs from the mean
+MIDDLE_HALF = 4  # smallest number of scenarios for which it differs from the mean
 
 
 def leaderboard(
@@ -53,19 +53,18 @@ def leaderboard(
     modes: Mapping[str, str] = {},
     caveats: Sequence[Caveat] = (),
 ) -> Leaderboard:
-    """Every navigator × scenario × track × role × metric, with interval and rank.
+    """Return every navigator × scenario × track × role × metric, with interval and rank.
 
     Entries that were granted different numbers of rehearsals are never ranked together.
     ``results`` has the schema `benchnav.store.parts.results.RESULTS` and may join several
-    runs; the order of its rows changes nothing. ``metrics`` maps names to definitions;
-    a metric that it lacks is shown and not ranked. ``not_applicable`` are cells that
+    runs, with rows in any order. ``metrics`` maps names to definitions;
+    a metric without a definition is shown but not ranked. ``not_applicable`` are cells that
     were not run. ``training`` maps labels to the decisions and seconds of their training;
     ``verified`` are the labels whose runs were verified here, ``mapless`` those of navigators that
-    use no map. Where there are the tracks known and unknown, the paired difference between them
-    is a record too, in the place of a track. ``modes`` maps labels to the mode in which they ran;
-    ``caveats`` stand beside the records that they are about.
-    Raises UsageError where one label stands for two navigators, or has two
-    values in one world.
+    use no map. If there are results of the tracks known and unknown, the paired difference between
+    them is a record too, with `PRICE` as its track. ``modes`` maps labels to the mode in which they
+    ran; ``caveats`` are attached to the records that they are about.
+    Raises UsageError if one label is used for two navigators, or has two values in one world.
     """
     require_one_navigator_per_label({"the results": results})
     records: list[Record] = []
@@ -99,41 +98,41 @@ def _with_training(record: Record, training: Mapping[str, tuple[float, float]]) 
 
 
 def _is_verified(r: Record, verified: Collection[str], metrics: Mapping[str, Metric]) -> bool:
-    """Nobody can verify a timing, nor a value whose metric is not installed."""
+    """Whether a record is verified: not a timing, nor a value whose metric is not installed."""
     known = r.metric in metrics and metrics[r.metric].verifiable
     return known and r.navigator in verified and r.episodes > 0
 
 
 def _contest(s: Stratum) -> tuple[str, str, str, int]:
-    """What episodes share that are ranked together, or averaged over scenarios."""
+    """Return the key of records that are ranked together, or averaged over scenarios."""
     return s.split, s.track, s.role, s.rehearsal
 
 
 def _belonging(
     group: list[Stratum], found: list[Stratum], cells: Sequence[NotApplicable]
 ) -> list[NotApplicable]:
-    """The cells of entries with this grant; of entries with a grant that nobody has, all."""
+    """Return the cells of entries with the grant of the group, or with a grant without episodes."""
     grants = {s.rehearsal for s in found}
     return [c for c in cells if c.rehearsal == group[0].rehearsal or c.rehearsal not in grants]
 
 
 @dataclass(frozen=True, eq=False)
 class _Body:
-    """What the records of one scenario, or of all, are made of: n worlds, N × M columns."""
+    """The values of one scenario, or of all: n worlds, N × M columns."""
 
     scenario: str
     stratum: Stratum  # gives split, track, role and the axes
     value: FloatArray  # (n, N, M)
     attempted: BoolArray  # (n, N)
     failed: BoolArray  # (n, N)
-    cost: FloatArray  # (n, N, 2) of rehearsing
+    cost: FloatArray  # (n, N, 2) of rehearsals
     found: Estimate  # (N·M,)
     places: list[list[Standing]]  # [metric][navigator]
     single: bool  # False for aggregates over scenarios
 
 
 def _group(group: list[Stratum], metrics: Mapping[str, Metric]) -> Iterator[Record]:
-    """Records of strata that share split, track and role, then those over all of them."""
+    """Yield the records of strata that share split, track and role, then those over all of them."""
     known = [metrics.get(name) for name in group[0].metrics]
     column = columns_of(known * len(group[0].navigators))  # navigator by navigator
     samples = [_sample(s) for s in group]
@@ -210,7 +209,7 @@ def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:
 
 
 def _mean_cost(body: _Body, navigator: int) -> tuple[float, float]:
-    """Decisions and seconds of rehearsing, mean over the worlds attempted; NaN without a grant."""
+    """Return decisions and seconds of rehearsals, mean over attempted worlds; NaN without any."""
     if not body.stratum.rehearsal:
         return float("nan"), float("nan")
     decisions, seconds = body.cost[body.attempted[:, navigator], navigator].mean(axis=0)
@@ -220,7 +219,7 @@ def _mean_cost(body: _Body, navigator: int) -> tuple[float, float]:
 def _missing(
     group: list[Stratum], cells: Iterable[NotApplicable], metrics: Mapping[str, Metric]
 ) -> Iterator[Record]:
-    """Records of cells that cannot be run, in every stratum that they would be part of."""
+    """Yield records of cells that cannot be run, in every stratum that they would be part of."""
     for cell in cells:
         for s in group:
             if (cell.scenario, cell.track) != (s.scenario, s.track):
@@ -229,7 +228,7 @@ def _missing(
                 cell.navigator in s.navigators
                 and s.attempted[:, s.navigators.index(cell.navigator)].any()
             ):
-                continue  # another run did run it
+                continue  # another run has results of it
             for name in s.metrics:
                 metric = metrics.get(name)
                 yield Record(
@@ -259,7 +258,7 @@ def _missing(
 
 
 def _place(names: Sequence[str]) -> Callable[[Record], tuple[Any, ...]]:
-    """Scenarios in order, then what stands for all of them; navigators and metrics within."""
+    """Return the sort key of records: scenarios, then aggregates; navigators and metrics within."""
     order = {name: place for place, name in enumerate(names)}
     aggregates = {ALL: 1, ALL_INTERQUARTILE: 2}
 

@@ -1,1 +1,1 @@
-"""Tested definitions of how well an episode went."""
+"""Metrics of episodes."""

@@ -1,9 +1,9 @@
 """Compute: wall-clock time, the only part of an episode that cannot be verified.
 
-Timings are those of the navigator's calls alone. In a run a call serves a batch of worlds
-and its time is divided by them, so decision times tell throughput, describe, and never
-rank. Latency is what one world alone waits for, all its agents together, measured in a
-pass of its own; it ranks. NaN where that pass was not made.
+Timings cover only the navigator's calls. In a run, a call serves a batch of worlds and its
+time is divided by their number, so decision times measure throughput: they describe, and
+never rank. Latency is the time of a decision for all agents of a single world, measured in
+a separate pass; it ranks. It is NaN if there was no such pass.
 """
 
 import math
@@ -24,15 +24,15 @@ def _percentiles(
     """Return the 50th, 95th and 99th percentile of ``times(episode)`` (N,) [s], ascending."""
 
     def one(percent: int) -> Metric:
-        which = "median" if percent == 50 else f"{percent}th percentile of the"
+        rank = "median" if percent == 50 else f"{percent}th percentile of the"
 
         def function(episode: Episode, members: BoolArray) -> float:
             return _quantile(times(episode), percent / 100)
 
         function.__name__ = function.__qualname__ = f"{name}_p{percent}"
-        function.__doc__ = f"[s] {which} {meaning}."
+        function.__doc__ = f"[s] {rank} {meaning}."
         declare = metric(
-            title=f"{which[0].upper()}{which[1:]} {title}", unit="s", better=better, low=0.0,
+            title=f"{rank[0].upper()}{rank[1:]} {title}", unit="s", better=better, low=0.0,
             scope="group", verifiable=False,
         )  # fmt: skip
         return declare(function)
@@ -46,13 +46,13 @@ def _decision_times(episode: Episode) -> FloatArray:
 
 
 def _latencies(episode: Episode) -> FloatArray:
-    """Return (N,) [s] how long one world alone waits for each decision, ascending."""
+    """Return (N,) [s] the time of each decision for a single world, ascending."""
     taken = episode.timings.latency
     return np.zeros(0) if taken is None else np.sort(taken)
 
 
 def _quantile(ordered: FloatArray, share: float) -> float:
-    """Of ascending values (N,), straight between them; NaN without any."""
+    """Return the quantile of ascending values (N,), interpolated linearly; NaN without any."""
     if len(ordered) == 0:
         return math.nan
     return float(np.interp(share * (len(ordered) - 1), np.arange(len(ordered)), ordered))
@@ -64,7 +64,7 @@ decision_time_p50, decision_time_p95, decision_time_p99 = _percentiles(
 )  # fmt: skip
 latency_p50, latency_p95, latency_p99 = _percentiles(
     "latency", _latencies, "time for a decision of one world alone",
-    "time that one world alone waits for a decision", "lower",
+    "time of a decision for a single world", "lower",
 )  # fmt: skip
 
 
@@ -77,9 +77,9 @@ latency_p50, latency_p95, latency_p99 = _percentiles(
     verifiable=False,
 )
 def peak_memory(episode: Episode, members: BoolArray) -> float:
-    """[B] most that the process held in memory until the episode's end; NaN where unknown.
+    """[B] peak memory of the process until the episode's end; NaN if unknown.
 
-    Of the whole process: simulator, what was imported, and whoever ran in it before.
+    It includes the simulator, all imported modules, and the episodes that ran before.
     """
     memory = episode.timings.memory
     return math.nan if memory is None else float(memory)
@@ -94,7 +94,7 @@ def peak_memory(episode: Episode, members: BoolArray) -> float:
     verifiable=False,
 )
 def planning_time(episode: Episode, members: BoolArray) -> float:
-    """[s] that this world took of the navigator's reset."""
+    """[s] time of the navigator's reset: the share of this world."""
     return float(episode.timings.planning)
 
 

@@ -1,8 +1,8 @@
-"""Congestion: how crowded it was, and what crowding did to motion.
+"""Congestion: the density of the crowd, and its effect on motion.
 
-Density, congestion level and velocity fluctuation describe everybody who was in the
+Density, congestion level and velocity fluctuation describe every agent in the
 measurement area, background agents included; flow and jam are those of the members.
-All that needs a measurement area is NaN where the world defines none.
+Metrics that need a measurement area are NaN if the world defines none.
 """
 
 import math
@@ -30,10 +30,12 @@ _STEFFEN = "Steffen & Seyfried 2010, computed with PedPy"
     high=1.0,
 )
 def jam(episode: Episode) -> FloatArray:
-    """(A,) share of its time in which the agent was slower than 0.2 × its preferred speed
-    while not at the goal and with another agent's centre within two of its diameters.
+    """(A,) share of the attempt in which an agent is jammed.
 
-    NaN for an agent whose attempt was over at once.
+    An agent is jammed while it is slower than 0.2 × its preferred speed, is not at its goal, and
+    the centre of another agent is within two of its diameters.
+
+    NaN for an agent whose attempt ended at its start.
     """
     found = analyse(episode)
     t = found.trajectories
@@ -54,7 +56,7 @@ def jam(episode: Episode) -> FloatArray:
 def density_mean(episode: Episode, members: BoolArray) -> float:
     """[1/m²] mean over time, at 1 Hz, of the Voronoi density.
 
-    Cells are kept below 2 m²: none reaches farther than 0.8 m from its agent.
+    Cells are cut at a distance of 0.8 m from their agent, so they are smaller than about 2 m².
     """
     density = analyse(episode).density
     return float(density.mean()) if len(density) else math.nan
@@ -82,11 +84,11 @@ def density_peak(episode: Episode, members: BoolArray) -> float:
     scope="group",
 )
 def flow(episode: Episode, members: BoolArray) -> float:
-    """[1/s] of members (A,) through the line that halves the measurement area.
+    """[1/s] flow of members (A,) through the line that halves the measurement area.
 
-    The line lies across the axis along which the agents' goals are farther from their
-    starts. (N − 1) over the time between the first and the last crossing, each agent
-    counted when it first crosses; NaN with fewer than two.
+    The line is perpendicular to the axis along which the agents' goals are farther from their
+    starts. The flow of N agents is (N − 1) over the time between the first and the last
+    crossing, with only the first crossing of each agent; NaN for fewer than two agents.
     """
     area = episode.world.measurement_area
     if area is None:
@@ -99,9 +101,9 @@ def flow(episode: Episode, members: BoolArray) -> float:
 
 
 def first_crossings(found: Analysis, area: Extent) -> FloatArray:
-    """(A,) [s] when each agent first crosses the middle line of ``area``; inf if never."""
+    """Return times (A,) [s] of the first crossing of the middle line of ``area``; inf if none."""
     agents, t = found.world.agents, found.trajectories
-    x = int(np.argmax(np.abs(agents.goal - agents.start).sum(axis=0)))  # the axis that is crossed
+    x = int(np.argmax(np.abs(agents.goal - agents.start).sum(axis=0)))  # the main axis of motion
     y = 1 - x
     middle = 0.5 * (area[x] + area[x + 2])
     before, after = t.position[:, :-1, x] - middle, t.position[:, 1:, x] - middle
@@ -123,8 +125,10 @@ def first_crossings(found: Analysis, area: Extent) -> FloatArray:
     scope="group",
 )
 def velocity_fluctuation(episode: Episode, members: BoolArray) -> float:
-    """[m/s] mean over time of the root mean square deviation from the mean velocity of those
-    who are in the measurement area; instants with fewer than two of them do not count.
+    """[m/s] deviation from the mean velocity of the agents in the measurement area.
+
+    Root mean square over these agents, mean over time; instants with fewer than two agents in
+    the area do not count.
     """
     area = episode.world.measurement_area
     if area is None:
@@ -149,10 +153,9 @@ def velocity_fluctuation(episode: Episode, members: BoolArray) -> float:
 def congestion_level(episode: Episode, members: BoolArray) -> float:
     """[1/m] (greatest − smallest rotation of the velocity field) / mean speed, mean over time.
 
-    The definition is Feliciani & Nishinari's; that the field is averaged over windows
-    of 10 s, in square cells of about 0.5 m, and that the rotation is taken around the
-    corners whose four cells were all visited, is this project's choice. Windows with
-    fewer than two such corners do not count.
+    The definition is that of Feliciani & Nishinari. This project chose to average the field over
+    windows of 10 s in square cells of about 0.5 m, and to compute the rotation around the
+    corners with four visited cells. Windows with fewer than two such corners do not count.
     """
     area = episode.world.measurement_area
     if area is None:
@@ -169,7 +172,7 @@ def congestion_level(episode: Episode, members: BoolArray) -> float:
 
 
 def _level(place: FloatArray, velocity: FloatArray, area: Extent) -> float:
-    """Of one window: places and velocities (N, 2)."""
+    """Return the congestion level of one window, from places and velocities (N, 2)."""
     low, size = np.array(area[:2]), np.array([area[2] - area[0], area[3] - area[1]])
     cells = np.maximum(1, np.round(size / CELL)).astype(np.int64)
     index = np.clip(((place - low) / size * cells).astype(np.int64), 0, cells - 1)
@@ -196,7 +199,7 @@ def _level(place: FloatArray, velocity: FloatArray, area: Extent) -> float:
 def _in_area(
     found: Analysis, area: Extent, times: FloatArray
 ) -> tuple[FloatArray, BoolArray, FloatArray]:
-    """Places (A, N, 2), who is in the area (A, N), and velocities (A, N, 2) at ``times``.
+    """Return places (A, N, 2), the mask of the area (A, N), and velocities (A, N, 2) at ``times``.
 
     The velocity is the mean over half a second around the instant.
     """

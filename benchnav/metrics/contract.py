@@ -7,7 +7,7 @@ from benchnav.metrics.metric import Metric
 
 
 def metric_rule(name: str, plugin: Any) -> str:
-    """Return what the metric ``name`` must be and is not; "" if there is nothing."""
+    """Return the requirement that the metric ``name`` violates, as a verb phrase; "" if none."""
     if isinstance(plugin, ModuleType):
         return f"be named as one metric, {plugin.__name__}:{name}: a module is no metric"
     if not isinstance(plugin, Metric):

@@ -34,7 +34,7 @@ class _Declaration(BaseModel):
 
 
 def declared_metrics() -> tuple[dict[str, Metric], list[str]]:
-    """(metrics by name, why others cannot be used).
+    """Return (metrics by name, reasons why others cannot be used).
 
     A metric of a plugin has no function here; `benchnav.runner.execute.remeasurement` measures
     with it.
@@ -69,16 +69,16 @@ def _metric(plugin: Plugin, answer: Any) -> Metric | BenchnavError:
     except ValidationError as error:
         first = error.errors()[0]
         key = ".".join(map(str, first["loc"])) or "declaration"
-        return plugin.broken(f"its {key} must be something else: {first['msg']}")
+        return plugin.broken(f"its {key} is invalid: {first['msg']}")
     return Metric(name=plugin.name, function=_not_here, **declared.model_dump())
 
 
 def _not_here(*_: Any) -> NoReturn:
-    raise PluginError("A metric of a plugin is measured in a process of its own.")
+    raise PluginError("A metric of a plugin is measured in a separate process.")
 
 
 def tell_declarations(channel: Channel, notes: "memoryview[float]") -> None:
-    """Declare the metrics that the channel asks for. Of a process of its own."""
+    """Send the declarations of the requested metrics. Runs in a separate process."""
     tell(channel, notes, _declared)
 
 

@@ -1,4 +1,4 @@
-"""Efficiency: length and time against what the walls alone would allow."""
+"""Efficiency: path length and time relative to the shortest way among walls and obstacles."""
 
 import math
 
@@ -15,13 +15,13 @@ _YOKOYAMA = "Yokoyama et al. 2021, Success weighted by completion time"
 
 @metric(title="Time until first arrival", unit="s", better="lower", low=0.0, conditional=True)
 def time_to_goal(episode: Episode) -> FloatArray:
-    """(A,) [s] first arrival; NaN where it never came."""
+    """(A,) [s] time of the first arrival; NaN for agents that never arrive."""
     return analyse(episode).arrival.copy()
 
 
 @metric(title="Way travelled", unit="m", better=None, low=0.0)
 def path_length(episode: Episode) -> FloatArray:
-    """(A,) [m] travelled until the attempt was over, in the plane: turning adds nothing."""
+    """(A,) [m] length of the path in the plane until the attempt ends; turning adds nothing."""
     return analyse(episode).trajectories.length.copy()
 
 
@@ -29,7 +29,7 @@ def path_length(episode: Episode) -> FloatArray:
 def geodesic_length(episode: Episode) -> FloatArray:
     """(A,) [m] shortest way of the agent's disc among walls and static obstacles to its goal disc.
 
-    NaN where static geometry moves within the episode.
+    NaN if static geometry moves within the episode.
     """
     return analyse(episode).geodesic.copy()
 
@@ -43,10 +43,10 @@ def geodesic_length(episode: Episode) -> FloatArray:
     conditional=True,
 )
 def efficiency(episode: Episode) -> FloatArray:
-    """(A,) shortest way over way travelled, of those that arrived.
+    """(A,) shortest way over way travelled, of agents that arrive.
 
-    At most 1: chords between states cut corners by a hair, so a best path may measure
-    shorter than the shortest. NaN where the shortest way is nothing.
+    Limited to 1: chords between states cut corners slightly, so the measured length of a best
+    path may be below the shortest. NaN if the shortest way has length 0.
     """
     found = analyse(episode)
     return np.where(found.arrived, _share(found.geodesic, found.trajectories.length), math.nan)
@@ -77,8 +77,8 @@ def spl(episode: Episode) -> FloatArray:
 def sct(episode: Episode) -> FloatArray:
     """(A,) success weighted by completion time: success · T* / max(T, T*).
 
-    T* is the shortest way at the preferred speed. (Yokoyama et al. use the fastest time
-    of their dynamics; preferred speed is this project's choice.)
+    T* is the time of the shortest way at the preferred speed. (Yokoyama et al. use the fastest
+    time of their dynamics; the preferred speed is this project's choice.)
     """
     found = analyse(episode)
     best = found.geodesic / episode.world.agents.preferred_speed
@@ -95,13 +95,13 @@ def sct(episode: Episode) -> FloatArray:
     conditional=True,
 )
 def makespan(episode: Episode, members: BoolArray) -> float:
-    """[s] when the last of the members (A,) arrived; NaN unless all did."""
+    """[s] arrival time of the last of the members (A,); NaN unless all arrive."""
     times = analyse(episode).arrival[members]
     return float(times.max()) if len(times) else math.nan
 
 
 def _share(best: FloatArray, taken: FloatArray) -> FloatArray:
-    """Best / max(taken, best); NaN where best is 0, for nothing was asked, or undefined."""
-    asked = np.where(best > 0.0, best, math.nan)
-    share: FloatArray = asked / np.maximum(taken, asked)
+    """Return best / max(taken, best); NaN if best is undefined, or 0 (a start at the goal)."""
+    positive = np.where(best > 0.0, best, math.nan)
+    share: FloatArray = positive / np.maximum(taken, positive)
     return share

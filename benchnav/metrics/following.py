@@ -1,10 +1,10 @@
-"""Following: how followers keep to their leader's way, and what becomes of those who fall behind.
+"""Following: the distance of followers from their leader's way, and the time to catch up.
 
-Both are of followers alone, NaN for leaders, and taken at 2 Hz until the follower's
-attempt is over. Leader and followers are those of one team. The guiding path is the way
-that a leader of the team takes in the episode itself: a path that was rehearsed before is
-part of what the navigator was told, not of what happened. How many followers arrive
-without a collision is `success` in the rows of the followers.
+Both are measured at 2 Hz until the follower's attempt ends, and are NaN for leaders.
+A leader and its followers belong to one team. The guiding path is the way that a leader of
+the team takes in the episode: a path from a rehearsal is an input of the navigator, and not
+a result of the episode. The share of followers that arrive without a collision is `success`
+in the rows of the followers.
 """
 
 import math
@@ -29,13 +29,13 @@ from benchnav.metrics.quantities.episode_analysis import Analysis, analyse
     low=0.0,
 )
 def path_keeping(episode: Episode) -> FloatArray:
-    """(A,) [m] mean distance of a follower from the way that its leader took.
+    """(A,) [m] mean lateral distance of a follower from the way of its leader.
 
-    Lateral distance: that to the nearest point of the leader's trajectory, from its start
-    to its end. Instants at which an end is the nearest point do not count, for the follower
-    is then before the path or past it, and not beside it. Of several leaders the nearest
-    way counts. NaN without a leader that moved by its own radius, and for a follower that
-    was never beside its path.
+    The lateral distance is the distance to the nearest point of the leader's trajectory, from
+    its start to its end. Instants at which an end is the nearest point do not count, because
+    the follower is then before or past the path, and not beside it. With several leaders, the
+    nearest way counts. NaN without a leader that moves by at least its radius, and for a
+    follower that is never beside the path.
     """
     found = analyse(episode)
     place, _, active = found.group_motion
@@ -57,13 +57,13 @@ def path_keeping(episode: Episode) -> FloatArray:
     low=0.0,
 )
 def catch_up_time(episode: Episode) -> FloatArray:
-    """(A,) [s] mean time from falling behind the group until being back with it.
+    """(A,) [s] mean duration of the periods in which a follower is behind its group.
 
     A follower is behind while it is not connected, over centres within three diameters (as
-    in `splits`), to the largest part of its team's followers, and has farther to go to its
-    goal, as the crow flies, than the members of that part have on average. Where several
-    parts are the largest, all of them are. A time that lasts until the follower's attempt
-    is over counts as long as it lasted. NaN for whoever never fell behind.
+    in `splits`), to the largest part of its team's followers, and its straight distance to its
+    goal is larger than the mean of that part. If several parts are the largest, all of them
+    count as the largest part. A period that lasts until the follower's attempt ends counts with
+    its length until then. NaN for followers that are never behind.
     """
     found = analyse(episode)
     place, _, active = found.group_motion
@@ -79,7 +79,7 @@ def catch_up_time(episode: Episode) -> FloatArray:
 
 
 def _teams(found: Analysis) -> Iterator[tuple[IntArray, IntArray]]:
-    """Followers and leaders (n,) of every team that has followers."""
+    """Yield followers and leaders (n,) of every team that has followers."""
     agents = found.world.agents
     for team in np.unique(agents.team):
         followers, leaders = (
@@ -91,7 +91,7 @@ def _teams(found: Analysis) -> Iterator[tuple[IntArray, IntArray]]:
 
 
 def _way(found: Analysis, agent: int) -> FloatArray:
-    """(P, 2) where an agent went, standing left out."""
+    """Return the path (P, 2) of an agent, without steps of length 0."""
     t = found.trajectories
     points = t.position[agent, : t.last[agent] + 1]
     step = np.diff(points, axis=0)
@@ -101,7 +101,7 @@ def _way(found: Analysis, agent: int) -> FloatArray:
 
 
 def _mean_run(state: BoolArray) -> FloatArray:
-    """(n,) mean length of the runs of True in (n, N); NaN where there is none."""
+    """Return the mean lengths (n,) of the runs of True in (n, N); NaN without a run."""
     begins = state & ~np.pad(state, ((0, 0), (1, 0)))[:, :-1]
     runs = begins.sum(axis=1)
     return np.where(runs > 0, state.sum(axis=1) / np.maximum(runs, 1), math.nan)
@@ -111,9 +111,10 @@ def _mean_run(state: BoolArray) -> FloatArray:
 def mean_lateral(
     place: FloatArray, active: BoolArray, path: FloatArray, first: IntArray
 ) -> FloatArray:
-    """(n,) mean over instants (n, N) of the distance of places (n, N, 2) from the nearest path.
+    """Return means (n,) over instants (n, N) of distances of places (n, N, 2) to the nearest path.
 
-    Path w has the points ``path[first[w]:first[w + 1]]``; see `path_keeping` for what counts.
+    Path w has the points ``path[first[w]:first[w + 1]]``; `path_keeping` defines the instants
+    that count.
     """
     mean = np.full(len(place), math.nan)
     for a in range(len(place)):
@@ -131,7 +132,7 @@ def mean_lateral(
 
 @kernel
 def _lateral(x: float, y: float, path: FloatArray, first: IntArray) -> float:
-    """Distance to the nearest path; -1 where its nearest point is an end of it."""
+    """Return the distance to the nearest path; -1 if its nearest point is an end of it."""
     least, at_end = math.inf, True
     for w in range(len(first) - 1):
         for p in range(first[w], first[w + 1] - 1):
@@ -149,7 +150,7 @@ def _lateral(x: float, y: float, path: FloatArray, first: IntArray) -> float:
 
 @kernel
 def behind(place: FloatArray, left: FloatArray, active: BoolArray, radius: FloatArray) -> BoolArray:
-    """(n, N) True where a member is behind its group, with ``left`` (n, N) [m] to go."""
+    """Return the mask (n, N) of members behind their group, from distances ``left`` (n, N) [m]."""
     lost = np.zeros(active.shape, np.bool_)
     n = len(active)
     label, stack = np.empty(n, np.int64), np.empty(n, np.int64)

@@ -1,8 +1,7 @@
-"""Groups: how a team keeps together. All describe the members of one team, two or more.
+"""Groups: how close the members of a team stay together.
 
 A value is a mean over time, at 2 Hz, while at least two of the team's members are on
-their way, and then over the teams of which there are at least two members. NaN where
-no team has two.
+their way, and then over the teams with at least two members. NaN if no team has two.
 """
 
 import math
@@ -16,8 +15,8 @@ from benchnav.kernels import kernel
 from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.episode_analysis import analyse
 
-LINK = 3.0  # diameters between centres that hold a group together
-STILL = 1e-9  # [m] a step that is shorter has no direction
+LINK = 3.0  # [diameters] largest distance of centres that are connected
+STILL = 1e-9  # [m] a shorter step has no direction
 
 
 @metric(
@@ -28,10 +27,10 @@ STILL = 1e-9  # [m] a step that is shorter has no direction
     scope="group",
 )
 def cohesion(episode: Episode, members: BoolArray) -> float:
-    """Mean distance to the centroid over that of as many discs packed hexagonally into a disc.
+    """Mean distance to the centroid over that of as many discs in a hexagonal packing.
 
-    n discs of radius r so packed fill a disc of radius R with n·2√3·r² = π·R², where the
-    mean distance to the centre is ⅔·R = ⅔·r·√(n·√12/π).
+    n such discs of radius r fill a disc of radius R with n·2√3·r² = π·R², in which the mean
+    distance to the centre is ⅔·R = ⅔·r·√(n·√12/π).
     """
     return _over_teams(episode, members, _spread)
 
@@ -46,13 +45,13 @@ def cohesion(episode: Episode, members: BoolArray) -> float:
     scope="group",
 )
 def polarisation(episode: Episode, members: BoolArray) -> float:
-    """Length of the mean of the unit vectors of motion (Vicsek order), of those that move."""
+    """Length of the mean of the unit vectors of motion of moving agents (Vicsek order)."""
     return _over_teams(episode, members, _order)
 
 
 @metric(title="Connected parts of a team", unit="", better=None, low=1.0, scope="group")
 def splits(episode: Episode, members: BoolArray) -> float:
-    """Connected parts of the team, where centres within three diameters are connected."""
+    """Number of connected parts of the team; centres within three diameters are connected."""
     return _over_teams(episode, members, _parts)
 
 
@@ -60,7 +59,7 @@ Instants = Callable[[FloatArray, FloatArray, BoolArray, FloatArray], FloatArray]
 
 
 def _over_teams(episode: Episode, members: BoolArray, value: Instants) -> float:
-    """Mean over teams of the mean over time of ``value(place, step, active, radius)``."""
+    """Return the mean over teams and time of ``value(place, step, active, radius)``."""
     agents, found = episode.world.agents, analyse(episode)
     place, step, active = found.group_motion
     means = []
@@ -78,7 +77,7 @@ def _over_teams(episode: Episode, members: BoolArray, value: Instants) -> float:
 def _spread(
     place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
 ) -> FloatArray:
-    """(N,) of places (n, N, 2) of those who are active (n, N)."""
+    """Return the spread (N,) of places (n, N, 2), over the active members (n, N)."""
     share = active / active.sum(axis=0)
     away = place - (place * share[..., None]).sum(axis=0)
     distance = (np.hypot(away[..., 0], away[..., 1]) * share).sum(axis=0)
@@ -91,7 +90,7 @@ def _spread(
 def _order(
     place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
 ) -> FloatArray:
-    """(N,); NaN if no agent moves."""
+    """Return the Vicsek order (N,); NaN if no agent moves."""
     length = np.hypot(step[..., 0], step[..., 1])
     moving = active & (length > STILL)
     unit = np.where(moving, 1.0 / np.where(moving, length, 1.0), 0.0)[..., None] * step
@@ -104,7 +103,7 @@ def _order(
 def _parts(
     place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
 ) -> FloatArray:
-    """(N,) parts of those who are active."""
+    """Return the number (N,) of connected parts of the active members."""
     n, instants = active.shape
     parts = np.zeros(instants)
     label, stack = np.empty(n, np.int64), np.empty(n, np.int64)
@@ -117,9 +116,9 @@ def _parts(
 def label_parts(
     place: FloatArray, active: BoolArray, radius: FloatArray, label: IntArray, stack: IntArray
 ) -> int:
-    """How many connected parts those have who are active (n,); ``label`` (n,) says who is in which.
+    """Return the number of connected parts of active agents (n,); write parts to ``label`` (n,).
 
-    Each part is filled from a seed, neighbour by neighbour. Who is not active gets -1;
+    Each part is filled from a seed, neighbour by neighbour. Inactive agents get label -1;
     ``stack`` (n,) is scratch.
     """
     parts = 0

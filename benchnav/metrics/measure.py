@@ -1,4 +1,4 @@
-"""Episodes in, rows of the results table out."""
+"""Compute the rows of the results table from episodes."""
 
 import math
 from collections.abc import Sequence
@@ -10,13 +10,13 @@ from benchnav.arrays import BoolArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import PluginError
 from benchnav.metrics.metric import Metric, evaluate
-from benchnav.navigation.command_check import said
+from benchnav.navigation.command_check import exception_text
 from benchnav.navigation.plugin.trace import trace
 from benchnav.plugins import METRICS
 
 
 def load_metric(name: str) -> Metric:
-    """The registered metric of this name. Raises what the registry raises."""
+    """Return the registered metric of this name. Raises the errors of the registry."""
     metric: Metric = METRICS.load(name)
     return metric
 
@@ -27,12 +27,12 @@ def own_metrics() -> tuple[Metric, ...]:
 
 
 def is_own(name: str) -> bool:
-    """Whether the metric of this name is part of benchnav, and not of a plugin."""
+    """Whether the metric of this name belongs to benchnav, and not to a plugin."""
     return METRICS.source(name).is_own and not METRICS.is_local(name)
 
 
 def all_metrics() -> tuple[Metric, ...]:
-    """Every registered metric, by name."""
+    """Return every registered metric, by name."""
     return tuple(load_metric(name) for name in METRICS.names())
 
 
@@ -44,10 +44,10 @@ def _no_metrics_twice(names: tuple[str, ...]) -> None:
 
 
 def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]:
-    """Rows of `benchnav.store.parts.results.RESULTS`: each metric for each role that is evaluated.
+    """Return rows of `benchnav.store.parts.results.RESULTS`: each metric for each evaluated role.
 
-    Background agents are in the world, but never scored. A metric that raises or answers
-    another shape costs its own value: it is missing (NaN), with the reason.
+    Background agents are in the world, but never scored. If a metric raises or returns another
+    shape, only its own value is missing (NaN), with the reason.
     """
     _no_metrics_twice(tuple(metric.name for metric in metrics))
     return [
@@ -58,7 +58,7 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
 
 
 def subjects(episode: Episode) -> list[tuple[dict[str, Any], BoolArray]]:
-    """(what rows say of it, members (A,)) of each role that is evaluated in an episode."""
+    """Return (common columns, members (A,)) of each evaluated role of an episode."""
     agents, identity, clock = episode.world.agents, episode.identity, episode.world.clock
     found: list[tuple[dict[str, Any], BoolArray]] = []
     for role in Role:
@@ -81,12 +81,12 @@ def subjects(episode: Episode) -> list[tuple[dict[str, Any], BoolArray]]:
 
 
 def valued(metric: Metric, episode: Episode, members: BoolArray) -> dict[str, Any]:
-    """The columns of a row that a metric fills."""
+    """Return the columns of a row that depend on the metric."""
     value, defined, missing, traceback = math.nan, 0, "", None
     try:
         value, defined = evaluate(metric, episode, members)
     except (Exception, SystemExit) as error:
-        missing, traceback = said(error), trace(error)
+        missing, traceback = exception_text(error), trace(error)
     return {
         "metric": metric.name, "value": value, "defined": defined,
         "missing": missing, "traceback": traceback,

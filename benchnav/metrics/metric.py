@@ -18,23 +18,23 @@ Function = Callable[..., FloatArray | float]
 
 @dataclass(frozen=True, kw_only=True)
 class Metric:
-    """A function of an episode and what tables must know of it. Called, it calls the function.
+    """A function of an episode, with the properties that tables need. A call calls the function.
 
-    Undefined is NaN, never a perfect score. `metric` makes one of a function.
+    An undefined value is NaN, never a perfect score. `metric` converts a function into a metric.
     """
 
     name: str  # "success", "path_length", …
     title: str  # one sentence
     unit: str  # "", "m", "s", "rad/m", …
     better: Direction | None  # None: descriptive, never ranked
-    low: float  # smallest and greatest possible value
+    low: float  # smallest and largest possible value
     high: float
-    reference: str  # where the definition comes from
+    reference: str  # source of the definition
     function: Function
     scope: Scope = "agent"
-    conditional: bool = False  # defined only for agents that arrived: shows its n, never ranks
+    conditional: bool = False  # defined only for agents that arrive: shows n, never ranks
     verifiable: bool = True  # False for timings
-    rate: bool = False  # per-agent 0/1: its interval is one of binomials
+    rate: bool = False  # 0 or 1 per agent: it has a binomial interval
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "__doc__", self.function.__doc__)  # for `help`
@@ -56,7 +56,7 @@ def metric(
     verifiable: bool = True,
     rate: bool = False,
 ) -> Callable[[Function], Metric]:
-    """Return a decorator that makes a `Metric` of a function, under the function's name.
+    """Return a decorator that converts a function into a `Metric` with the function's name.
 
     Its arguments are the fields of `Metric`. The function of an agent's metric takes the episode
     and returns (A,); that of a group's metric also takes the members (A,), and returns a number.
@@ -83,9 +83,9 @@ def metrics_in(module: ModuleType) -> dict[str, str]:
 
 
 def evaluate(metric: Metric, episode: Episode, members: BoolArray) -> tuple[float, int]:
-    """Mean over the members (A,) where it is defined, and how many those are.
+    """Return the mean over the members (A,) with a defined value, and their number.
 
-    Raises ValueError where the mean is larger than `LARGEST`.
+    Raises ValueError if the magnitude of the mean exceeds `LARGEST`.
     """
     if metric.scope == "group":
         value = float(metric.function(episode, members))

@@ -1,4 +1,4 @@
-"""The page of all metrics that ship, generated from the registry: docs/metrics.md."""
+"""Generate docs/metrics.md, the page of all metrics of benchnav, from the registry."""
 
 import inspect
 import math
@@ -19,18 +19,18 @@ compares the two.
 
 A metric is a pure function of an episode. Agents' values are averaged over the evaluated
 agents of a role for which they are defined, leaders and followers apart, then over seeds.
-What is undefined is NaN, never a perfect score. Every agent's trajectory is cut at its
-arrival, its end or its navigator's failure. A metric that is defined for arrivals alone
-shows over how many it was taken, and never ranks; neither does one without a direction.
-Nor does what an early end cuts short: who crashes has less time to hit or to be near
-anything, so no metric that ranks may be better for it, which `check_metric` tests.
-Timings cannot be verified by others and are marked.
+An undefined value is NaN, never a perfect score. Every agent's trajectory is cut at its
+arrival, its end or its navigator's failure. A metric that is defined only for arrivals shows
+the number of its episodes, and never ranks. A metric without a direction does not rank.
+A value that accumulates over an attempt does not rank, because an agent that crashes has less
+time to hit or to be near anything: `check_metric` tests that no ranking metric improves by an
+early end. Timings are marked, because others cannot verify them.
 
-Every metric keeps its value, to rounding, when the world is moved or turned and when its
-agents are reordered, and within 5 % when the same smooth motion is recorded at dt, dt/2
-and dt/5. `benchnav.testing.check_metric.check_metric` holds anybody's metric to the same.
+The value of every metric stays the same, except for rounding, if the world is moved or turned
+or its agents are reordered, and within 5 % if the same smooth motion is recorded at dt, dt/2
+and dt/5. `benchnav.testing.check_metric.check_metric` checks the same for metrics of plugins.
 
-A function becomes a metric by the decorator `metric`, and is checked by `check_metric`:
+The decorator `metric` converts a function into a metric, and `check_metric` checks it:
 
 ```python
 import numpy as np
@@ -41,7 +41,7 @@ from benchnav.testing.check_metric import check_metric
 
 @metric(title="Arrived in the first 10 s", unit="", better="higher", low=0.0, high=1.0)
 def early(episode):
-    """(A,) 1 where the agent arrived within 10 s."""
+    """(A,) 1 for agents that arrive within 10 s."""
     return (np.nan_to_num(episode.arrival, nan=np.inf) <= 10.0).astype(float)
 
 
@@ -49,8 +49,8 @@ check_metric(early)
 ```
 
 A distribution names each of its metrics by an entry point of the group `benchnav.metrics`:
-`early = "my_package.metrics:early"`. In a script, `benchnav.register_metric("early")(early)` makes
-it known to this process.
+`early = "my_package.metrics:early"`. In a script, `benchnav.register_metric("early")(early)`
+registers it in this process.
 
 | metric | what | unit | better | range | of | reference |
 | --- | --- | --- | --- | --- | --- | --- |
@@ -58,7 +58,7 @@ it known to this process.
 
 
 def page() -> str:
-    """Markdown: one table of all shipped metrics, then their definitions."""
+    """Return the Markdown page: one table of all shipped metrics, then their definitions."""
     shipped: dict[str, list[Metric]] = {section: [] for section in SECTIONS}
     for name in METRICS.names():
         module, _, _ = METRICS.source(name).value.partition(":")

@@ -1,7 +1,7 @@
-"""Safety: collisions, and how little was missing.
+"""Safety: collisions and near misses.
 
 An attempt that a crash ends early has less time to hit, or to be near, anything else. So
-what adds up over an attempt only describes it; `collided` and what was missing rank.
+counts and shares of time only describe an attempt, and do not rank.
 """
 
 import numpy as np
@@ -14,8 +14,8 @@ from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.encounters import TTC_CAP
 from benchnav.metrics.quantities.episode_analysis import analyse
 
-INTIMATE = 0.45  # [m] Hall 1966: the far edge of intimate distance
-PERSONAL = 1.2  # [m] Hall 1966: the far edge of personal distance
+INTIMATE = 0.45  # [m] Hall 1966: upper limit of intimate distance
+PERSONAL = 1.2  # [m] Hall 1966: upper limit of personal distance
 _HALL = "Hall 1966, The Hidden Dimension"
 
 
@@ -28,39 +28,39 @@ _HALL = "Hall 1966, The Hidden Dimension"
     rate=True,
 )
 def collided(episode: Episode) -> FloatArray:
-    """(A,) 1 where the agent was charged with at least one collision event."""
+    """(A,) 1 for agents that are charged with at least one collision event."""
     return (_events(episode, episode.contacts.charged) > 0).astype(np.float64)
 
 
 @metric(title="Collision events with walls", unit="", better=None, low=0.0)
 def collisions_wall(episode: Episode) -> FloatArray:
-    """(A,) charged events with walls."""
+    """(A,) number of charged events with walls."""
     return _of_kind(episode, Kind.WALL)
 
 
 @metric(title="Collision events with static obstacles", unit="", better=None, low=0.0)
 def collisions_static(episode: Episode) -> FloatArray:
-    """(A,) charged events with static obstacles."""
+    """(A,) number of charged events with static obstacles."""
     return _of_kind(episode, Kind.STATIC)
 
 
 @metric(title="Collision events with dynamic obstacles", unit="", better=None, low=0.0)
 def collisions_dynamic(episode: Episode) -> FloatArray:
-    """(A,) charged events with dynamic obstacles."""
+    """(A,) number of charged events with dynamic obstacles."""
     return _of_kind(episode, Kind.DYNAMIC)
 
 
 @metric(title="Collision events with other agents", unit="", better=None, low=0.0)
 def collisions_agent(episode: Episode) -> FloatArray:
-    """(A,) charged events with other agents."""
+    """(A,) number of charged events with other agents."""
     return _of_kind(episode, Kind.AGENT)
 
 
 @metric(title="Time in collision", unit="s", better="lower", low=0.0)
 def contact_time(episode: Episode) -> FloatArray:
-    """(A,) [s] in charged contact with at least one partner: overlapping events count once.
+    """(A,) [s] time in charged contact with at least one partner; overlapping events count once.
 
-    NaN for all where the first contact ends the attempt: it lasts no time there.
+    NaN for all agents if the rules end an attempt at its first contact, which then lasts no time.
     """
     c = episode.contacts
     total = np.zeros(len(episode.world.agents))
@@ -76,9 +76,9 @@ def contact_time(episode: Episode) -> FloatArray:
 
 @metric(title="Smallest gap to anything that can be hit", unit="m", better="higher")
 def min_clearance(episode: Episode) -> FloatArray:
-    """(A,) [m] smallest gap to anything that can be hit; NaN where there is nothing.
+    """(A,) [m] smallest gap to walls, obstacles and other agents; NaN if there are none.
 
-    Negative in overlap. Exact for motion that is straight between states.
+    Negative for an overlap. Exact for motion that is straight between states.
     """
     clearance = analyse(episode).encounters.clearance
     return np.where(np.isfinite(clearance), clearance, np.nan)
@@ -93,11 +93,10 @@ def min_clearance(episode: Episode) -> FloatArray:
     reference="Hayward 1972, Near-miss determination",
 )
 def min_time_to_collision(episode: Episode) -> FloatArray:
-    """(A,) [s] smallest time to a touch, if all kept the velocities that they had at some instant.
+    """(A,) [s] smallest time to a collision, over all instants, at the velocities of the instant.
 
-    Towards walls, obstacles and agents alike; 0 for an agent that did touch something,
-    charged or not; at most 5 s, which is also the value of an agent that is never on a
-    collision course that is nearer than that.
+    It covers walls, obstacles and agents. 0 for an agent that touches something, charged or
+    not; at most 5 s, which is also the value of an agent without a collision course within 5 s.
     """
     found, contacts = analyse(episode), episode.contacts
     time = found.encounters.time_to_collision.copy()
@@ -117,7 +116,7 @@ def min_time_to_collision(episode: Episode) -> FloatArray:
 def personal_space_intimate(episode: Episode) -> FloatArray:
     """(A,) share of its attempt with less than 0.45 m to another agent, rim to rim.
 
-    NaN for an agent whose attempt was over at once.
+    NaN for an agent whose attempt ended at its start.
     """
     return _share_within(episode, INTIMATE)
 
@@ -133,7 +132,7 @@ def personal_space_intimate(episode: Episode) -> FloatArray:
 def personal_space_personal(episode: Episode) -> FloatArray:
     """(A,) share of its attempt with less than 1.2 m to another agent, rim to rim.
 
-    NaN for an agent whose attempt was over at once.
+    NaN for an agent whose attempt ended at its start.
     """
     return _share_within(episode, PERSONAL)
 
@@ -148,7 +147,7 @@ def _of_kind(episode: Episode, kind: Kind) -> FloatArray:
 
 
 def _share_within(episode: Episode, distance: float) -> FloatArray:
-    """(A,) of its time: the gap to the nearest agent is taken as linear between states."""
+    """Return shares (A,) of time; the gap to the nearest agent is linear between states."""
     found = analyse(episode)
     gap = found.encounters.gap - distance
     before, after = gap[:, :-1], gap[:, 1:]

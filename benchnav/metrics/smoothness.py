@@ -1,9 +1,9 @@
-"""Smoothness of motion, of those that arrived: a crash after one straight metre is not smooth.
+"""Smoothness of motion, for agents that arrive: a crash after one straight metre is not smooth.
 
-Turning is read off the path. Jerk and spectrum need velocity at one fixed rate,
-low-passed (`filter`), because they diverge at steps of velocity. An agent stands
-before it starts, so its first step of velocity counts; what would come after its
-arrival does not. All are NaN for an agent that has not moved by its own radius.
+Turning is computed from the path. Jerk and spectrum need velocity at one fixed rate,
+low-passed (`lowpass`), because they diverge at steps of velocity. An agent has velocity 0
+before its start, so its first step of velocity counts; motion after its arrival does not
+count. All are NaN for an agent that has not moved by at least its radius.
 """
 
 import math
@@ -17,10 +17,10 @@ from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.quantities.lowpass import CUTOFF, RATE
 
-THRESHOLD = 0.05  # of the spectrum's peak: SPARC's amplitude threshold
-EVERY = 2  # samples: the spectrum of speed needs no more than 10 Hz
+THRESHOLD = 0.05  # SPARC's amplitude threshold, relative to the peak of the spectrum
+EVERY = 2  # use every second sample: 10 Hz are enough for the spectrum of speed
 PADDING = 4  # SPARC's zero padding, in powers of two
-STILL = 1e-6  # [m] a segment that is shorter has no direction
+STILL = 1e-6  # [m] a shorter segment has no direction
 
 
 @metric(
@@ -34,8 +34,8 @@ STILL = 1e-6  # [m] a segment that is shorter has no direction
 def turning(episode: Episode) -> FloatArray:
     """(A,) [rad/m] ∫|dθ| of the direction of motion over the way travelled.
 
-    Standing and turning on the spot have no direction of motion; what counts is the
-    angle between the directions before and after. Angles are taken the short way.
+    Standing and turning on the spot have no direction of motion: the angle between the
+    directions before and after counts. Angles are at most π.
     """
     t = analyse(episode).trajectories
     segment = np.diff(t.position, axis=1)
@@ -61,7 +61,7 @@ def log_dimensionless_jerk(episode: Episode) -> FloatArray:
     """(A,) −ln( D³ / v_peak² · ∫ |d²v/dt²|² dt ), D the time until arrival.
 
     A minimum-jerk movement has −ln 204.8 = −5.32: its squared jerk is 720 L²/D⁵ and its
-    greatest speed 15/8 · L/D (Hogan & Sternad 2009).
+    largest speed 15/8 · L/D (Hogan & Sternad 2009).
     """
     return _each(episode, _dimensionless_jerk)
 
@@ -75,27 +75,27 @@ def log_dimensionless_jerk(episode: Episode) -> FloatArray:
     conditional=True,
 )
 def sparc(episode: Episode) -> FloatArray:
-    """(A,) spectral arc length of the speed profile up to 1 Hz, negative, 0 being smoothest.
+    """(A,) spectral arc length of the speed profile up to 1 Hz; negative, 0 is the smoothest.
 
     As published (padding 4, amplitude threshold 0.05), but with the filter's 1 Hz as the
-    greatest frequency in place of the 10 Hz of hand movements.
+    largest frequency instead of the 10 Hz of hand movements.
     """
     return _each(episode, _spectral_arc_length)
 
 
 def dimensionless_jerk(velocity: FloatArray, duration: float, rate: float) -> float:
-    """D³ / v_peak² · ∫ |d²v/dt²|² dt of ``velocity`` (N, 2) [m/s] sampled at ``rate`` [Hz]."""
+    """Return D³ / v_peak² · ∫ |d²v/dt²|² dt of ``velocity`` (N, 2) [m/s] at ``rate`` [Hz]."""
     jerk = np.diff(velocity, n=2, axis=0) * rate**2
     peak2 = float((velocity**2).sum(axis=1).max())
     return float((jerk**2).sum()) / rate * duration**3 / peak2
 
 
 def spectral_arc_length(speed: FloatArray, rate: float, top: float = CUTOFF) -> float:
-    """SPARC of ``speed`` (N,) sampled at ``rate`` [Hz], of frequencies up to ``top`` [Hz].
+    """Return SPARC of ``speed`` (N,) sampled at ``rate`` [Hz], for frequencies up to ``top`` [Hz].
 
     Balasubramanian et al. 2015: the length of the spectrum's curve in the band between the
     first and last frequency above the threshold, both axes scaled to 1.
-    NaN where the threshold leaves no band.
+    NaN if the threshold leaves no band.
     """
     size = 2 ** (math.ceil(math.log2(len(speed))) + PADDING)
     count = int(top / (rate / size)) + 1
@@ -125,7 +125,7 @@ def _defined(episode: Episode) -> BoolArray:
 
 
 def _each(episode: Episode, measure: Callable[[FloatArray, float], float]) -> FloatArray:
-    """(A,) ``measure(velocity, duration)`` where smoothness is defined."""
+    """Return ``measure(velocity, duration)`` (A,); NaN for agents without defined smoothness."""
     found = analyse(episode)
     values = np.full(len(found.arrival), math.nan)
     for agent in np.flatnonzero(_defined(episode)):

@@ -1,7 +1,7 @@
-"""Success: what became of every agent. All are rates over the agents, failures included.
+"""Success: the outcome of every agent. All are rates over the agents, failures included.
 
-Who crashes neither times out nor gets stuck nor fails: those three tell the outcomes
-apart, and `success` and `arrival` rank.
+`success` and `arrival` rank. `timeout`, `stuck` and `failed` only distinguish outcomes: an agent
+that crashes does not count in them.
 """
 
 import math
@@ -26,10 +26,10 @@ STUCK_WINDOW = 10.0  # [s]
     rate=True,
 )
 def success(episode: Episode) -> FloatArray:
-    """(A,) 1 where the agent arrived and no charged contact had started before.
+    """(A,) 1 for agents that arrive before any charged contact starts.
 
-    A contact that starts at the very instant of arrival does not count: the agent had
-    arrived. An agent whose navigator failed in the episode does not succeed.
+    A contact that starts exactly at the arrival does not count. An agent whose navigator
+    fails in the episode does not succeed.
     """
     return analyse(episode).success.astype(np.float64)
 
@@ -43,13 +43,13 @@ def success(episode: Episode) -> FloatArray:
     rate=True,
 )
 def arrival(episode: Episode) -> FloatArray:
-    """(A,) 1 where the agent touched its goal disc before the horizon, hit or not."""
+    """(A,) 1 for agents that touch their goal disc before the horizon, also after collisions."""
     return analyse(episode).arrived.astype(np.float64)
 
 
 @metric(title="Still on its way at the horizon", unit="", better=None, low=0.0, high=1.0, rate=True)
 def timeout(episode: Episode) -> FloatArray:
-    """(A,) 1 where the agent was still on its way when the record ends at the horizon."""
+    """(A,) 1 for agents that are still on their way when the record ends at the horizon."""
     found = analyse(episode)
     return (found.active_at_end & ~found.failed).astype(np.float64)
 
@@ -63,9 +63,9 @@ def timeout(episode: Episode) -> FloatArray:
     rate=True,
 )
 def stuck(episode: Episode) -> FloatArray:
-    """(A,) 1 where the agent timed out and was within one radius of its last place for 10 s.
+    """(A,) 1 for agents that time out and stay within one radius of their last place for 10 s.
 
-    NaN for all where the horizon is shorter than that.
+    NaN for all agents if the horizon is shorter than 10 s.
     """
     found = analyse(episode)
     if episode.world.clock.horizon < STUCK_WINDOW:
@@ -82,25 +82,25 @@ def stuck(episode: Episode) -> FloatArray:
 
 @metric(title="Its navigator failed", unit="", better=None, low=0.0, high=1.0, rate=True)
 def failed(episode: Episode) -> FloatArray:
-    """(A,) 1 where the agent's navigator failed in this episode."""
+    """(A,) 1 for agents whose navigator fails in this episode."""
     return analyse(episode).failed.astype(np.float64)
 
 
 def success_time(episode: Episode) -> FloatArray:
-    """(A,) [s] when the agent succeeded; inf where it did not. Input of `success_by_horizon`."""
+    """Return success times (A,) [s], inf for agents without success, for `success_by_horizon`."""
     found = analyse(episode)
     return np.where(found.success, found.arrival, math.inf)
 
 
 def success_by_horizon(times: FloatArray, horizons: FloatArray) -> FloatArray:
-    """Success against horizon: the cumulative incidence of success.
+    """Return success against horizon, the cumulative incidence of success: shares (H,).
 
     ``times`` (N,) [s] are the success times of *all* agents that are compared, inf for
-    those that never succeeded: failures stay in the denominator, so the curve rises to
-    the success rate and not to 1. Nobody is lost from sight before the horizon of the
-    episodes, so no correction for censoring is due up to there.
+    agents without success: failures stay in the denominator, so the curve rises to
+    the success rate and not to 1. No agent is censored before the horizon of the
+    episodes, so no correction for censoring is needed up to the horizon.
 
-    Returns (H,) shares for ``horizons`` (H,) [s]; NaN without agents.
+    The horizons of the curve are ``horizons`` (H,) [s]. NaN without agents.
     """
     if len(times) == 0:
         return np.full(len(horizons), math.nan)

@@ -1,4 +1,4 @@
-"""What authors of navigators, planners and controllers need.
+"""The public names for authors of navigators, planners and controllers.
 
 Import from here; a name is loaded when it is first used.
 """

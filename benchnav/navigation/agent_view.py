@@ -11,9 +11,9 @@ from benchnav.sensors.readings import Edges, Rays
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AgentView:
-    """What one agent perceives now, in the world frame.
+    """The perception of one agent now, in the world frame.
 
-    Memory belongs into ``state``. To keep it elsewhere, use (``row``, ``agent``) as its key:
+    Keep memory in ``state``. To keep it elsewhere, use (``row``, ``agent``) as its key:
     ``batch_index`` changes from call to call, because worlds that have ended are left out.
     """
 
@@ -22,7 +22,7 @@ class AgentView:
     heading: float  # [rad]
     velocity: FloatArray  # (2,) [m/s] as executed in the last step
     goal: FloatArray  # (2,) [m]
-    row: int  # names the world from `reset` to the end of its episode
+    row: int  # number of the world from `reset` to the end of its episode
     agent: int  # index of the agent in the arrays of the briefing
     state: Any  # what `reset_agent` returned for this agent
     observation: Observation  # the batch from which this view is taken

@@ -1,4 +1,4 @@
-"""What a navigator is told before an episode, for the agents that it drives in one world."""
+"""The briefing: information about one world before an episode, for the agents of a navigator."""
 
 from dataclasses import dataclass
 
@@ -14,10 +14,10 @@ from benchnav.navigation.rehearsal import Rehearsal
 class Briefing:
     """Roles, goals, limits, clock, and the map that the track grants.
 
-    It names neither scenario, split nor seed. The generator is the only source of
-    randomness that a navigator may use; it is seeded with a salt of the run that no
-    navigator is handed, so that trying seeds does not tell which world this is. What
-    is there to see, starts, goals, sizes, says what it says.
+    It does not name the scenario, the split or the seed. The generator is the only source of
+    randomness that a navigator may use. It is seeded with a salt of the run, which no
+    navigator receives, so trying seeds does not reveal the world. Starts, goals and sizes
+    are visible and may reveal it.
     """
 
     dt: float  # [s] between decisions
@@ -54,7 +54,7 @@ def brief(
     rng: np.random.Generator,
     rehearsals: tuple[Rehearsal, ...] = (),
 ) -> Briefing:
-    """The briefing of the agents ``chosen`` (indices into the world's agents)."""
+    """Return the briefing of the agents ``chosen`` (indices into the world's agents)."""
 
     def copy(array: FloatArray | IntArray | ByteArray) -> np.ndarray:
         return array[chosen].copy()

@@ -1,4 +1,4 @@
-"""Checks what a navigator answered before it may touch the state, and says what went wrong."""
+"""Check the answers of a navigator before they reach the state, and describe its failures."""
 
 import re
 from collections import Counter
@@ -13,25 +13,25 @@ from benchnav.navigation.plugin.trace import class_name, location, plain
 from benchnav.text.visible import shortened
 
 _PLACE = re.compile(r" (\([^()]+:\d+\))\.?( at t = \S+ s)?$")
-MOST_REMARKS = 20  # that are kept of one episode
+MOST_REMARKS = 20  # stored per episode
 _NUMBER = re.compile(r"-?\d[\d.]*(e[-+]?\d+)?")
 _TIME = re.compile(r" at t = \S+ s$")
 
 
 class CallFailed(Exception):
-    """A call of a navigator failed; nobody is charged before it failed for one world alone."""
+    """A call of a navigator failed; it is charged once it failed for a single world."""
 
     def __init__(self, reason: str, suspects: IntArray | None = None, traceback: str = "") -> None:
         super().__init__(reason)
         self.reason = reason
-        self.traceback = traceback  # as text; "" where nothing was raised
-        self.suspects = suspects  # places in the call that gave garbage; None: cannot be told
+        self.traceback = traceback  # as text; "" if nothing was raised
+        self.suspects = suspects  # batch indices of worlds with invalid commands; None: unknown
 
 
 def checked(answer: Any, active: BoolArray) -> FloatArray:
-    """(B, A, 2) finite float64, zero where not ``active`` (B, A).
+    """Return the commands (B, A, 2), finite float64, zero for agents not ``active`` (B, A).
 
-    Raises CallFailed where the answer is no such array.
+    Raises CallFailed if the answer is not an array of finite numbers of this shape.
     """
     expected = (*active.shape, 2)
     try:
@@ -57,19 +57,19 @@ def checked(answer: Any, active: BoolArray) -> FloatArray:
     return command
 
 
-def said(error: BaseException) -> str:
-    """What an exception says and where it was raised, on one line of a reason."""
+def exception_text(error: BaseException) -> str:
+    """Return the text of an exception and where it was raised, on one line."""
     name, text, place = class_name(error), short(error), location(error)
     return (f"{name}: {text}" if text else name) + (f" ({place})" if place else "")
 
 
 def short(text: object) -> str:
-    """On one line, of at most 300 letters; whatever is no text yet is made one."""
+    """Return an object as text on one line, of at most 300 characters."""
     return shortened(" ".join(plain(text).split()), 300)
 
 
 def remarks_of(answer: Any) -> list[str]:
-    """The remarks that a navigator answered: one text is one remark, None is none."""
+    """Return the remarks in a navigator's answer: a string is one remark, None means no remarks."""
     if answer is None:
         return []
     given = [answer] if isinstance(answer, str) else islice(answer, MOST_REMARKS)
@@ -77,16 +77,16 @@ def remarks_of(answer: Any) -> list[str]:
 
 
 def kind_of(reason: str) -> str:
-    """What reasons share that tell of one fault: their numbers, and when it was, do not count.
+    """Return the kind of a reason: reasons that differ only in numbers and times are of one kind.
 
-    Where a line of code is named, the exception and the line alone count.
+    If a reason names a line of code, only the exception and that line count.
     """
     place = _PLACE.search(reason)
     return reason.partition(": ")[0] + place[1] if place else _NUMBER.sub("#", reason)
 
 
 def grouped(reasons: Mapping[str, int]) -> list[tuple[str, int]]:
-    """(reason, how many) of each kind, the commonest first; reasons are told without the time."""
+    """Return (reason, count) of each kind, most frequent first; reasons omit the time."""
     kinds: dict[str, Counter[str]] = {}
     for reason, count in reasons.items():
         kinds.setdefault(kind_of(reason), Counter())[_TIME.sub("", reason)] += count

@@ -14,15 +14,15 @@ from benchnav.navigation.observation import Observation
 
 @dataclass(frozen=True, eq=False)
 class Guide:
-    """Where the paths say to go now, made by the path tracker that all controllers share."""
+    """The current targets on the paths, from the path tracker that all controllers share."""
 
     target: FloatArray  # (B, A, 2) [m] point on the path, a lookahead ahead of the agent
     remaining: FloatArray  # (B, A) [m] path length from the agent's projection to the end
-    has_path: BoolArray  # (B, A) False where planning found nothing (target is then the goal)
+    has_path: BoolArray  # (B, A) False if planning found no path (the target is then the goal)
     clearance: FloatArray | None = None
-    """(B, A) [m] that the path leaves beside the agent in its narrowest place: a controller that
-    keeps more from walls cannot follow it. inf where that is enough or not known; None: unknown
-    for all."""
+    """(B, A) [m] between the agent and the obstacles at the narrowest place of its path. A
+    controller that keeps more distance from walls cannot follow the path. inf: enough or unknown;
+    None: unknown for all agents."""
 
 
 class Controller(ABC):
@@ -31,30 +31,30 @@ class Controller(ABC):
     Config: ClassVar[type[PluginConfig]] = PluginConfig
     needs: ClassVar[frozenset[Need]] = frozenset()
     command: ClassVar[CommandKind] = "velocity"
-    lookahead: ClassVar[float] = 1.0  # [m] of path to its target, at most, unless told otherwise
-    adapts_clearance: ClassVar[bool] = False  # keeps no more from walls than `Guide.clearance`
-    cut: ClassVar[float] = 0.1  # [m] by which it may miss corners, unless told otherwise
+    lookahead: ClassVar[float] = 1.0  # [m] of path to the target, at most; a default
+    adapts_clearance: ClassVar[bool] = False  # whether `Guide.clearance` bounds its wall distance
+    cut: ClassVar[float] = 0.1  # [m] by which the agent may miss corners; a default
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         self.config: Any = config if config is not None else self.Config()
 
     @property
     def required(self) -> frozenset[Need]:
-        """What this configured instance needs."""
+        """The needs of this configured instance."""
         return self.needs
 
     @property
     def training(self) -> Training | None:
-        """What it cost to train; None for what does not learn."""
+        """The cost of training; None for a controller that does not learn."""
         return None
 
     @property
     def fingerprint(self) -> str:
-        """Of what it reads from files, weights say, beyond its Config and version."""
+        """The fingerprint of the files that it reads, such as weights; "" if it reads none."""
         return ""
 
     def unfit(self, sensing: Sensing) -> str:
-        """Why it cannot drive agents that sense so, beyond what it needs; "" where it can."""
+        """Return why it cannot use this sensing, beyond missing needs; "" if it can."""
         return ""
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:  # noqa: B027 - optional
@@ -62,4 +62,4 @@ class Controller(ABC):
 
     @abstractmethod
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
-        """(B, A, 2) commands."""
+        """Return the commands (B, A, 2)."""

@@ -9,7 +9,7 @@ class HeldMaps:
     """The map of each world of a simulation, replaced when its static obstacles are re-placed.
 
     Args:
-        simulation: B worlds; `begin` is due for a row before its map is held.
+        simulation: B worlds; call `begin` for a row before its map is used.
         track: the knowledge track that grants the maps.
     """
 
@@ -20,7 +20,7 @@ class HeldMaps:
         self._moving: set[int] = set()  # rows whose map may change
 
     def begin(self, row: int) -> Map | None:
-        """Return the map of the world that starts in ``row``, which is held from now on."""
+        """Return the map of the world that starts in ``row``, and keep it for `now`."""
         world = self._simulation.worlds[row]
         self._maps[row] = granted_map(world, self._track)
         self._moving.discard(row)

@@ -12,7 +12,7 @@ from benchnav.arrays import Extent, FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Map:
-    """Static geometry as the track says it stands."""
+    """The static geometry that a knowledge track grants."""
 
     bounds: Extent  # xmin, ymin, xmax, ymax [m]
     solids: tuple[Solid, ...]

@@ -1,9 +1,9 @@
-"""The contract of every competitor: observation → command, for a batch of worlds.
+"""The contract of every navigator: observation → command, for a batch of worlds.
 
 A navigator is made once from its Config, `reset` starts some worlds of the batch,
-and `act` answers for all worlds that it is shown. State belongs to a row (one
-world), never to the call: a world's commands may not depend on which other worlds
-share the call, nor on the order of its agents.
+and `act` returns the commands for all worlds of an observation. State belongs to a
+row (one world), never to the call: a world's commands must not depend on the other
+worlds of the call or on the order of its agents.
 """
 
 from abc import ABC, abstractmethod
@@ -26,7 +26,7 @@ from benchnav.plugins import Source
 
 
 class Need(StrEnum):
-    """What a navigator cannot do without."""
+    """The inputs that a navigator requires."""
 
     RAYS = "rays"
     NEIGHBOURS = "neighbours"
@@ -38,17 +38,17 @@ CommandKind = Literal["velocity", "twist"]
 
 
 class PluginConfig(BaseModel):
-    """Base of every plugin's parameters: frozen, unknown keys refused, units in the field text."""
+    """Base of every plugin's parameters: frozen, no unknown keys, units in the descriptions."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
 @dataclass(frozen=True)
 class Training:
-    """What a navigator's training cost."""
+    """The cost of a navigator's training."""
 
     decisions: int  # of agents, in all attempts
-    seconds: float  # on the machine that its card names
+    seconds: float  # on the machine that its model card names
 
 
 class Navigator(ABC):
@@ -62,12 +62,12 @@ class Navigator(ABC):
 
     @property
     def required(self) -> frozenset[Need]:
-        """What this configured instance needs (a pair of parts needs what both need)."""
+        """The needs of this configured instance (a pair has the needs of both parts)."""
         return self.needs
 
     @property
     def command(self) -> CommandKind:
-        """What `act` returns: planar velocities [m/s] in the world frame, or twists.
+        """The kind of commands of `act`: planar velocities [m/s] in the world frame, or twists.
 
         A class may declare it: ``command = "twist"``.
         """
@@ -75,35 +75,35 @@ class Navigator(ABC):
 
     @property
     def uses_map(self) -> bool:
-        """False where a map changes nothing that it answers: one run then stands for all tracks.
+        """Whether the map can affect commands.
 
-        It is then granted none.
+        If False, one run is reused for all tracks, and no map is granted.
         """
         return True
 
     @property
     def reproducible(self) -> bool:
-        """False where a wall-clock budget decides what it answers."""
+        """Whether equal inputs give equal commands; False if a wall-clock budget affects them."""
         return True
 
     @property
     def training(self) -> Training | None:
-        """What it cost to train; None for what does not learn."""
+        """The cost of training; None for a navigator that does not learn."""
         return None
 
     @property
     def fingerprint(self) -> str:
-        """Of what it reads from files, weights say, beyond its Config and version."""
+        """The fingerprint of the files that it reads, such as weights; "" if it reads none."""
         return ""
 
     @property
     def parts(self) -> tuple[Source, ...]:
-        """The other plugins that it is made of."""
+        """The other plugins that it consists of."""
         return ()
 
     @property
     def rehearsal(self) -> int:
-        """How many rehearsals it asks for before each episode: a grant that is charged."""
+        """The number of rehearsals that it requests before each episode; granted and charged."""
         return 0
 
     @property
@@ -112,26 +112,26 @@ class Navigator(ABC):
         return None
 
     def unfit(self, sensing: Sensing) -> str:
-        """Why it cannot drive agents that sense so, beyond what it needs; "" where it can."""
+        """Return why it cannot use this sensing, beyond missing needs; "" if it can."""
         return ""
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:  # noqa: B027 - optional
-        """Start the worlds ``rows`` (N,), told ``briefings`` (N,)."""
+        """Start the worlds ``rows`` (N,) with their ``briefings`` (N,)."""
 
     def remarks(self, row: int) -> Sequence[str]:
-        """What it has to tell of the world in ``row`` after the episode; it is kept with it.
+        """Return remarks on the world in ``row`` after the episode, which are stored with it.
 
-        Short sentences, of what a reader of the results should know: why there is no path, say.
+        Each is a short sentence for readers of the results, for example why there is no path.
         """
         return ()
 
     @abstractmethod
     def act(self, observation: Observation) -> FloatArray:
-        """(B, A, 2) commands; entries of inactive agents are ignored."""
+        """Return the commands (B, A, 2); entries of inactive agents are ignored."""
 
 
 class AgentNavigator(Navigator):
-    """For authors who think of one agent: implement `act_agent`; the batching is done here."""
+    """A navigator for one agent at a time: implement `act_agent`; this class does the batching."""
 
     @cached_property
     def briefings(self) -> dict[int, Briefing]:

@@ -1,7 +1,7 @@
-"""What the agents of one navigator perceive now, for a batch of worlds.
+"""The observation of the agents of one navigator, for a batch of worlds.
 
 Arrays start with (B, A): the worlds of this call and the agents that this
-navigator drives, padded; everybody else is a neighbour. World frame. Sensors
+navigator drives, padded; all other agents are neighbours. World frame. Sensors
 that the navigator does not need are None.
 """
 
@@ -14,11 +14,11 @@ from benchnav.sensors.readings import Edges, Neighbours, Rays, Rows
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Observation(Rows):
-    """What the agents of a navigator perceive at one decision, in all worlds of the batch."""
+    """The perception of a navigator's agents at one decision, in all worlds of the batch."""
 
     rows: IntArray  # (B,) the row that `reset` gave each world
     time: FloatArray  # (B,) [s]
-    active: BoolArray  # (B, A) whose commands count; the rest is padding or done
+    active: BoolArray  # (B, A) True if the command counts; False for padding and ended attempts
     position: FloatArray  # (B, A, 2) [m]
     heading: FloatArray  # (B, A) [rad]
     velocity: FloatArray  # (B, A, 2) [m/s] as executed in the last step

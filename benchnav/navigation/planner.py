@@ -16,15 +16,15 @@ from benchnav.navigation.navigator import PluginConfig
 class Plan:
     """A path, or the statement that none was found (a result, not an exception)."""
 
-    path: FloatArray  # (W, 2) [m] from start to goal; (0, 2) where unsolved
+    path: FloatArray  # (W, 2) [m] from start to goal; (0, 2) if unsolved
     solved: bool
     checks: int = 0  # motions that were checked for validity
     reason: str = ""  # why unsolved
-    clearance: float = math.inf  # [m] left beside the disc in the narrowest place; inf: enough
+    clearance: float = math.inf  # [m] from disc to obstacles at the narrowest place; inf: enough
 
     @property
     def length(self) -> float:
-        """[m]; inf where unsolved."""
+        """The length of the path [m]; inf if unsolved."""
         if not self.solved:
             return float("inf")
         return float(np.sum(np.hypot(*np.diff(self.path, axis=0).T)))
@@ -34,7 +34,7 @@ UNSOLVED = np.zeros((0, 2))
 
 
 class Planner(ABC):
-    """Plans for a disc. Deterministic for the generator that it is given."""
+    """Plans paths for a disc; deterministic for a given generator."""
 
     Config: ClassVar[type[PluginConfig]] = PluginConfig
 
@@ -43,7 +43,7 @@ class Planner(ABC):
 
     @property
     def reproducible(self) -> bool:
-        """False where a wall-clock budget decides what it answers."""
+        """Whether equal inputs give equal plans; False if a wall-clock budget affects them."""
         return True
 
     @abstractmethod
@@ -56,9 +56,9 @@ class Planner(ABC):
         tolerance: float,
         rng: np.random.Generator,
     ) -> Plan:
-        """A path (W, 2) for a disc of ``radius`` [m] that ends within ``tolerance`` [m] of goal.
+        """Return a path (W, 2) for a disc of ``radius`` [m], within ``tolerance`` [m] of the goal.
 
-        Where there is none, or none is found, the plan is not solved and gives the reason in a
-        few words: it is kept with the episode and shown beside the results. What this raises,
-        or returns that is no plan, fails the episode.
+        If there is none, or none is found, the plan is not solved and gives the reason in a few
+        words, which is stored with the episode and shown beside the results. An exception, or a
+        result that is not a plan, fails the episode.
         """

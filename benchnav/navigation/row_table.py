@@ -1,4 +1,4 @@
-"""What a navigator keeps for each row (world) and agent, as arrays."""
+"""Arrays of a navigator with an entry for each row (world) and agent."""
 
 import numpy as np
 
@@ -18,14 +18,14 @@ class RowTable:
         self._arrays: dict[str, AnyArray] = {}
 
     def put(self, row: int, **values: AnyArray) -> None:
-        """Replace what ``row`` holds; each value starts with the agents' axis (A, …)."""
+        """Replace the entries of ``row``; each value starts with the agents' axis (A, …)."""
         for name, value in values.items():
             array = self._grown(name, row + 1, value)
             array[row] = 0
             array[row, : len(value)] = value
 
     def take(self, name: str, rows: IntArray, agents: int) -> AnyArray:
-        """(B, agents, …) what the rows (B,) hold, cut or filled with zeros to ``agents``."""
+        """Return the entries (B, agents, …) of rows (B,), cut or zero-padded to ``agents``."""
         array = self._arrays[name]
         taken = array[rows, :agents]
         missing = agents - taken.shape[1]
@@ -35,7 +35,7 @@ class RowTable:
         return taken
 
     def write(self, name: str, rows: IntArray, values: AnyArray) -> None:
-        """Replace what the rows (B,) hold under ``name`` by ``values`` (B, agents, …)."""
+        """Replace the entries ``name`` of the rows (B,) by ``values`` (B, agents, …)."""
         array = self._arrays[name]
         kept = min(array.shape[1], values.shape[1])
         array[rows, :kept] = values[:, :kept]

@@ -1,7 +1,7 @@
-"""Knowledge tracks: which map a navigator is granted. The runner hands it nothing more.
+"""Knowledge tracks: the map that a navigator is granted. The runner passes it no other map.
 
-known    static geometry as it stands now; its revision rises when some of it is re-placed
-stale    static geometry as it stood before it moved; never corrected
+known    static geometry as it is now; its revision rises when obstacles are re-placed
+stale    static geometry as it was before it moved; never corrected
 partial  walls only
 unknown  no map
 """
@@ -20,16 +20,16 @@ from benchnav.navigation.map import Map
 def granted_map(
     world: World, track: str, body_position: FloatArray | None = None, revision: int = 0
 ) -> Map | None:
-    """The map of ``world`` that ``track`` grants.
+    """Return the map of ``world`` that ``track`` grants.
 
     Args:
         world: the drawn world.
         track: one of `benchnav.scenario.terms.TRACKS`.
-        body_position: (M, 2) [m] where its bodies stand now; None: where they start.
+        body_position: (M, 2) [m] the positions of its bodies now; None: at the start.
         revision: how often static obstacles were re-placed so far.
 
-    Dynamic obstacles are on no map. Nothing of it is shared with the world: whoever holds
-    a map has no way from it to the world, and cannot move the world's walls with it.
+    Dynamic obstacles are on no map. A map shares no data with the world: code that holds a map
+    cannot reach the world through it, and cannot move its walls.
     """
     if track == "unknown":
         return None
@@ -46,7 +46,7 @@ def granted_map(
 
 
 def _placed(world: World, position: FloatArray | None) -> tuple[Solid, ...]:
-    """The static bodies where they stand."""
+    """Return the static bodies at ``position`` (M, 2) [m]; None: at the start."""
     return tuple(
         body.solid.moved(body.law.points[0] if position is None else position[m])
         for m, body in enumerate(world.bodies)
@@ -55,7 +55,7 @@ def _placed(world: World, position: FloatArray | None) -> tuple[Solid, ...]:
 
 
 def _copied(solids: tuple[Solid, ...]) -> tuple[Solid, ...]:
-    """The same solids in read-only arrays of their own."""
+    """Return the same solids with read-only copies of the arrays."""
     copies = tuple(replace(solid, loops=tuple(map(np.copy, solid.loops))) for solid in solids)
     for solid in copies:
         for array in (*solid.loops, solid.capsules):

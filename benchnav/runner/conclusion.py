@@ -1,4 +1,4 @@
-"""The last lines of a run: what was stored, what failed, what navigators remark."""
+"""The last lines of a run: stored episodes, failures, and remarks of navigators."""
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
@@ -11,7 +11,7 @@ _SHOWN = 10  # lines of a kind
 
 
 def conclusion(summary: Summary, seconds: float) -> str:
-    """What a run did in ``seconds``, as lines."""
+    """Return a summary of a run that took ``seconds``, as lines."""
     fresh = summary.stored - summary.found
     lines = [f"{counted(summary.stored, 'episode')} stored, {fresh} of them run in {seconds:.1f} s"]
     if fresh and seconds > 0:
@@ -27,13 +27,13 @@ def conclusion(summary: Summary, seconds: float) -> str:
 
 
 def tracebacks(summary: Summary) -> str:
-    """One traceback for each kind of failure, for ``--debug``."""
+    """Return one traceback for each kind of failure, for ``--debug``."""
     found = [f"{label}:\n{text}" for (label, _), text in sorted(summary.tracebacks.items())]
     return "\n\n".join(found) or "Nothing was raised."
 
 
 def kept_for_now(summary: Summary) -> str:
-    """Say which episodes of older code wait for the new ones; "" where there are none."""
+    """Return a sentence about the episodes of older code that remain stored; "" if none do."""
     left = summary.older - summary.replaced.total()
     if not left:
         return ""
@@ -85,24 +85,26 @@ def _unled(summary: Summary) -> Iterator[str]:
 
 
 def _remarks(summary: Summary) -> Iterator[str]:
-    """Worlds of all scenarios together."""
+    """Yield a line for each kind of remark, which counts the worlds of all scenarios."""
     worlds = Counter[tuple[str, str]]()
     for (label, _, text), n in summary.remarks.items():
         worlds[label, text] += n
     for label, text, n in _grouped(worlds):
         scenarios = {
-            s for who, s, said in summary.remarks if (who, kind_of(said)) == (label, kind_of(text))
+            s
+            for other, s, remark in summary.remarks
+            if (other, kind_of(remark)) == (label, kind_of(text))
         }
         where = scenarios.pop() if len(scenarios) == 1 else f"{len(scenarios)} scenarios"
         yield f"remark: {label} in {counted(n, 'world')} of {where}: {text}"
 
 
 def _grouped(found: Mapping[tuple[str, str], int]) -> list[tuple[str, str, int]]:
-    """(label, reason, how many), the commonest first; reasons of one kind together."""
+    """Return (label, reason, count), the largest count first; reasons of one kind are merged."""
     labels = sorted({label for label, _ in found})
     groups = [
         (label, reason, n)
         for label in labels
-        for reason, n in grouped({why: k for (who, why), k in found.items() if who == label})
+        for reason, n in grouped({why: k for (other, why), k in found.items() if other == label})
     ]
     return sorted(groups, key=lambda group: -group[2])

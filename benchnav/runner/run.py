@@ -30,28 +30,28 @@ Executor = Callable[[Sequence[Task], int | None, Progress, Limits], Generator[Fi
 
 @dataclass
 class Summary:
-    """What a run did; filled while it goes on, so that an interrupted one can say how far."""
+    """The result of a run; it is filled during the run, and valid after an interruption."""
 
-    total: int = 0  # episodes of the suite, n/a cells left out
-    found: int = 0  # of these, on disk before it began
+    total: int = 0  # episodes of the suite, without n/a cells
+    found: int = 0  # of these, on disk before the run began
     stored: int = 0  # of these, on disk now
-    redraws: int = 0  # draws of worlds that were thrown away as unsolvable, in this execution
+    redraws: int = 0  # draws of worlds that this execution rejected as unsolvable
     not_applicable: list[tuple[Cell, str]] = field(default_factory=list)
     failures: Counter[tuple[str, str]] = field(default_factory=Counter)  # (navigator, reason)
     unled: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     """Worlds by (navigator, scenario, team) in which a leader succeeded in no rehearsal."""
     remarks: Counter[tuple[str, str, str]] = field(default_factory=Counter)
-    """Worlds by (navigator, scenario, what it tells of them)."""
+    """Worlds by (navigator, scenario, remark of the navigator)."""
     missing: Counter[tuple[str, str]] = field(default_factory=Counter)
-    """Values by (metric, why it failed)."""
-    older: int = 0  # stored episodes that older code made, and that are to be replaced
-    replaced: Counter[str] = field(default_factory=Counter)  # of these, those that were, by label
-    in_process: tuple[str, ...] = ()  # labels that ran in this process, which alone knows them
+    """Values by (metric, reason of its failure)."""
+    older: int = 0  # stored episodes of older code, which must be replaced
+    replaced: Counter[str] = field(default_factory=Counter)  # of these, the replaced ones, by label
+    in_process: tuple[str, ...] = ()  # labels that ran here, as only this process knows them
     tracebacks: dict[tuple[str, str], str] = field(default_factory=dict)
-    """One for each (navigator, kind of reason) of what was raised."""
+    """One traceback for each (navigator, kind of reason)."""
 
     def count(self, task: Task, outcome: Outcome) -> None:
-        """A task is finished."""
+        """Add the outcome of a finished task."""
         self.stored += outcome.episodes
         self.redraws += outcome.redraws
         label = task.cell.entry.label
@@ -68,7 +68,7 @@ class Summary:
 
 
 def default_workers() -> int:
-    """The cores that this process may use."""
+    """Return the number of cores that this process may use."""
     return core_count()
 
 
@@ -85,34 +85,35 @@ def run_suite(
     progress: Progress | None = None,
     summary: Summary | None = None,
 ) -> Summary:
-    """Run what is not stored yet; afterwards ``out`` holds the whole suite.
+    """Run the missing episodes; afterwards ``out`` holds the whole suite.
 
     Seeds that a run in ``out`` does not have are added to it.
 
     Args:
-        suite: what to run.
+        suite: the suite to run.
         out: the run folder; missing, empty, or one of the same suite, resumed or extended.
-        workers: processes; None: as many as there are cores; 0: in this process, where nothing
-            is limited. What is registered in this process alone runs in it in any case.
+        workers: the number of processes; None: one for each core; 0: run in this process,
+            without limits. A plugin that is registered only in this process always runs in it.
         timeout: [s] that a call of a navigator may last; None: as in ``out``, or as in `Limits`.
-        memory: [GB] that a worker may hold; None: likewise.
-        shard: run this share alone; None: everything.
-        again: run episodes again that were made by older code. They are replaced once all of a
-            navigator's are there; a run that is stopped before keeps the old ones, and goes on.
-        executor: who runs the tasks; None: worker processes of this machine.
-        progress: who is told; None: nobody.
-        summary: filled while the run goes on; None: a new one.
+        memory: [GB] that a worker may hold; None: as for ``timeout``.
+        shard: the share to run; None: the whole suite.
+        again: run the episodes of older code again. The old episodes of a navigator are replaced
+            when all its new ones are stored; a run that stops earlier keeps the old ones, and
+            can be resumed.
+        executor: the function that runs the tasks; None: worker processes of this machine.
+        progress: is notified of every finished episode; None: no progress.
+        summary: is filled during the run; None: a new one.
 
     Raises:
-        UsageError: no metric is registered, a limit cannot be kept, or ``out`` is no path.
-        RunConflictError: ``out`` holds another suite, salt, limit or thing, episodes of older
-            code (without ``again``), or another process writes it.
-        StoreError: the disk refuses, or a stored part is damaged.
+        UsageError: no metric is registered, a limit cannot be enforced, or ``out`` is no path.
+        RunConflictError: ``out`` holds a run of another suite, salt or limit, or files that are no
+            run, or episodes of older code (without ``again``), or another process writes to it.
+        StoreError: the disk cannot be written, or a stored part is damaged.
         UnsolvableError: a scenario cannot be drawn.
     """
     _refuse_without_metrics()
     out = run_path(out)
-    told = progress if progress is not None else Progress()
+    reporter = progress if progress is not None else Progress()
     summary = summary if summary is not None else Summary()
     cells = list(suite.cells())
     if executor is None:
@@ -135,23 +136,23 @@ def run_suite(
         reasons = {cell.key: cell.reason for cell in cells}
         if shard is None:
             folder = folder.extend(suite.seeds)
-        folder = renewal.begin(folder.amend(reasons))  # what was not installed then may be now
+        folder = renewal.begin(folder.amend(reasons))  # reasons change if packages were installed
         target = renewal.target(folder)
         folder.drop_others(target)
         tasks = _tasks(suite, target, cells, wanted, summary)
         keys = {cell.key for cell in here}
         folder = folder.unguard(t.cell.entry.label for t in tasks if t.cell.key in keys)
-        told.begin(summary.total, summary.stored)
-        told.expect(task.load for task in tasks)
+        reporter.begin(summary.total, summary.stored)
+        reporter.expect(task.load for task in tasks)
         try:
-            with closing(_finished(tasks, here, workers, told, limits, executor)) as finished:
+            with closing(_finished(tasks, here, workers, reporter, limits, executor)) as finished:
                 for task, outcome in finished:
                     summary.count(task, outcome)
         finally:
-            told.end()
+            reporter.end()
             process_pool.stop_all()
             with suppress(OSError):
-                drop_abandoned()  # of workers that were killed
+                drop_abandoned()  # folders of workers that were killed
             not_run = {cell.key: why for cell, why in summary.not_applicable}
             summary.replaced.update(renewal.finish(folder.amend(reasons | not_run)))
     return summary
@@ -161,7 +162,7 @@ def _finished(
     tasks: Sequence[Task], here: Sequence[Cell], workers: int | None, progress: Progress,
     limits: Limits, executor: Executor | None,
 ) -> Generator[Finished, None, None]:  # fmt: skip
-    """Run every task; those of the cells ``here`` last, in this process."""
+    """Run all tasks; those of the cells ``here`` run last, in this process."""
     keys = {cell.key for cell in here}
     mine = [task for task in tasks if task.cell.key in keys]
     away = [task for task in tasks if task.cell.key not in keys]
@@ -178,7 +179,7 @@ def _locally(
 
 
 def _wanted(suite: Suite, cells: list[Cell], shard: Shard | None) -> dict[str, set[int]]:
-    """The seeds of each cell that are to be run."""
+    """Return the seeds to run of each cell."""
     if shard is not None:
         return shard.seeds(cells, suite.seeds)
     return {cell.key: set(suite.seeds) for cell in cells}
@@ -188,7 +189,7 @@ def _tasks(
     suite: Suite, folder: RunFolder, cells: list[Cell], wanted: Mapping[str, set[int]],
     summary: Summary,
 ) -> list[Task]:  # fmt: skip
-    """What is missing, the longest first."""
+    """Return the missing tasks, the longest first."""
     tasks = []
     for cell in cells:
         if cell.reason:

@@ -1,4 +1,4 @@
-"""What every controller must pass: what a navigator must, on a straight path to its goal."""
+"""The checks of a controller: the checks of a navigator, on a straight path to its goal."""
 
 from collections.abc import Sequence
 
@@ -18,27 +18,27 @@ LOOKAHEAD = 1.0  # [m]
 
 
 def check_controller(controller: Subject, sensing: Sensing | None = None) -> None:
-    """Hold a controller to what every controller must be.
+    """Check that a controller keeps the contract of controllers.
 
     Args:
         controller: a registered name, ``{type: name, …parameters}``, a class, or any
             function that makes a fresh instance.
-        sensing: the sensors of the worlds that it is tried in, as `check_navigator` takes them.
+        sensing: the sensors of the worlds of the checks, as in `check_navigator`.
 
     Raises:
-        AssertionError: it breaks the contract; the text says how.
+        AssertionError: the controller breaks the contract; the message names the rule.
     """
     make = maker(CONTROLLERS, controller)
-    made = make()
-    name = type(made).__name__
-    require(isinstance(made, Controller), f"{name} must derive from Controller.")
-    require_config(made)
-    named = type(name, (_Guided,), {})  # so that complaints name the controller
+    instance = make()
+    name = type(instance).__name__
+    require(isinstance(instance, Controller), f"{name} must derive from Controller.")
+    require_config(instance)
+    named = type(name, (_Guided,), {})  # so that messages name the controller
     check_navigator(lambda: named(make()), sensing)
 
 
 class _Guided(Navigator):
-    """A controller on straight paths; every other agent has none."""
+    """A navigator that runs a controller on straight paths; some agents have no path."""
 
     def __init__(self, controller: Controller) -> None:
         super().__init__()
@@ -63,7 +63,7 @@ class _Guided(Navigator):
 
 
 def straight(observation: Observation) -> Guide:
-    """The guide of straight paths; agents whose goal is on their left have no path."""
+    """Return a guide of straight paths; agents whose goal has a smaller x have no path."""
     way = observation.goal - observation.position
     remaining = np.sqrt(np.sum(way * way, axis=2))
     share = np.minimum(LOOKAHEAD / np.maximum(remaining, 1e-9), 1.0)[..., None]

@@ -1,7 +1,7 @@
-"""What every metric must pass, the ones that ship and anybody's.
+"""The checks that every metric must pass, also those of plugins.
 
-`check_metric(metric)` raises AssertionError with a sentence that says what is wrong.
-Nothing here knows what a metric means; it knows what no metric may do.
+`check_metric(metric)` raises AssertionError with a sentence that names the violated rule.
+The checks do not know the meaning of a metric; they test rules that hold for all metrics.
 """
 
 import math
@@ -20,25 +20,26 @@ ROUNDING = (
     1e-6  # of the greatest value in the episode: another place or order changes rounding only
 )
 SAMPLING = 0.05  # of the greatest value in the episode: dt, dt/2 and dt/5 of the same smooth motion
-FLOOR = 1e-9  # absolute: rounding of what is zero
+FLOOR = 1e-9  # absolute: rounding of zero
 QUARTER = 0.5 * math.pi
-_UNRANKED = "what an early end cuts short ranks nobody. Declare it with better=None."
+_UNRANKED = "a value that an early end cuts short must not rank. Declare it with better=None."
 
 
 def check_metric(metric: Metric) -> None:
-    """Hold ``metric`` to what every metric must be.
+    """Check that ``metric`` keeps the contract of metrics.
 
-    A sound record; one value per agent (or one, of a group) within the declared range;
-    the same answer twice, in another place, turned, with agents reordered, under another
-    name, and recorded with other decision steps; nothing after an agent's attempt
-    counts; nothing but success earns a perfect score, and crashing never a better one.
+    Its record is valid. It gives one value per agent (or one per group) within the declared
+    range. The values do not change in a second call, if the episode is moved, turned,
+    renamed or recorded with other decision steps, or if the agents are reordered. Records
+    after an agent's attempt do not count. Only success gets a perfect score, and a crash never
+    improves the score.
     """
     for check in CHECKS:
         check(metric)
 
 
 def values(metric: Metric, episode: Episode) -> FloatArray:
-    """(A,) for a metric of agents; (1,) for one of a group, of all evaluated agents."""
+    """Return (A,) values of a metric of agents; (1,) of a metric of a group, for all evaluated."""
     if metric.scope == "group":
         return np.array([metric.function(episode, episode.world.agents.evaluated)], np.float64)
     answer = metric.function(episode)
@@ -53,7 +54,7 @@ def values(metric: Metric, episode: Episode) -> FloatArray:
 
 
 def check_record(metric: Metric) -> None:
-    """Name, range and direction make sense."""
+    """Check that name, range and direction are valid."""
     name = metric.name
     _require(name.isidentifier() and name.islower(), f"{name!r} must be snake_case.")
     _require(metric.title and metric.reference, f"{name} must have a title and a reference.")
@@ -66,7 +67,7 @@ def check_record(metric: Metric) -> None:
 
 
 def check_range(metric: Metric) -> None:
-    """Every value is NaN or within the declared range; a rate is 0 or 1."""
+    """Check that every value is NaN or within the declared range; a rate is 0 or 1."""
     for title, episode in zoo().items():
         for value in values(metric, episode):
             fits = math.isnan(value) or metric.low - 1e-9 <= value <= metric.high + 1e-9
@@ -86,7 +87,7 @@ def check_range(metric: Metric) -> None:
 
 
 def check_pure(metric: Metric) -> None:
-    """The same episode has the same value, and a copy of it has too."""
+    """Check that the same episode has the same value again, and that a copy has it too."""
     for title, episode in zoo().items():
         _same(metric, values(metric, episode), values(metric, episode), "twice", title, 0.0)
         copy = replace(episode)
@@ -94,7 +95,7 @@ def check_pure(metric: Metric) -> None:
 
 
 def check_blind(metric: Metric) -> None:
-    """Neither names nor seeds nor, unless it says so, timings matter."""
+    """Check that names, seeds and (for a verifiable metric) timings do not matter."""
     for title, episode in zoo().items():
         other = replace(episode, identity=Identity("x/y@2", "f", "train", 7, "unknown", "somebody"))
         if metric.verifiable:
@@ -108,17 +109,17 @@ def check_blind(metric: Metric) -> None:
 
 
 def check_place(metric: Metric) -> None:
-    """Where the origin is and where x points do not matter."""
+    """Check that the origin and the direction of the x axis do not matter."""
     for title, episode in zoo().items():
         angles = [QUARTER] if episode.world.measurement_area else [QUARTER, 0.7]
         for angle, offset in [(0.0, (13.0, -7.0)), *((a, (0.0, 0.0)) for a in angles)]:
             other = moved(episode, angle, offset)
-            what = f"turned by {angle:.2f} rad and moved by {offset}"
-            _same(metric, values(metric, episode), values(metric, other), what, title)
+            change = f"turned by {angle:.2f} rad and moved by {offset}"
+            _same(metric, values(metric, episode), values(metric, other), change, title)
 
 
 def check_order(metric: Metric) -> None:
-    """The order of agents does not matter."""
+    """Check that the order of agents does not matter."""
     for title, episode in zoo().items():
         order = np.roll(np.arange(len(episode.world.agents))[::-1], 1)
         before, after = values(metric, episode), values(metric, reordered(episode, order))
@@ -127,19 +128,19 @@ def check_order(metric: Metric) -> None:
 
 
 def check_sampling(metric: Metric) -> None:
-    """The same smooth motion has the same value at dt, dt/2 and dt/5."""
+    """Check that the same smooth motion has the same value at dt, dt/2 and dt/5."""
     if not metric.verifiable:
         return
     for title, scene in [("smooth", smooth()), ("crowd", crowd())]:
         coarse = values(metric, scene.episode())
         for factor in (2, 5):
             fine = values(metric, scene.episode(factor))
-            what = f"recorded with dt/{factor}"
-            _same(metric, coarse, fine, what, title, SAMPLING)
+            change = f"recorded with dt/{factor}"
+            _same(metric, coarse, fine, change, title, SAMPLING)
 
 
 def check_after(metric: Metric) -> None:
-    """What is recorded after an agent's attempt was over does not count."""
+    """Check that records after the end of an agent's attempt do not count."""
     if metric.scope == "group" or not metric.verifiable:
         return
     short, long = values(metric, with_company(1.0)), values(metric, with_company(0.4))
@@ -149,7 +150,7 @@ def check_after(metric: Metric) -> None:
 
 
 def check_unearned(metric: Metric) -> None:
-    """Who stands, fails or crashes at once has no perfect score."""
+    """Check that an agent that stands still, fails or crashes at once has no perfect score."""
     best = {"higher": metric.high, "lower": metric.low}.get(metric.better or "")
     if best is None or not metric.verifiable:
         return
@@ -169,7 +170,7 @@ def check_unearned(metric: Metric) -> None:
 
 
 def check_crash(metric: Metric) -> None:
-    """Who crashes half-way does not score better than who walks the same way and arrives."""
+    """Check that a crash half-way scores no better than arrival on the same path."""
     if metric.better is None or metric.conditional or not metric.verifiable:
         return
     whole, part = (float(values(metric, zoo()[name])[0]) for name in ("errand", "broken off"))
@@ -182,7 +183,7 @@ def check_crash(metric: Metric) -> None:
 
 
 def check_conditional(metric: Metric) -> None:
-    """What is declared for arrivals alone is NaN for everybody else."""
+    """Check that a metric that is declared for arrivals only is NaN for all other agents."""
     if not metric.conditional:
         return
     for title, episode in zoo().items():
@@ -211,7 +212,7 @@ def _same(
     metric: Metric,
     expected: FloatArray,
     got: FloatArray,
-    what: str,
+    change: str,
     title: str,
     tolerance: float = ROUNDING,
 ) -> None:
@@ -222,7 +223,7 @@ def _same(
     near |= np.isnan(expected) & np.isnan(got)
     _require(
         near.all(),
-        f"{metric.name} must not change {what}. Got {got} in place of {expected}"
+        f"{metric.name} must not change {change}. Got {got} in place of {expected}"
         f" in the episode {title!r}.",
     )
 

@@ -1,7 +1,7 @@
-"""What every navigator must pass, the ones that ship and anybody's.
+"""The checks that every navigator must pass, also those of plugins.
 
 `check_navigator("name")` or `check_navigator(Class)` raises AssertionError with a
-sentence that says what is wrong. How well a navigator does is not asked.
+sentence that names the violated rule. The quality of a navigator is not checked.
 """
 
 from collections.abc import Callable
@@ -13,7 +13,7 @@ import numpy as np
 
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import World
-from benchnav.navigation.command_check import said, short
+from benchnav.navigation.command_check import exception_text, short
 from benchnav.navigation.navigator import Navigator, Need
 from benchnav.plugins import NAVIGATORS
 from benchnav.testing.observations import (
@@ -40,16 +40,16 @@ Worlds = tuple[World, ...]
 
 
 def check_navigator(navigator: Subject, sensing: Sensing | None = None) -> None:
-    """Hold a navigator to what every navigator must be.
+    """Check that a navigator keeps the contract of navigators.
 
     Args:
         navigator: a registered name, ``{type: name, …parameters}``, a class, or any
             function that makes a fresh instance.
-        sensing: the sensors of the worlds that it is tried in; None: usual ones, or others that
-            it accepts (`Navigator.unfit`).
+        sensing: the sensors of the worlds of the checks; None: usual ones, or others that the
+            navigator accepts (`Navigator.unfit`).
 
     Raises:
-        AssertionError: it breaks the contract; the text says how.
+        AssertionError: the navigator breaks the contract; the message names the rule.
     """
     make: Make = maker(NAVIGATORS, navigator)
     check_declaration(make)
@@ -59,7 +59,7 @@ def check_navigator(navigator: Subject, sensing: Sensing | None = None) -> None:
 
 
 def check_declaration(make: Make) -> None:
-    """Config, needs and command are declared."""
+    """Check that Config, needs, command and rehearsals are declared correctly."""
     navigator = make()
     name = type(navigator).__name__
     require(isinstance(navigator, Navigator), f"{name} must derive from Navigator.")
@@ -71,24 +71,24 @@ def check_declaration(make: Make) -> None:
         navigator.command in ("velocity", "twist"),
         f"{name}.command must be 'velocity' or 'twist'. Got {navigator.command!r} instead.",
     )
-    asked = navigator.rehearsal
-    whole = isinstance(asked, int) and not isinstance(asked, bool) and asked >= 0
-    require(whole, f"{name}.rehearsal must be how many rehearsals it asks for. Got {asked!r}.")
+    count = navigator.rehearsal
+    whole = isinstance(count, int) and not isinstance(count, bool) and count >= 0
+    require(whole, f"{name}.rehearsal must be how many rehearsals it asks for. Got {count!r}.")
     require(
-        not asked or navigator.leader is not None,
-        f"{name} asks for rehearsals, so {name}.leader must name who leads in them.",
+        not count or navigator.leader is not None,
+        f"{name} asks for rehearsals, so {name}.leader must name the navigator of the leaders.",
     )
 
 
 def check_answer(make: Make, worlds: Worlds) -> None:
-    """Finite commands of the right shape, with nothing but what it needs; nothing is changed."""
+    """Check for finite commands of the right shape, from needed inputs only, without writes."""
     navigator = make()
     name, needs = type(navigator).__name__, navigator.required
-    told = briefings_of(worlds, needs, navigator.rehearsal)
-    before = [contents(briefing) for briefing in told]
+    briefings = briefings_of(worlds, needs, navigator.rehearsal)
+    before = [contents(briefing) for briefing in briefings]
     with global_generators_untouched(name):
-        _call(name, "reset", needs, navigator.reset, told, np.arange(len(told)))
-    _unchanged(name, "briefing", before, [contents(briefing) for briefing in told])
+        _call(name, "reset", needs, navigator.reset, briefings, np.arange(len(briefings)))
+    _unchanged(name, "briefing", before, [contents(briefing) for briefing in briefings])
     for observation in observations_of(worlds, needs):
         copy, shape = contents(observation), (*observation.active.shape, 2)
         with global_generators_untouched(name):
@@ -102,7 +102,7 @@ def check_answer(make: Make, worlds: Worlds) -> None:
 
 
 def check_repeatable(make: Make, worlds: Worlds) -> None:
-    """The same briefing and observations give the same commands: of another instance too."""
+    """Check that equal briefings and observations give equal commands, in any instance."""
     navigator = make()
     if navigator.reproducible:
         first, name = answers_of(navigator, worlds), type(navigator).__name__
@@ -112,15 +112,15 @@ def check_repeatable(make: Make, worlds: Worlds) -> None:
 
 
 def check_batch(make: Make, worlds: Worlds) -> None:
-    """A world's commands do not depend on which others share the call, or on where it stands."""
+    """Check that a world's commands do not depend on other worlds of the call or on its row."""
     if not make().reproducible:
         return
     together, name = answers_of(make(), worlds), type(make()).__name__
-    alone = [
+    single = [
         answers_of(make(), [world], np.array([7]), circumstance="for a world in row 7")[0]
         for world in worlds
     ]
-    require_same(together, alone, name, "for a world alone as in a batch")
+    require_same(together, single, name, "for a world alone as in a batch")
     where = "for worlds in rows 4, 9 and 2"
     turned = answers_of(make(), worlds[::-1], np.array([4, 9, 2]), circumstance=where)[::-1]
     require_same(together, turned, name, "whatever the order of worlds and their rows")
@@ -129,7 +129,7 @@ def check_batch(make: Make, worlds: Worlds) -> None:
 
 
 def check_order_of_agents(make: Make, worlds: Worlds) -> None:
-    """Numbering the agents otherwise renumbers the commands, and does nothing else."""
+    """Check that another numbering of the agents only renumbers the commands."""
     if not make().reproducible:
         return
     orders = [np.roll(np.arange(len(world.agents))[::-1], 1) for world in worlds]
@@ -140,38 +140,38 @@ def check_order_of_agents(make: Make, worlds: Worlds) -> None:
 
 
 def check_rows(make: Make, worlds: Worlds) -> None:
-    """State belongs to a row: what other rows do, and when they start over, leaves no trace."""
+    """Check that state belongs to a row: calls and resets of other rows have no effect."""
     navigator = make()
     if not navigator.reproducible:
         return
     kept, disturbing, _ = worlds
     needs, row, other = navigator.required, np.array([0]), np.array([1])
     expected = answers_of(make(), [kept], row)
-    asked = navigator.rehearsal
+    count = navigator.rehearsal
     name, call = type(navigator).__name__, partial(called, navigator, "in one row of several")
-    call("reset", briefings_of([kept, disturbing], needs, asked), np.array([0, 1]))
+    call("reset", briefings_of([kept, disturbing], needs, count), np.array([0, 1]))
     got = []
     noise = observations_of([disturbing], needs, other)
     for k, observation in enumerate(observations_of([kept], needs, row)):
         if k == 3:
-            call("reset", briefings_of([disturbing], needs, asked), other)
+            call("reset", briefings_of([disturbing], needs, count), other)
         call("act", noise[k % 3])
         got.append(masked(call("act", observation), observation)[0])
     require_same(expected, [np.stack(got)], name, "whatever happens in other rows")
 
 
 def check_map(make: Make, worlds: Worlds) -> None:
-    """Who says that it uses no map needs none, and answers the same with one."""
+    """Check that a navigator with ``uses_map`` False needs no map and ignores one."""
     navigator, name = make(), type(make()).__name__
     if navigator.uses_map or not navigator.reproducible:
         return
     require(
         Need.MAP not in navigator.required,
-        f"{name} must not need a map where it says that it uses none.",
+        f"{name} must not need a map if its uses_map is False.",
     )
     without = answers_of(navigator, worlds)
     with_map = answers_of(make(), worlds, shown=frozenset({Need.MAP}))
-    require_same(without, with_map, name, "with a map as without, for it says that it uses none")
+    require_same(without, with_map, name, "with a map as without: its uses_map is False")
 
 
 CHECKS: tuple[Callable[[Make, Worlds], None], ...] = (
@@ -181,7 +181,7 @@ CHECKS: tuple[Callable[[Make, Worlds], None], ...] = (
 
 
 def _scenes(navigator: Navigator, sensing: Sensing | None) -> Worlds:
-    """Worlds with these sensors, or with some that the navigator can drive with."""
+    """Return worlds with these sensors, or with sensors that the navigator accepts."""
     name = type(navigator).__name__
     chosen = accepted(navigator) if sensing is None else sensing
     if chosen is None:
@@ -191,8 +191,10 @@ def _scenes(navigator: Navigator, sensing: Sensing | None) -> Worlds:
             f" {short(navigator.unfit(USUAL))}. Give the sensors that it is made for:"
             " check_navigator(…, sensing=Sensing(…))."
         )
-    why = navigator.unfit(chosen)
-    require(not why, f"{name} must accept the sensing that it is checked with. It says: {why}.")
+    reason = navigator.unfit(chosen)
+    require(
+        not reason, f"{name} must accept the sensing that it is checked with. It says: {reason}."
+    )
     return _drawn(chosen)
 
 
@@ -203,25 +205,27 @@ def _drawn(sensing: Sensing) -> Worlds:
 
 
 def _call(
-    name: str, what: str, needs: frozenset[Need], call: Callable[..., Any], *told: Any
+    name: str, method: str, needs: frozenset[Need], call: Callable[..., Any], *arguments: Any
 ) -> Any:
     try:
-        return call(*told)
+        return call(*arguments)
     except Exception as error:
         hint = (
             f" Where it is made for certain sensors, {name}.unfit(sensing) must say why it cannot"
             " drive with others."
         )
         raise AssertionError(
-            f"{name}.{what} must work with what it needs ({', '.join(sorted(needs)) or 'nothing'})"
-            f" and nothing more. It raised {said(error)}.{hint if needs - {Need.MAP} else ''}"
+            f"{name}.{method} must work with what it needs"
+            f" ({', '.join(sorted(needs)) or 'nothing'})"
+            f" and nothing more. It raised {exception_text(error)}."
+            f"{hint if needs - {Need.MAP} else ''}"
         ) from error
 
 
-def _unchanged(name: str, what: str, before: list[list[Any]], after: list[list[Any]]) -> None:
+def _unchanged(name: str, input: str, before: list[list[Any]], after: list[list[Any]]) -> None:
     same = all(
         np.array_equal(a, b, equal_nan=a.dtype.kind == "f")
         for one, other in zip(before, after, strict=True)
         for a, b in zip(one, other, strict=True)
     )
-    require(same, f"{name} must not write into its {what}.")
+    require(same, f"{name} must not write into its {input}.")

@@ -1,4 +1,4 @@
-"""What every planner must pass, the ones that ship and anybody's."""
+"""The checks that every planner must pass, also those of plugins."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -29,14 +29,14 @@ Make = Callable[[], Planner]
 
 
 def check_planner(planner: Subject) -> None:
-    """Hold a planner to what every planner must be.
+    """Check that a planner keeps the contract of planners.
 
     Args:
         planner: a registered name, ``{type: name, …parameters}``, a class, or any
             function that makes a fresh instance.
 
     Raises:
-        AssertionError: it breaks the contract; the text says how.
+        AssertionError: the planner breaks the contract; the message names the rule.
     """
     make: Make = maker(PLANNERS, planner)
     for check in CHECKS:
@@ -44,14 +44,14 @@ def check_planner(planner: Subject) -> None:
 
 
 def check_declaration(make: Make) -> None:
-    """It is a planner, and its Config is declared."""
+    """Check that it is a planner with a declared Config."""
     planner = make()
     require(isinstance(planner, Planner), f"{type(planner).__name__} must derive from Planner.")
     require_config(planner)
 
 
 def check_path(make: Make) -> None:
-    """A path goes from start to goal, finite and free for the disc, and changes nothing."""
+    """Check that paths are finite, free for the disc and end at the goal; the map is unchanged."""
     for map in (empty(), furnished()):
         planner, before = make(), map.capsules.copy()
         name = type(planner).__name__
@@ -63,7 +63,7 @@ def check_path(make: Make) -> None:
 
 
 def check_unsolvable(make: Make) -> None:
-    """Where there is no path it says so: an answer with a reason, never an exception."""
+    """Check that it returns an unsolved plan with a reason if there is no path."""
     for title, map, start, goal in (
         ("to a goal that is walled in", walled_in(), START, GOAL),
         ("from a start inside an obstacle", furnished(), BLOCKED, GOAL),
@@ -72,12 +72,14 @@ def check_unsolvable(make: Make) -> None:
         planner = make()
         name = type(planner).__name__
         plan = ask(planner, map, start, goal)
-        said = not plan.solved and len(plan.path) == 0 and plan.reason
-        require(said, f"{name} must answer Plan(UNSOLVED, False, reason=…) {title}. Got {plan}.")
+        consistent = not plan.solved and len(plan.path) == 0 and plan.reason
+        require(
+            consistent, f"{name} must answer Plan(UNSOLVED, False, reason=…) {title}. Got {plan}."
+        )
 
 
 def check_repeatable(make: Make) -> None:
-    """The generator alone decides, not what was planned before."""
+    """Check that plans depend on the generator, not on earlier plans."""
     planner, other = make(), make()
     if not planner.reproducible:
         return
@@ -97,7 +99,7 @@ CHECKS: tuple[Callable[[Make], None], ...] = (
 def ask(
     planner: Planner, map: Map, start: FloatArray = START, goal: FloatArray = GOAL, seed: int = 0
 ) -> Plan:
-    """One query; what it raises becomes a complaint."""
+    """Return the plan of one query. Raises AssertionError if the planner raises."""
     try:
         plan = planner.plan(
             map, start.copy(), goal.copy(), RADIUS, TOLERANCE, np.random.default_rng(seed)
@@ -142,12 +144,12 @@ def _arena(*solids: Solid) -> Map:
 
 @lru_cache
 def empty() -> Map:
-    """A walled square of 10 m."""
+    """Return the map of a walled square of 10 m."""
     return _arena()
 
 
 def furnished() -> Map:
-    """The square with boxes, a disc and a thin wall in the way."""
+    """Return the map of the square with boxes, a disc and a thin wall in the way."""
     return _arena(
         Solid(Kind.STATIC, (_box(4.0, 4.0, 6.0, 6.0),)),
         Solid(Kind.STATIC, (_box(1.0, 7.0, 2.5, 8.0),)),
@@ -157,5 +159,5 @@ def furnished() -> Map:
 
 
 def walled_in() -> Map:
-    """The square with a closed wall around the goal."""
+    """Return the map of the square with a closed wall around the goal."""
     return _arena(Solid(Kind.WALL, (np.array([(7.0, 10.0), (7.0, 7.0), (10.0, 7.0), (7.0, 7.0)]),)))

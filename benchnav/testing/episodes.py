@@ -1,7 +1,7 @@
-"""Builders of synthetic episodes: what metrics are tested on, without a simulator.
+"""Builders of synthetic episodes for tests of metrics, without a simulator.
 
-A `Walk` says where one agent is at any time; `record` samples walks into an episode,
-finding out itself who arrives when. Collisions are stated, not simulated.
+A `Walk` gives the position of one agent at any time. `record` samples walks into an episode
+and computes the arrival times. Collisions are given, not simulated.
 """
 
 from collections.abc import Callable, Sequence
@@ -23,7 +23,7 @@ RULES = Rules(0.2, ContactRule.SLIDE, Afterwards.VANISH, Afterwards.VANISH, Char
 
 @dataclass(frozen=True)
 class Hit:
-    """A collision event that an agent is charged with, or not."""
+    """A collision event of an agent, charged or not."""
 
     start: float  # [s]
     duration: float = 0.1  # [s]
@@ -34,7 +34,7 @@ class Hit:
 
 @dataclass(frozen=True)
 class Walk:
-    """One agent: where it is at any time, what it wants, and what happens to it."""
+    """One agent: its position at any time, its goal, and the events of its attempt."""
 
     path: Path
     goal: tuple[float, float]
@@ -50,7 +50,7 @@ class Walk:
 
 @dataclass(frozen=True)
 class Setting:
-    """What all agents share."""
+    """Settings that all agents share."""
 
     dt: float = 0.1  # [s]
     horizon: float = 20.0  # [s]
@@ -65,12 +65,12 @@ class Setting:
 
 
 def straight(start: tuple[float, float], velocity: tuple[float, float]) -> Path:
-    """Constant velocity [m/s]; zero is standing."""
+    """Return a path of constant velocity [m/s]; the agent stands still at zero."""
     return lambda t: np.array(start) + t[:, None] * np.array(velocity)
 
 
 def circle(centre: tuple[float, float], radius: float, speed: float, phase: float = 0.0) -> Path:
-    """Counter-clockwise at constant speed [m/s]."""
+    """Return a counter-clockwise circle at constant speed [m/s]."""
 
     def path(t: FloatArray) -> FloatArray:
         angle = phase + speed / radius * t
@@ -81,7 +81,7 @@ def circle(centre: tuple[float, float], radius: float, speed: float, phase: floa
 
 
 def wave(start: tuple[float, float], speed: float, height: float, length: float) -> Path:
-    """An S-curve along +x: y = height · sin(2π x / length), x at constant speed [m/s]."""
+    """Return an S-curve along +x: y = height · sin(2π x / length), x at constant speed [m/s]."""
 
     def path(t: FloatArray) -> FloatArray:
         x = speed * t
@@ -92,7 +92,7 @@ def wave(start: tuple[float, float], speed: float, height: float, length: float)
 
 
 def minimum_jerk(start: tuple[float, float], goal: tuple[float, float], duration: float) -> Path:
-    """From rest to rest along a line: 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985)."""
+    """Return a line from rest to rest: 10 s³ − 15 s⁴ + 6 s⁵ (Flash & Hogan 1985)."""
 
     def path(t: FloatArray) -> FloatArray:
         s = np.clip(t / duration, 0.0, 1.0)[:, None]
@@ -104,7 +104,7 @@ def minimum_jerk(start: tuple[float, float], goal: tuple[float, float], duration
 
 
 def stop_and_go(start: tuple[float, float], speed: float, period: float) -> Path:
-    """Along +x, speed · (1 − cos(2π t / period)): full stops, once a period."""
+    """Return a path along +x of speed · (1 − cos(2π t / period)): one full stop per period."""
 
     def path(t: FloatArray) -> FloatArray:
         w = 2.0 * np.pi / period
@@ -115,7 +115,7 @@ def stop_and_go(start: tuple[float, float], speed: float, period: float) -> Path
 
 
 def room(bounds: Extent) -> Solid:
-    """The inside of four walls: a clockwise loop."""
+    """Return the inside of four walls: a clockwise loop."""
     x0, y0, x1, y1 = bounds
     return Solid(Kind.WALL, (np.array([[x0, y0], [x0, y1], [x1, y1], [x1, y0]], float),))
 
@@ -123,14 +123,14 @@ def room(bounds: Extent) -> Solid:
 def box(
     centre: tuple[float, float], width: float, height: float, kind: Kind = Kind.STATIC
 ) -> Solid:
-    """A filled rectangle: a counter-clockwise loop."""
+    """Return a filled rectangle: a counter-clockwise loop."""
     (x, y), w, h = centre, 0.5 * width, 0.5 * height
     loop = np.array([[x - w, y - h], [x + w, y - h], [x + w, y + h], [x - w, y + h]])
     return Solid(kind, (loop,))
 
 
 def record(walks: Sequence[Walk], setting: Setting | None = None) -> Episode:
-    """The episode in which these agents do what their walks say, until nobody is active."""
+    """Return the episode in which these agents follow their walks, until no agent is active."""
     s = setting if setting is not None else Setting()
     world = _world(walks, s)
     arrival = np.array([_arrival(w, s) for w in walks])
@@ -158,7 +158,7 @@ def record(walks: Sequence[Walk], setting: Setting | None = None) -> Episode:
 
 
 def resampled(walks: Sequence[Walk], setting: Setting, factor: int) -> Episode:
-    """The same motion, recorded with ``factor`` times as many decisions."""
+    """Return the episode of the same motion with ``factor`` times as many decisions."""
     return record(walks, replace(setting, dt=setting.dt / factor))
 
 
@@ -183,7 +183,7 @@ def _world(walks: Sequence[Walk], s: Setting) -> World:
 
 
 def _arrival(walk: Walk, s: Setting) -> float:
-    """[s] when the walk first comes within goal tolerance, to a microsecond; NaN if never."""
+    """Return when [s] the walk first is within goal tolerance, to a microsecond; NaN if never."""
     times = np.linspace(0.0, s.horizon, 20001)
     away = np.hypot(*(walk.path(times) - np.array(walk.goal)).T)
     inside = np.flatnonzero(away <= s.rules.goal_tolerance)
@@ -198,7 +198,7 @@ def _arrival(walk: Walk, s: Setting) -> float:
 
 
 def _stop(walk: Walk, arrival: float) -> float:
-    """[s] when the walk is over; inf if it never is."""
+    """Return when [s] the walk ends; inf if never."""
     stops = [t for t in (walk.ends, walk.fails, arrival) if t is not None and t == t]
     return min(stops, default=float("inf"))
 

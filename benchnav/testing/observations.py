@@ -1,6 +1,6 @@
-"""What a navigator would be told and shown in some worlds, whatever it answers.
+"""Briefings and observations of some worlds that do not depend on the commands.
 
-Agents move by a script (straight at their goals), so that two ways of asking the same
+Agents move by a script (straight to their goals), so that two ways of calling the same
 navigator can be compared decision by decision.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing, brief
-from benchnav.navigation.command_check import said
+from benchnav.navigation.command_check import exception_text
 from benchnav.navigation.navigator import Navigator, Need
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.observe import deciding, observe
@@ -28,9 +28,9 @@ FRAMES = 6
 def briefings_of(
     worlds: Sequence[World], needs: frozenset[Need], rehearsals: int = 0
 ) -> list[Briefing]:
-    """A fresh briefing of each world; its generator depends on the world's geometry alone.
+    """Return a new briefing of each world, with ``rehearsals`` synthetic rehearsals.
 
-    With as many made-up ``rehearsals`` as are asked for.
+    Its generator depends only on the world's geometry.
     """
     track = "known" if Need.MAP in needs else "unknown"
     return [
@@ -56,32 +56,34 @@ def observations_of(
     padding: int = 0,
     frames: int = FRAMES,
 ) -> list[Observation]:
-    """Successive observations of all agents of B worlds, with only the sensors in ``needs``.
+    """Return successive observations of all agents of B worlds, with the sensors in ``needs``.
 
     Args:
-        worlds: B of them, with one clock, one set of rules and one sensing.
-        needs: what is sensed; maps are granted as by the track `known`, or not at all.
-        rows: (B,) the rows that the worlds have; None: 0 … B-1.
-        padding: how many columns of inactive agents are added.
-        frames: how many observations, one decision apart.
+        worlds: B worlds with one clock, one set of rules and one sensing.
+        needs: the sensors to compute, and whether the maps of the track `known` are granted.
+        rows: (B,) the rows of the worlds; None: 0 … B-1.
+        padding: number of additional columns of inactive agents.
+        frames: number of observations, one decision apart.
     """
     simulation = Simulation(worlds)
     width = simulation.A + padding
     chosen = np.full((len(worlds), width), -1)
     for b, world in enumerate(worlds):
         chosen[b, : len(world.agents)] = np.arange(len(world.agents))
-    maps = tuple(told.map for told in briefings_of(worlds, needs))
-    seen = []
+    maps = tuple(briefing.map for briefing in briefings_of(worlds, needs))
+    observations = []
     for _ in range(frames):
         active = deciding(simulation, chosen)
         observation = observe(simulation, chosen, active, needs, maps)
-        seen.append(observation if rows is None else replace(observation, rows=rows.copy()))
+        if rows is not None:
+            observation = replace(observation, rows=rows.copy())
+        observations.append(observation)
         simulation.step(_script(simulation), np.zeros((simulation.B, simulation.A), np.bool_))
-    return seen
+    return observations
 
 
 def _script(simulation: Simulation) -> FloatArray:
-    """(B, A, 2) [m/s] at preferred speed straight at the goals."""
+    """Return velocities (B, A, 2) [m/s] at preferred speed straight to the goals."""
     way = simulation.goal - simulation.position
     distance = np.sqrt(np.sum(way * way, axis=2, keepdims=True))
     speed = simulation.agents["preferred_speed"][..., None]
@@ -97,15 +99,15 @@ def answers_of(
     shown: frozenset[Need] = frozenset(),
     circumstance: str = "",
 ) -> list[FloatArray]:
-    """What a navigator commands after a reset: for each world (FRAMES, A, 2), NaN if inactive.
+    """Return the commands after a reset: for each world (FRAMES, A, 2), NaN if inactive.
 
-    It is told what it needs, and ``shown`` beyond that. Raises AssertionError where it raises,
-    with the ``circumstance``.
+    The navigator gets the inputs that it needs, and those in ``shown``. Raises AssertionError,
+    with the ``circumstance``, if the navigator raises.
     """
     needs = navigator.required | shown
     places = np.arange(len(worlds)) if rows is None else rows
-    told = briefings_of(worlds, needs, navigator.rehearsal)
-    called(navigator, circumstance, "reset", told, places.copy())
+    briefings = briefings_of(worlds, needs, navigator.rehearsal)
+    called(navigator, circumstance, "reset", briefings, places.copy())
     frames = [
         masked(called(navigator, circumstance, "act", observation), observation)
         for observation in observations_of(worlds, needs, places, padding)
@@ -116,26 +118,26 @@ def answers_of(
     ]
 
 
-def called(navigator: Navigator, circumstance: str, call: str, *told: Any) -> Any:
-    """What ``reset`` or ``act`` returns. Raises AssertionError, with the rule, where it raises."""
+def called(navigator: Navigator, circumstance: str, call: str, *arguments: Any) -> Any:
+    """Call ``reset`` or ``act``. Raises AssertionError, with the rule, if the call raises."""
     try:
-        return getattr(navigator, call)(*told)
+        return getattr(navigator, call)(*arguments)
     except Exception as error:
         name, when = type(navigator).__name__, f" {circumstance}" if circumstance else ""
         raise AssertionError(
             f"{name}.{call} must work{when}: what is kept of a world belongs under its row, which"
-            f" reset is given and the observation has as `rows`. It raised {said(error)}."
+            f" reset is given and the observation has as `rows`. It raised {exception_text(error)}."
         ) from error
 
 
 def masked(answer: Any, observation: Observation) -> FloatArray:
-    """(B, A, 2) the commands that count; NaN elsewhere."""
+    """Return the commands (B, A, 2) of active agents; NaN for others."""
     command: FloatArray = np.where(observation.active[..., None], answer, np.nan)
     return command
 
 
 def contents(part: Any) -> list[AnyArray]:
-    """Copies of all arrays of a briefing or observation, of what it consists of too."""
+    """Return copies of all arrays of a briefing or observation, including nested parts."""
     found: list[AnyArray] = []
     for f in fields(part):
         value = getattr(part, f.name)

@@ -1,4 +1,4 @@
-"""Made-up rehearsals, for navigators that ask for some: nothing is simulated."""
+"""Synthetic rehearsals, without a simulation, for navigators that request rehearsals."""
 
 import math
 
@@ -12,7 +12,7 @@ STEPS = 40
 
 
 def rehearsals_of(world: World, count: int) -> tuple[Rehearsal, ...]:
-    """``count`` rehearsals in which every leader goes to its goal in an arc.
+    """Return ``count`` rehearsals in which every leader goes to its goal in an arc.
 
     The arcs differ; in the first all leaders collide, in the second none arrives.
     """
@@ -20,11 +20,11 @@ def rehearsals_of(world: World, count: int) -> tuple[Rehearsal, ...]:
     start, goal = agents.start[leaders], agents.goal[leaders]
     share = np.linspace(0.0, 1.0, STEPS + 1)[:, None, None]
     across = np.stack([start[:, 1] - goal[:, 1], goal[:, 0] - start[:, 0]], axis=1)
-    made = []
+    rehearsals = []
     for k in range(count):
         bow = 0.3 * math.sin(1.0 + k) * np.sin(math.pi * share)
         arrives = STEPS * world.clock.dt * (1.0 + 0.1 * k) if k != 1 else math.nan
-        made.append(
+        rehearsals.append(
             Rehearsal(
                 world.clock.dt,
                 leaders.copy(),
@@ -34,4 +34,4 @@ def rehearsals_of(world: World, count: int) -> tuple[Rehearsal, ...]:
                 np.full(len(leaders), k == 0),
             )
         )
-    return tuple(made)
+    return tuple(rehearsals)

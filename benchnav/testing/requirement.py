@@ -1,4 +1,4 @@
-"""How the checks complain, and how they are told what to check."""
+"""Helpers of the checks: requirements with messages, and factories of the checked objects."""
 
 import random
 import sys
@@ -24,14 +24,14 @@ def require(condition: object, message: str) -> None:
 
 
 def maker(registry: Registry, subject: Subject) -> Callable[[], Any]:
-    """What makes a fresh instance of a name, a ``{type: …}`` mapping, a class or a function."""
+    """Return a factory for a name, a ``{type: …}`` mapping, a class or a function."""
     if isinstance(subject, str | Mapping):
         return lambda: make(registry, subject)
     return subject
 
 
 def require_config(thing: Any) -> None:
-    """The declared Config is frozen, refuses unknown keys, and describes each parameter."""
+    """Check that the Config is frozen, refuses unknown keys, and describes each parameter."""
     name, declared = type(thing).__name__, getattr(thing, "Config", None)
     is_model = isinstance(declared, type) and issubclass(declared, BaseModel)
     require(is_model, f"{name}.Config must be a pydantic model. Got {declared!r} instead.")
@@ -52,7 +52,7 @@ def require_config(thing: Any) -> None:
 def require_same(
     expected: list[FloatArray], got: list[FloatArray], name: str, circumstance: str
 ) -> None:
-    """Two lists of arrays are the same to rounding, NaN where NaN."""
+    """Check that two lists of arrays are equal up to rounding, with NaN equal to NaN."""
     for k, (one, other) in enumerate(zip(expected, got, strict=True)):
         same = one.shape == other.shape and np.allclose(
             one, other, rtol=ROUNDING, atol=ROUNDING, equal_nan=True
@@ -72,7 +72,7 @@ def _point(array: FloatArray, at: tuple[int, ...]) -> str:
 
 @contextmanager
 def global_generators_untouched(name: str) -> Iterator[None]:
-    """What runs within leaves the generators of random, numpy and torch alone."""
+    """Check that the block does not use the generators of random, numpy and torch."""
     before = _generator_states()
     yield
     for module, state in _generator_states().items():

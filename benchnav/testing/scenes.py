@@ -1,4 +1,4 @@
-"""Small random worlds that a navigator is tried in: walls, furniture, a mover, agents."""
+"""Small random worlds for the checks of navigators: walls, obstacles, a mover, agents."""
 
 import math
 from dataclasses import fields, replace
@@ -17,14 +17,14 @@ SENSING = Sensing(
 )
 USUAL = Sensing(
     RaySensor(7, math.pi, 8.0, thick=True), NeighbourSensor(10, 10.0), EdgeSensor(16, 8.0)
-)  # of a scenario that does not say
+)  # the defaults of scenarios
 CLOCK = Clock(dt=0.25, substeps=2, steps=200, decision_budget=1.0)
 RULES = Rules(0.3, ContactRule.SLIDE, Afterwards.VANISH, Afterwards.VANISH, Charge.HITTER)
-_CELL, _CELLS = 2.4, 5  # [m]; nothing in a cell reaches the next one
+_CELL, _CELLS = 2.4, 5  # [m] size and number per side; objects do not reach the next cell
 
 
 def scene(seed: int, agents: int) -> World:
-    """A walled square of 12 m with two boxes, a disc, a mover and up to 8 ``agents``.
+    """Return a walled square of 12 m with two boxes, a disc, a mover and up to 8 ``agents``.
 
     Agents differ in radius, speed, role and dynamics; nothing overlaps at the start.
     """
@@ -61,6 +61,6 @@ def _agents(rng: np.random.Generator, start: FloatArray, goal: FloatArray) -> Ag
 
 
 def renumbered(world: World, order: IntArray) -> World:
-    """The same world with agent ``order[k]`` at index k."""
+    """Return the same world with agent ``order[k]`` at index k."""
     agents = {f.name: getattr(world.agents, f.name)[order] for f in fields(world.agents)}
     return replace(world, agents=Agents(**agents))

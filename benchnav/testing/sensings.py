@@ -1,4 +1,4 @@
-"""Sensors that a navigator may be made for: which of them it accepts is asked, not guessed."""
+"""Common sensors, to find some that a navigator accepts (`Navigator.unfit`)."""
 
 import math
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ RANGES = (8.0, 6.0, 10.0, 5.0, 4.0, 3.0, 3.5, 12.0, 15.0, 20.0, 30.0)  # [m]
 
 
 def accepted(navigator: Navigator) -> Sensing | None:
-    """The first sensing that the navigator can drive with, the usual ones first; None: none."""
+    """Return the first sensing that the navigator accepts, usual ones first; None if none."""
     return next((sensing for sensing in _sensings() if not navigator.unfit(sensing)), None)
 
 
@@ -34,9 +34,9 @@ def _sensings() -> Iterator[Sensing]:
 
 
 def _of_scenarios() -> Iterator[Sensing]:
-    """Those of the scenarios that are installed."""
+    """Yield the sensings of the installed scenarios."""
     for name in names():
         try:
             yield sensing_of(find(name))
-        except BenchnavError:  # a scenario that is broken is not this navigator's fault
+        except BenchnavError:  # a broken scenario is not an error of the navigator
             continue

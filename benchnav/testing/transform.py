@@ -1,8 +1,8 @@
-"""The same episode, seen elsewhere: moved, turned, or with its agents in another order.
+"""Transform an episode: move it, turn it, or reorder its agents.
 
-No metric may tell the difference. Turning by a right angle keeps rectangles (bounds,
-measurement area) rectangles; another angle is for worlds without a measurement area,
-and gives them the bounding box of their turned bounds.
+No metric may depend on these changes. A turn by a right angle keeps rectangles (bounds,
+measurement area) rectangles. Other angles are for worlds without a measurement area; the
+new bounds are the bounding box of the turned bounds.
 """
 
 from dataclasses import fields, replace
@@ -19,12 +19,12 @@ from benchnav.episode.episode import Episode
 
 
 def moved(episode: Episode, angle: float, offset: tuple[float, float]) -> Episode:
-    """Turned about the origin by ``angle`` [rad], then moved by ``offset`` [m]."""
+    """Turn an episode about the origin by ``angle`` [rad], then move it by ``offset`` [m]."""
     return _Motion(angle, offset).episode(episode)
 
 
 def reordered(episode: Episode, order: IntArray) -> Episode:
-    """Agent ``order[n]`` becomes agent n."""
+    """Return the episode with agent ``order[n]`` as agent n."""
     world = episode.world
     picked = {f.name: getattr(world.agents, f.name)[order] for f in fields(Agents)}
     place = np.argsort(order)
@@ -59,12 +59,12 @@ class _Motion:
         self.matrix = np.array([[c, -s], [s, c]], float)
 
     def turn(self, vectors: FloatArray) -> FloatArray:
-        """(…, 2) directions."""
+        """Return the turned directions (…, 2)."""
         turned: FloatArray = vectors @ self.matrix.T
         return turned
 
     def place(self, points: FloatArray) -> FloatArray:
-        """(…, 2) points."""
+        """Return the turned and moved points (…, 2)."""
         placed: FloatArray = self.turn(points) + self.offset
         return placed
 

@@ -1,4 +1,4 @@
-"""Synthetic episodes that every metric is tried on, by what they are for."""
+"""Synthetic episodes for the checks of metrics, by name."""
 
 from dataclasses import dataclass, replace
 from functools import cache
@@ -45,12 +45,12 @@ class Scene:
     setting: Setting
 
     def episode(self, factor: int = 1) -> Episode:
-        """Recorded with ``factor`` times as many decisions."""
+        """Return the episode, recorded with ``factor`` times as many decisions."""
         return resampled(self.walks, self.setting, factor)
 
 
 def _mover() -> tuple[Body, Setting]:
-    """A disc that crosses the room from bottom to top and back."""
+    """Return a disc that crosses the room from bottom to top and back, and its setting."""
     law = Law(LawKind.TRACK, np.array([0.0, 10.0]), np.array([[-6.0, -5.0], [-6.0, 5.0]]))
     body = Body(Solid(Kind.DYNAMIC, radius=0.4), law)
     path = straight((-6.0, -5.0), (0.0, 1.0))
@@ -61,7 +61,7 @@ def _mover() -> tuple[Body, Setting]:
 
 
 def smooth() -> Scene:
-    """Five ways to walk, all smooth, two teams, both roles, some hits, one background agent."""
+    """Return five kinds of smooth walks: two teams, both roles, hits, one background agent."""
     _, setting = _mover()
     walks = (
         Walk(straight((-9.0, 0.4), (1.0, 0.0)), (0.0, 0.4), team=0),
@@ -75,7 +75,7 @@ def smooth() -> Scene:
 
 
 def crowd() -> Scene:
-    """Two streams that meet in a measurement area; with it density and flow are defined."""
+    """Return two streams that meet in a measurement area, which defines density and flow."""
     setting = Setting(horizon=10.0, bounds=ROOM, solids=(room(ROOM),), area=AREA)
     lanes = np.linspace(-1.7, 1.7, 5)
     east = [Walk(stop_and_go((-4.0, y), 0.9, 4.0), (4.0, y), 0.15, team=0) for y in lanes]
@@ -87,7 +87,7 @@ def crowd() -> Scene:
 
 
 def idle() -> Episode:
-    """It never moves, everything hits it, and another one stands in its face."""
+    """Return an episode of an agent that never moves, with hits of all kinds and a near agent."""
     _, setting = _mover()
     far = (9.0, 0.0)
     walks = (
@@ -99,7 +99,7 @@ def idle() -> Episode:
 
 
 def failing() -> Episode:
-    """As idle, but because its navigator failed at once."""
+    """Return the episode `idle` with an agent whose navigator failed at once."""
     episode = idle()
     status = episode.status.copy()
     status[1:, 0] = 3
@@ -107,14 +107,14 @@ def failing() -> Episode:
 
 
 def crashing() -> Episode:
-    """It walks straight into a wall, and that ends its attempt after two seconds."""
+    """Return an episode of an agent whose attempt ends at a wall after two seconds."""
     setting = Setting(bounds=ROOM, solids=(room(ROOM),), rules=ENDS)
     walk = Walk(straight((-9.7, 0.0), (-1.0, 0.0)), (9.0, 0.0), hits=(Hit(2.0, 0.0),), ends=2.0)
     return record((walk,), setting)
 
 
 def errand(crashes: bool) -> Episode:
-    """It passes others that stand, one of them closely, and arrives; or a box ends it before."""
+    """Return an episode of an agent that passes standing agents and arrives, or hits a box."""
     solids = (room(ROOM), box((-5.2, 0.0), 1.0, 1.0)) if crashes else (room(ROOM),)
     hits, ends = ((Hit(2.0, 0.0, Kind.STATIC, 1),), 2.0) if crashes else ((), None)
     setting = Setting(bounds=ROOM, solids=solids, rules=ENDS)
@@ -127,7 +127,10 @@ def errand(crashes: bool) -> Episode:
 
 
 def with_company(speed: float) -> Episode:
-    """One agent arrives after 5 s; another one, far away, keeps the record going or does not."""
+    """Return an episode of an agent that arrives after 5 s, and a distant agent of ``speed``.
+
+    The distant agent's speed [m/s] determines the length of the record.
+    """
     bounds = (-20.0, -60.0, 20.0, 60.0)
     setting = Setting(bounds=bounds, solids=(box((0.0, 2.0), 1.0, 1.0),))
     walks = (
@@ -139,7 +142,7 @@ def with_company(speed: float) -> Episode:
 
 @cache
 def zoo() -> dict[str, Episode]:
-    """Name → episode; built once, and not to be written to."""
+    """Return the episodes by name. They are built once and read-only."""
     episodes = {
         "smooth": smooth().episode(), "crowd": crowd().episode(), "idle": idle(),
         "failing": failing(), "crashing": crashing(), "company": with_company(0.5),

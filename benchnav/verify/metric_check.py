@@ -7,7 +7,7 @@ from typing import Any
 from benchnav.episode.episode import Episode
 from benchnav.metrics.measure import is_own, load_metric, measure
 from benchnav.plugins import METRICS
-from benchnav.runner.execute.plugin_metrics import guest_rows
+from benchnav.runner.execute.plugin_metrics import plugin_rows
 from benchnav.runner.plan.task import Measuring
 from benchnav.verify.finding import Report
 
@@ -28,11 +28,11 @@ def measured_again(
     own = [load_metric(name) for name in names if is_own(name)]
     rows = [measure(episode, own) for episode in episodes]
     for name in (name for name in names if not is_own(name)):
-        guests = guest_rows(
+        guests = plugin_rows(
             name, episodes, measuring.registrations, measuring.main, measuring.timeout
         )
-        for episode_rows, plugin_rows in zip(rows, guests, strict=True):
-            episode_rows += plugin_rows
+        for episode_rows, more in zip(rows, guests, strict=True):
+            episode_rows += more
     return rows
 
 

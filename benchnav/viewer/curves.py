@@ -17,14 +17,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-ABREAST = 3  # panels side by side where there is one track
+ABREAST = 3  # panels side by side if there is one track
 WIDTH, HEIGHT, LEGEND = 3.6, 2.9, 0.25  # [inch] of a panel, and of a line of the legend
 
 
 def draw_curves(points: Sequence[Point]) -> Figure:
-    """Means and their 95 % intervals; a column for each track where there are several.
+    """Draw means and their 95 % intervals, with a column per track if there are several.
 
-    Raises MissingExtraError where matplotlib is not installed.
+    Raises MissingExtraError if matplotlib is not installed.
     """
     rows = _rows(list(panels(points)))
     across, down = max(map(len, rows)), len(rows)
@@ -50,7 +50,7 @@ def draw_curves(points: Sequence[Point]) -> Figure:
 
 
 def _rows(every: list[list[Point]]) -> list[list[list[Point] | None]]:
-    """Panels as they stand: a row for each scenario if there are several tracks."""
+    """Return the grid of panels: a row for each scenario if there are several tracks."""
     tracks = sorted({panel[0].track for panel in every}, key=TRACKS.index)
     if len(tracks) == 1:
         return [list(every[k : k + ABREAST]) for k in range(0, len(every), ABREAST)]

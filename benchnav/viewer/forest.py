@@ -1,4 +1,4 @@
-"""Two navigators against each other: differences and their intervals, a panel a metric."""
+"""A forest plot of two navigators: differences and their intervals, with a panel per metric."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ DECIDED = ("better", "worse", "higher", "lower")
 
 
 def draw_duel(duel: Duel, metrics: Mapping[str, Metric]) -> Figure:
-    """Rows are places, columns metrics; filled where it is a difference after Holm.
+    """Draw scenarios as rows and metrics as columns; filled marks are significant after Holm.
 
-    Raises MissingExtraError where matplotlib is not installed.
+    Raises MissingExtraError if matplotlib is not installed.
     """
     rows = list(dict.fromkeys(_row(c) for c in duel.comparisons))
     names = list(dict.fromkeys(c.metric for c in duel.comparisons))
@@ -86,14 +86,14 @@ def _panel(axes: Axes, found: Sequence[Comparison | None], metric: Metric) -> No
 
 
 def _sides(metric: Metric) -> str:
-    """Label which navigator is better on each side of 0."""
+    """Return the label of the better navigator on each side of 0."""
     if metric.better is None or metric.conditional:
         return ""
     return "\n← B better   A better →" if metric.better == "higher" else "\n← A better   B better →"
 
 
 def _colour(c: Comparison, metric: Metric) -> str:
-    """Blue where the first is ahead, red where it is behind, grey where it is neither."""
+    """Return blue if the first navigator is better, red if it is worse, grey for a tie."""
     if c.verdict not in DECIDED:
         return GREY
     if metric.better is None or metric.conditional:

@@ -1,4 +1,4 @@
-"""A figure on paper: what all pictures share, and how they are written."""
+"""Figures: shared style, and writing to files."""
 
 from __future__ import annotations
 
@@ -23,14 +23,15 @@ _UNDATED = {".png": None, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}
 
 
 def is_picture(path: Path | None) -> TypeGuard[Path]:
-    """True where a file's name asks for a picture."""
+    """Whether the suffix of a file is that of a picture."""
     return path is not None and path.suffix.lower() in SUFFIXES
 
 
 def blank(width: float, height: float) -> Figure:
-    """An empty figure [inch]. Raises MissingExtraError where matplotlib is not installed."""
+    """Return an empty figure [inch]. Raises MissingExtraError if matplotlib is not installed."""
     cache = user_cache().path
-    if not home_is_usable() and cache is not None:  # else it warns, and makes a new one each time
+    if not home_is_usable() and cache is not None:
+        # Without this folder, matplotlib warns and creates a new one each time.
         os.environ.setdefault("MPLCONFIGDIR", str(cache / "matplotlib"))
     try:
         from matplotlib.figure import Figure
@@ -40,7 +41,7 @@ def blank(width: float, height: float) -> Figure:
 
 
 def plain(axes: Axes) -> None:
-    """No frame where nothing is read off."""
+    """Hide the top and right frame of the axes, and draw a grid."""
     for side in ("top", "right"):
         axes.spines[side].set_visible(False)
     axes.grid(alpha=0.25, linewidth=0.6)
@@ -48,9 +49,9 @@ def plain(axes: Axes) -> None:
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write it as the name's end says; the same figure gives the same bytes.
+    """Write a figure in the format of the suffix of ``path``; equal figures give equal bytes.
 
-    Raises StoreError where that cannot be done.
+    Raises StoreError if the file cannot be written.
     """
     from matplotlib import rc_context
 

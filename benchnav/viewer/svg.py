@@ -23,7 +23,7 @@ def world_svg(world: World) -> str:
 
 
 def episode_svg(episode: Episode) -> str:
-    """Return a picture of an episode: the path of every agent, which stands where it ended."""
+    """Return a picture of an episode: the path of every agent, and the agent at its last place."""
     world = episode.world
     paths = [
         f'<polyline points="{_points(_thinned(episode.position[:, a]))}" fill="none"'
@@ -51,7 +51,7 @@ def _svg(world: World, parts: Sequence[str]) -> str:
 
 
 def _scene(world: World, bodies: FloatArray) -> Iterator[str]:
-    """Walls and obstacles, with the moving ones at ``bodies`` (M, 2) [m]."""
+    """Yield walls and obstacles, with moving ones at ``bodies`` (M, 2) [m]."""
     for solid in world.solids:
         yield _solid(solid)
     for body, position in zip(world.bodies, bodies, strict=False):
@@ -80,7 +80,7 @@ def _goals(world: World) -> Iterator[str]:
 
 
 def _discs(world: World, position: FloatArray, hollow: BoolArray | None = None) -> Iterator[str]:
-    """Agents at ``position`` (A, 2) [m]; those in ``hollow`` (A,) are not filled."""
+    """Yield agents at ``position`` (A, 2) [m]; agents in ``hollow`` (A,) are not filled."""
     for a, (x, y) in enumerate(position):
         fill = "#fff" if hollow is not None and hollow[a] else _color(world, a)
         yield (
@@ -102,6 +102,6 @@ def _thinned(points: FloatArray, most: int = 400) -> FloatArray:
 
 
 def _area(loop: FloatArray) -> float:
-    """Twice the signed area; above 0 for a loop that runs counter-clockwise."""
+    """Return twice the signed area; positive for a counter-clockwise loop."""
     x, y = loop[:, 0], loop[:, 1]
     return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))

@@ -162,5 +162,5 @@ def test_metrics_that_are_left_out_or_made_up_are_named(call, runs):
     assert "installed here and not measured in the run: collided, spl" in text
     table = call("leaderboard", *runs)[1]
     assert "Not measured in all episodes of straight-line: collided, spl." in table
-    assert "Not installed here, so that nothing says what it is: charm." in table
+    assert "Not installed here, so its definition is unknown: charm." in table
     assert "of random-walk" not in table

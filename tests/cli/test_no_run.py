@@ -1,4 +1,4 @@
-"""A folder or file that is no run is asked wrongly; a damaged run is work that failed."""
+"""A folder or file that is no run is wrong usage; a damaged run is failed work."""
 
 import pytest
 

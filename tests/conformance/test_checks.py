@@ -186,7 +186,7 @@ def test_a_sound_navigator_passes(good):
         (Positional, "Positional must answer the same for a world alone as in a batch."),
         (Ranked, "Ranked must answer the same whatever the order of agents."),
         (Leaky, "Leaky must answer the same whatever happens in other rows."),
-        (Sly, "Sly must answer the same with a map as without, for it says that it uses none."),
+        (Sly, "Sly must answer the same with a map as without: its uses_map is False."),
         (Wordless, "Wordless.Config.pace must have a description with its unit."),
         (Lax, "Lax.Config must be frozen and forbid unknown keys: derive it from PluginConfig."),
         (Needy, "Needy must need a frozenset of ['rays', 'neighbours', 'edges', 'map']."),

@@ -11,8 +11,8 @@ from benchnav_baselines.learned.recurrent_ppo.weights import write_weights
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
 from benchnav.envs.agent_batch import AgentBatch
-from benchnav.envs.autoreset import KINDS, Relay
-from benchnav.envs.background_agents import Instead
+from benchnav.envs.autoreset import KINDS, AutoresetSimulation
+from benchnav.envs.background_agents import BackgroundCommands
 from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.reward import RewardWeights
 from benchnav.episode.episode import Status
@@ -68,7 +68,7 @@ def test_a_row_that_starts_again_is_a_fresh_simulation(contact):
         counts = [2, 4, 3]
         pool = [random_world(k, counts[k % 3], contact, steps=40) for k in range(6)]
     rng = np.random.default_rng(0)
-    relay = Relay(pool, 3)
+    relay = AutoresetSimulation(pool, 3)
     A = relay.A
     alone = [Simulation([pool[b]]) for b in range(3)]
     twist, restarts = np.ones((3, A), bool), 0
@@ -111,7 +111,7 @@ def charged(contacts, width):
 def test_what_begun_counts_adds_up_to_the_contacts(contact):
     rng = np.random.default_rng(1)
     pool = [random_world(seed, 6, contact, steps=150) for seed in range(10)]
-    relay = Relay(pool, 10)
+    relay = AutoresetSimulation(pool, 10)
     counts = np.zeros((10, relay.A, KINDS), int)
     for _ in range(150):
         running = relay.running.copy()
@@ -234,8 +234,9 @@ def test_somebody_else_may_drive_a_slot():
     crew = agents([[4.0, 4.0], [12.0, 12.0]], [[18.0, 4.0], [18.0, 12.0]])
     batch = batch_of([world(crew)], 1)
     batch.reset()
-    instead = Instead(np.array([[False, True]]), np.array([[[0.0, 0.0], [0.0, -1.5]]]), twist=False)
-    batch.step(np.zeros((1, 2, 2)), instead)
+    command = np.array([[[0.0, 0.0], [0.0, -1.5]]])
+    background = BackgroundCommands(np.array([[False, True]]), command, twist=False)
+    batch.step(np.zeros((1, 2, 2)), background)
     np.testing.assert_allclose(batch.simulation.velocity[0], [[1, 0], [0, -1.5]], atol=1e-12)
 
 

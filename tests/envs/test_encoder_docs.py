@@ -19,7 +19,12 @@ def rows(numbers):
         if found and found[2] != "0":
             continue
         name = REPEATED.sub(r"\1{k}.", n.name)
-        yield f"`{name}`", n.unit, f"{n.low:g} … {n.high:g}", n.says.replace("0° to", "k · 15° to")
+        yield (
+            f"`{name}`",
+            n.unit,
+            f"{n.low:g} … {n.high:g}",
+            n.meaning.replace("0° to", "k · 15° to"),
+        )
 
 
 def table(numbers):
@@ -61,6 +66,6 @@ def test_what_repeats_is_alike(name):
         found = REPEATED.match(n.name)
         if found:
             key = (found[1], n.name[found.end() :])
-            says = re.sub(r"[\d.]+°", "°", n.says)
+            says = re.sub(r"[\d.]+°", "°", n.meaning)
             kept.setdefault(key, set()).add((n.unit, n.low, n.high, says))
     assert all(len(kinds) == 1 for kinds in kept.values())

@@ -7,7 +7,7 @@ import pytest
 
 from benchnav.arena.world import Afterwards, ContactRule
 from benchnav.envs.agent_batch import AgentBatch
-from benchnav.envs.background_agents import Others
+from benchnav.envs.background_agents import BackgroundNavigator
 from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.reward import RewardWeights
 from benchnav.generation.build import build
@@ -106,7 +106,7 @@ def test_the_navigator_of_the_other_agents_sees_in_training_what_it_sees_in_a_ru
     rng = np.random.default_rng(0)
     batch = AgentBatch(worlds, len(worlds), encoder("ego"), RewardWeights(), rng)
     batch.reset(np.arange(len(worlds)))
-    others = Others("tests-wanderer", batch.simulation, batch.width, "others")
+    others = BackgroundNavigator("tests-wanderer", batch.simulation, batch.width, "others")
     everybody = [np.arange(len(world.agents)) for world in worlds]
     rows = np.arange(len(worlds))
     others.start(rows, everybody, [np.random.default_rng(b) for b in rows])

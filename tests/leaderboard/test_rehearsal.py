@@ -104,7 +104,7 @@ def test_a_comparison_across_the_line_never_calls_anybody_better():
     text = render_duel(found, METRICS)
     assert "## success: not as equals" in text
     assert "crowd succeeds 100 points more often" in text
-    assert "crowd 5 and orca none was granted, so nobody is called better" in text
+    assert "crowd 5 and orca none was granted, so neither is called better" in text
     (turned,) = duel(table(rows()), METRICS, ["success"], "orca", "crowd").comparisons
     assert (turned.first_rehearsal, turned.second_rehearsal) == (0, 5)
     every = comparisons(table(rows()), METRICS, "success")

@@ -76,7 +76,7 @@ def test_leaving_out_who_is_far_away_changes_no_density(seed, monkeypatch):
     some = analyse(episode).density
     calls = []
     for name, everything in [
-        ("_matter", lambda area, frames, points: calls.append(1) or frames >= 0),
+        ("_relevant", lambda area, frames, points: calls.append(1) or frames >= 0),
         ("_nearby", lambda walkable, area: calls.append(2) or walkable),
     ]:
         monkeypatch.setattr(density, name, everything)

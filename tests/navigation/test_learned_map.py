@@ -11,7 +11,7 @@ from benchnav.geometry.sweep import clearance
 from benchnav.navigation.hierarchy.learned_map import (
     DOUBT,
     GUESSED,
-    TOLD,
+    SENSED_EDGE,
     way_is_free,
     with_edge,
     with_guess,
@@ -124,10 +124,10 @@ def test_a_free_disc_clears_what_it_must_have_met(gap):
 
 def test_a_solid_of_the_granted_map_goes_as_a_whole():
     held = Held()
-    for k, owner in enumerate((0, 7, 7, TOLD, 7, 1)):
+    for k, owner in enumerate((0, 7, 7, SENSED_EDGE, 7, 1)):
         held.put((2.0 * k, 0.0, 2.0 * k, 0.2, 0.0), owner)
     held.n = without_contradicted(held.capsules, held.owner, held.n, 2.0, -1.0, 2.0, 1.0, 0.3)
-    assert held.owner[: held.n].tolist() == [0, TOLD, 1]
+    assert held.owner[: held.n].tolist() == [0, SENSED_EDGE, 1]
     assert held.now[:, 0].tolist() == [0.0, 6.0, 10.0]
 
 
@@ -137,7 +137,7 @@ def test_a_stopped_disc_is_explained_or_guessed_at():
     seen = (1.7, 0.0, 1.0, 0.0, 0.3)  # stopped by that edge
     assert with_guess(held.capsules, held.owner, held.n, *seen) == 1
     held.n = with_guess(held.capsules, held.owner, held.n, 0.0, 3.0, 0.0, 1.0, 0.3)
-    assert held.owner[: held.n].tolist() == [TOLD, GUESSED]
+    assert held.owner[: held.n].tolist() == [SENSED_EDGE, GUESSED]
     assert clearance(0.0, 3.0, held.now) == pytest.approx(0.3)
     assert with_guess(held.capsules, held.owner, held.n, 0.0, 3.0, 0.6, 0.8, 0.3) == 2
     aside = (0.0, 3.0, 1.0, 0.0, 0.3)  # what is straight ahead explains no stop on the way aside

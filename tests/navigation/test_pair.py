@@ -109,7 +109,7 @@ def test_what_is_refused_and_how(spec, message):
 
 
 def test_a_map_for_no_planner_is_refused():
-    with pytest.raises(ConfigError, match="must be given a planner where it maps"):
+    with pytest.raises(ConfigError, match="must be given a planner if mapping is on"):
         make(NAVIGATORS, "mapping+none+orca")
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from benchnav.errors import BrokenPluginError
-from benchnav.navigation.command_check import grouped, kind_of, said, short
+from benchnav.navigation.command_check import exception_text, grouped, kind_of, short
 from benchnav.navigation.plugin.trace import MOST, bounded, location, plain, trace
 
 PLUGIN = """
@@ -58,7 +58,7 @@ def test_the_innermost_line_of_the_plugins_own_code_is_told(plugin):
     assert location(raised(plugin.direct)) == "fragile.py:6"
     assert location(raised(plugin.through_a_library)) == "fragile.py:9"
     assert location(raised(plugin.through_a_file_beside)) == "helping.py:2"
-    assert said(raised(plugin.direct)) == "ValueError: no (fragile.py:6)"
+    assert exception_text(raised(plugin.direct)) == "ValueError: no (fragile.py:6)"
 
 
 def test_a_module_of_a_package_is_told_with_its_package():
@@ -96,7 +96,7 @@ def test_a_deep_stack_and_a_long_message_are_cut(plugin):
     assert len(text) < MOST
     assert len(trace(ValueError("x" * 10_000_000))) < MOST
     assert len(bounded("y\n" * 1_000_000)) <= MOST
-    assert len(said(ValueError("x" * 10_000_000))) < 400
+    assert len(exception_text(ValueError("x" * 10_000_000))) < 400
 
 
 class Raising(Exception):
@@ -159,11 +159,11 @@ def test_a_hostile_exception_becomes_text_that_can_be_stored(error):
         raise error
 
     error = raised(fail)
-    for text in (said(error), short(error), plain(error), trace(error)):
+    for text in (exception_text(error), short(error), plain(error), trace(error)):
         assert type(text) is str
         text.encode("utf-8")
         assert not any(ord(c) < 32 and c not in "\n\t" for c in text)
-    assert said(error).split(":")[0].isidentifier()
+    assert exception_text(error).split(":")[0].isidentifier()
 
 
 def test_a_folder_of_a_notebook_is_not_told():

@@ -322,9 +322,9 @@ def test_a_cell_is_n_a_where_its_leader_cannot_work(suite, tmp_path):
 
 
 def test_who_leads_must_be_named_and_must_not_rehearse(suite):
-    with pytest.raises(ScenarioError, match="must name who leads"):
+    with pytest.raises(ScenarioError, match="must name the leaders' navigator"):
         suite("{type: 'rehearsing_navigators:Endless'}")
-    with pytest.raises(ScenarioError, match="must need none itself"):
+    with pytest.raises(ScenarioError, match="must not ask for rehearsals itself"):
         suite(told(", leader: 'rehearsing_navigators:Told'"))
 
 

@@ -64,7 +64,7 @@ def test_a_sensor_that_nobody_has_makes_a_cell_n_a(write, scenario_file, tmp_pat
     suite = load_suite(write(scenarios=f"[{blind}]", tracks="[known]"))
     reasons = {cell.entry.label: cell.reason for cell in suite.cells()}
     assert reasons == {
-        "straight-line": "", "orca": "needs neighbours, which nobody senses there"
+        "straight-line": "", "orca": "needs neighbours, which no sensor gives there"
     }  # fmt: skip
 
 

@@ -27,7 +27,7 @@ _OBLIQUE = np.array([0.2, 0.45, 1.0])  # [s] at 30°
 _ASIDE = np.array([0.12, 0.4])  # [s] at 60° and, half as far, at 90°
 _NEAR = 0.9  # [s] to the goal
 _WARY = 1.75  # [s] to another agent or a mover
-_LEAD = 0.6  # [s] for which a mover is taken to come on
+_LEAD = 0.6  # [s] for which a mover is assumed to approach
 
 
 def pick_rays(angle: FloatArray) -> IntArray:
@@ -65,7 +65,7 @@ def encode(
     speed: FloatArray, tolerance: FloatArray, pick: IntArray, angle: FloatArray,
     distance: FloatArray, kind: ByteArray, approach: FloatArray, out: IntArray,
 ) -> None:  # fmt: skip
-    """Fill ``out`` (B, A) where active; arrays as in an observation."""
+    """Fill ``out`` (B, A) for active agents; arrays as in an observation."""
     way = np.empty(7)
     for b in range(active.shape[0]):
         for i in range(active.shape[1]):

@@ -37,13 +37,11 @@ class QLearningGrid(Navigator):
 
         cell: float = Field(0.25, gt=0, description="[m] side of a cell")
         clearance: float = Field(
-            0.2, ge=0, description="[m] kept from obstacles; less where no way is found with it"
+            0.2, ge=0, description="[m] kept from obstacles; less if no path is found with it"
         )
         decisions: int = Field(100_000, ge=1, description="moves tried in learning, per agent")
-        explore: float = Field(
-            0.1, ge=0, le=1, description="share of these moves that are drawn, not the best"
-        )
-        rate: float = Field(1.0, gt=0, le=1, description="step size; a map is no matter of chance")
+        explore: float = Field(0.1, ge=0, le=1, description="share of random moves among these")
+        rate: float = Field(1.0, gt=0, le=1, description="step size; 1, as moves are deterministic")
 
     needs: ClassVar[frozenset[Need]] = frozenset({Need.MAP})
 
@@ -116,7 +114,7 @@ class _Row:
         return True
 
     def velocity(self, place: FloatArray) -> FloatArray:
-        """Return velocities (A, 2) [m/s] towards target centres, the next ones where reached."""
+        """Return velocities (A, 2) [m/s] towards target centres, or the next ones after arrival."""
         aim = self.briefing.goal.copy()
         speed, dt = self.briefing.preferred_speed, self.briefing.dt
         for agent, (cells, after) in self._policy.items():

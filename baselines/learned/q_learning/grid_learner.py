@@ -1,9 +1,9 @@
 """Tabular Q-learning over cell × move, towards one goal (Watkins & Dayan 1992).
 
-Rewards are minus the metres of a move, without discount, and a move leads where the
-map says. Values start at minus the distance over empty cells, which is equivalent to shaping by
-that potential (Wiewiora 2003, JAIR 19), and are never too low: so the greedy policy tries
-unknown moves (Sutton & Barto 2018, section 2.6).
+Rewards are minus the metres of a move, without discount, and a move leads to the cell that the map
+gives. Values start at minus the distance over empty cells, which is equivalent to shaping by that
+potential (Wiewiora 2003, JAIR 19), and are never too low: so the greedy policy tries unknown moves
+(Sutton & Barto 2018, section 2.6).
 """
 
 from dataclasses import dataclass

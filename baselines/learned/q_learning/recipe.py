@@ -1,4 +1,4 @@
-"""What a recipe of the table says: where, how long and how boldly to learn."""
+"""The recipe of the table: scenarios, duration and exploration of the training."""
 
 from typing import Annotated, Literal
 
@@ -21,8 +21,8 @@ class Recipe(BaseModel):
         ("leaders/static", "leaders/dynamic"), min_length=1, description="the worlds take turns"
     )
     rounds: int = Field(700, ge=1, le=10**6)
-    decisions: int = Field(8, ge=1, le=10**4, description="of a round, in every world")
-    worlds: int = Field(1024, ge=1, le=10**5, description="that are learned in at once")
+    decisions: int = Field(8, ge=1, le=10**4, description="per round, in every world")
+    worlds: int = Field(1024, ge=1, le=10**5, description="number of simultaneous worlds")
     patience: int = Field(100, ge=1, description="decisions after which a world starts over")
     discount: Share = Field(0.96, description="per decision")
     explore: tuple[Share, Share] = Field(

@@ -15,7 +15,7 @@ from .encoder import ENCODER, SITUATIONS
 from .learner import Learner
 from .moves import MOVES
 
-_UNKNOWN = len(MOVES) - 1  # in a situation without a value: stand and turn
+_UNKNOWN = len(MOVES) - 1  # in a situation without a value: turn in place
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ class QLearningConfig(PluginConfig):
     """Parameters."""
 
     table: Path | None = Field(
-        None, description="file that training wrote (.safetensors); none: the one that ships"
+        None, description="file of a training (.safetensors); none: the included one"
     )
 
 

@@ -1,4 +1,4 @@
-"""Names for a new plugin package that nothing else has: in Python, on this machine, on paper."""
+"""Names for a new plugin package without conflicts with Python or installed packages."""
 
 import builtins
 import keyword
@@ -12,17 +12,17 @@ from benchnav.plugins import NAVIGATORS
 
 
 def module_name(name: str) -> str:
-    """Return what the package's module is called."""
+    """Return the name of the package's module."""
     return name.replace("-", "_")
 
 
 def class_name(name: str) -> str:
-    """Return what the plugin's class is called."""
+    """Return the name of the plugin's class."""
     return "".join(part.capitalize() for part in name.split("-"))
 
 
 def name_taken(name: str) -> str:
-    """Return what has this name already, as a sentence; "" where it is free."""
+    """Return the owner of this name, as a sentence; "" if the name is free."""
     module = module_name(name)
     if name in NAVIGATORS.names():
         return f"{name!r} is a navigator of {NAVIGATORS.source(name).distribution}"
@@ -57,5 +57,5 @@ def _is_distribution(name: str) -> bool:
 
 
 def _plain(name: str) -> str:
-    """As package indexes compare names."""
+    """Return the normalized name, by which package indexes compare names."""
     return re.sub(r"[-_.]+", "-", name).lower()

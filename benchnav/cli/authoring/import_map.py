@@ -1,4 +1,4 @@
-"""`benchnav import`: other projects' maps become scenario files."""
+"""`benchnav import`: convert maps of other projects into scenario files."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -8,7 +8,7 @@ import typer
 from benchnav.cli.console import put, say
 from benchnav.cli.stopping import stoppable
 
-import_app = typer.Typer(help="Make a scenario of a published map.", no_args_is_help=True)
+import_app = typer.Typer(help="Convert a published map into a scenario.", no_args_is_help=True)
 
 Out = Annotated[
     Path,
@@ -16,11 +16,11 @@ Out = Annotated[
 ]
 Agents = Annotated[
     int | None,
-    typer.Option(metavar="N", help="How many agents. [default: 20, or as many as have room]"),
+    typer.Option(metavar="N", help="Number of agents. [default: 20, or fewer in a small map]"),
 ]
 Name = Annotated[
     str | None,
-    typer.Option(metavar="NAME", help="Of the scenario. [default: as FILE, the map or its folder]"),
+    typer.Option(metavar="NAME", help="Scenario name. [default: from FILE, map or its folder]"),
 ]
 Force = Annotated[
     bool, typer.Option("--force", help="Overwrite the scenario file; a map is never overwritten.")
@@ -45,12 +45,12 @@ def movingai(
     ] = None,
     cell: Annotated[float, typer.Option(metavar="M", help="Side of a cell [m].")] = 1.0,
     radius: Annotated[
-        float | None, typer.Option(metavar="M", help="Of an agent [m]. [default: 0.3 cells]")
+        float | None, typer.Option(metavar="M", help="Agent radius [m]. [default: 0.3 cells]")
     ] = None,
     name: Name = None,
     force: Force = False,
 ) -> None:
-    """A grid map of the MovingAI benchmarks."""
+    """Convert a grid map of the MovingAI benchmarks."""
     from benchnav.scenario.importers import default_name, import_movingai
 
     scenario = import_movingai(
@@ -74,15 +74,15 @@ def ros_map(
     agents: Agents = None,
     radius: Annotated[
         float | None,
-        typer.Option(metavar="M", help="Of an agent [m]. [default: 0.2, or less on a small map]"),
+        typer.Option(metavar="M", help="Agent radius [m]. [default: 0.2, or less on a small map]"),
     ] = None,
     unknown_is_free: Annotated[
-        bool, typer.Option("--unknown-is-free", help="Agents may enter what the map does not know.")
+        bool, typer.Option("--unknown-is-free", help="Agents may enter unknown cells of the map.")
     ] = False,
     name: Name = None,
     force: Force = False,
 ) -> None:
-    """An occupancy map of the ROS map_server."""
+    """Convert an occupancy map of the ROS map_server."""
     from benchnav.scenario.importers import default_name, import_ros_map
 
     scenario = import_ros_map(

@@ -63,8 +63,8 @@ A navigator for [benchnav](https://pypi.org/project/benchnav/). Its code is in `
     benchnav run quick --navigator {name} --navigator orca --out runs/first
     benchnav leaderboard runs/first
 
-The test calls `check_navigator`, which tries the navigator in small worlds and says in a sentence
-which rule it breaks: a command of the wrong shape, memory that leaks between worlds, and so on.
+The test calls `check_navigator`, which runs the navigator in small worlds and reports violated
+rules: a command of the wrong shape, memory that leaks between worlds, and so on.
 """
 
 

@@ -1,4 +1,4 @@
-"""`benchnav new`: a plugin package to begin with."""
+"""`benchnav new`: write a template of a plugin package."""
 
 import re
 from pathlib import Path
@@ -12,12 +12,12 @@ from benchnav.cli.console import put, say
 from benchnav.cli.stopping import stoppable
 from benchnav.errors import StoreError, UsageError
 
-new_app = typer.Typer(help="Write a plugin package to begin with.", no_args_is_help=True)
+new_app = typer.Typer(help="Write a template of a plugin package.", no_args_is_help=True)
 
 
 @new_app.callback()
 def _kinds() -> None:
-    """Keep `navigator` a verb of its own while it is the only kind."""
+    """Keep `navigator` as a separate verb, although it is the only kind."""
 
 
 @new_app.command("navigator")
@@ -25,7 +25,7 @@ def _kinds() -> None:
 def navigator(
     name: Annotated[str, typer.Argument(metavar="NAME", help="Small letters, digits and hyphens.")],
     folder: Annotated[
-        Path | None, typer.Option("--out", help="Where to write it. [default: ./NAME]")
+        Path | None, typer.Option("--out", help="Folder to write. [default: ./NAME]")
     ] = None,
 ) -> None:
     """Write a complete navigator package: a module, an entry point, a test and a README."""
@@ -38,7 +38,7 @@ def navigator(
         raise UsageError(f"NAME must be free. {taken}. {free_name(name)!r} would do.")
     target = folder if folder is not None else Path(name)
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
-        raise UsageError(f"{target} must be missing or an empty folder. It holds something.")
+        raise UsageError(f"{target} must be missing or an empty folder. It is not empty.")
     try:
         for file, text in navigator_package(name).items():
             (target / file).parent.mkdir(parents=True, exist_ok=True)

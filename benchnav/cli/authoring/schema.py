@@ -10,7 +10,7 @@ from benchnav.cli.console import one_of, put
 
 
 class Of(StrEnum):
-    """Which file the schema is of."""
+    """The kind of file that a schema describes."""
 
     SCENARIO = "scenario"
     SUITE = "suite"
@@ -19,9 +19,9 @@ class Of(StrEnum):
 def schema(
     of: Annotated[str, typer.Argument(metavar="OF", help="scenario or suite.")] = Of.SCENARIO.value,
 ) -> None:
-    """Print the JSON Schema of scenario files.
+    """Print the JSON Schema of scenario files or suite files.
 
-    Or of suite files; editors use it to complete and check (2020-12).
+    Editors use it to complete and check files (JSON Schema 2020-12).
     """
     if one_of(Of, "OF", of) == Of.SUITE:
         from benchnav.runner.plan.suite_file import json_schema

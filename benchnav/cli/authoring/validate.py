@@ -1,4 +1,4 @@
-"""`benchnav validate`: is this file right, and can it be drawn?"""
+"""`benchnav validate`: check a scenario or suite file."""
 
 from pathlib import Path
 from typing import Annotated
@@ -14,12 +14,12 @@ def validate(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario or suite file.")],
     draw: Annotated[
         bool,
-        typer.Option(help="Also draw worlds of a scenario: can they be solved, do they differ?"),
+        typer.Option(help="Also draw worlds of a scenario: are they solvable, do they differ?"),
     ] = True,
 ) -> None:
     """Check a scenario or suite file.
 
-    Every complaint says file:line: key.
+    Each problem is reported as file:line: key.
     """
     from benchnav.config.yaml_reader import read_yaml
     from benchnav.runner.plan.suite_file import describes_scenario

@@ -16,8 +16,7 @@ def pack(
 ) -> None:
     """Make one file of a run, with everything that is needed to verify it.
 
-    Whoever gets it checks it with `benchnav verify` and needs no navigator for that. Prints
-    the file's path.
+    `benchnav verify` checks the file without the navigators. Prints the path of the file.
     """
     from benchnav.api.run import open_run
 

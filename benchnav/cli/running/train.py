@@ -36,14 +36,14 @@ def train(
     """
     from benchnav.cli.running.training_progress import training_progress
 
-    trainer, said = _load(recipe)
-    name = getattr(said, "name", Path(recipe).stem)
+    trainer, content = _load(recipe)
+    name = getattr(content, "name", Path(recipe).stem)
     folder = out if out is not None else Path("runs") / f"{name}-{datetime.now():%Y%m%d-%H%M%S}"
     if not quiet:
         say(f"{name}, seed {seed}, into {folder}")
     with training_progress(quiet) as report:
         try:
-            trainer.train(said, seed, folder, resume=resume, device=device, report=report)
+            trainer.train(content, seed, folder, resume=resume, device=device, report=report)
         except KeyboardInterrupt as stopped:
             stopped.add_note(
                 "the last checkpoint is kept."

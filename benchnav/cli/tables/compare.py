@@ -1,4 +1,4 @@
-"""`benchnav compare`: what differs between two navigators, by how much, and how sure."""
+"""`benchnav compare`: the differences between two navigators, and their significance."""
 
 from pathlib import Path
 from typing import Annotated
@@ -41,7 +41,7 @@ def compare(
         typer.Option("--recompute", help="Measure the stored episodes again, with every metric."),
     ] = False,
 ) -> None:
-    """Compare navigators A and B: what differs, by how much, and how sure that is.
+    """Compare navigators A and B: differences, their intervals, and their significance.
 
     Worlds are paired, intervals are of 95 %, and all sentences are one family of tests.
     """

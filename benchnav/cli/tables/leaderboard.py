@@ -55,7 +55,7 @@ def leaderboard(
     ] = None,
     verify: Annotated[
         bool,
-        typer.Option("--verify", help="Verify the runs first that were not verified here before."),
+        typer.Option("--verify", help="Verify runs first that were not verified here."),
     ] = False,
 ) -> None:
     """Print the table of one or more runs.
@@ -76,7 +76,7 @@ def _table(
     from benchnav.viewer.picture import is_picture
 
     if is_picture(out):
-        raise UsageError(f"A table is no picture: {out} must end otherwise, or --curve be given.")
+        raise UsageError(f"A table is no picture: {out} needs another suffix, or give --curve.")
     if format is None and out is None and sys.stdout.isatty():
         format = "terminal"
     wanted, named = out_format(FORMATS, format, out), _named(columns, metric)
@@ -110,7 +110,7 @@ def _curve(
 
 
 def _named(columns: str | None, metric: list[str] | None) -> list[str] | None:
-    """The names in --columns."""
+    """Return the names in --columns."""
     if columns is None:
         return None
     if metric:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 @contextmanager
 def opened_runs(paths: Sequence[Path]) -> Iterator["list[Run]"]:
-    """Open the runs; packs stay unpacked for as long as this lasts."""
+    """Open the runs; packs stay unpacked within the context."""
     from benchnav.api.run import open_run
 
     with ExitStack() as stack:

@@ -1,1 +1,1 @@
-"""Commands that show what is installed."""
+"""Commands that show installed components."""

@@ -1,4 +1,4 @@
-"""`benchnav doctor`: is this installation sound?"""
+"""`benchnav doctor`: check this installation."""
 
 import platform
 import sys
@@ -38,13 +38,13 @@ _EXTRAS = {
     "view": {"matplotlib": "matplotlib", "plotly": "plotly"},
     "ray": {"ray": "ray"},
 }  # extra → package → module
-Line = tuple[str, str, str]  # verdict, what, detail
+Line = tuple[str, str, str]  # verdict, subject, detail
 
 
 def doctor() -> None:
     """Check this installation.
 
-    Versions, cores, the user's folders, extras, plugins.
+    It checks versions, cores, the user's folders, extras and plugins.
     """
     lines = [*_machine(), *_packages(), *_cache(), *_receipts(), *_plugins()]
     put(columns(lines))
@@ -76,7 +76,7 @@ def _packages() -> Iterator[Line]:
 
 
 def _cache() -> Iterator[Line]:
-    """Where compiled kernels are kept; a first run compiles them, later ones load them."""
+    """Yield the folder of compiled kernels: a first run compiles them, later runs load them."""
     from benchnav.kernels import cache_base, kernels_name
 
     base = cache_base()
@@ -88,7 +88,7 @@ def _cache() -> Iterator[Line]:
 
 
 def _receipts() -> Iterator[Line]:
-    """Where verifying leaves its receipts, which leaderboards look for."""
+    """Yield the folder of receipts, which `verify` writes and leaderboards read."""
     state = user_state()
     if state.path is None:
         cure = "set XDG_STATE_HOME to a folder that you can write"
@@ -97,8 +97,8 @@ def _receipts() -> Iterator[Line]:
         yield _folder("receipts", state.path / "verified", state.reason)
 
 
-def _folder(what: str, place: Path, reason: str) -> Line:
-    return ("-", what, f"{place}, because {reason}") if reason else ("ok", what, str(place))
+def _folder(name: str, place: Path, reason: str) -> Line:
+    return ("-", name, f"{place}, because {reason}") if reason else ("ok", name, str(place))
 
 
 def _plugins() -> Iterator[Line]:

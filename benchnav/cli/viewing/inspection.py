@@ -1,4 +1,4 @@
-"""The facts about plugins for `list`, `show` and `doctor`, from processes of their own."""
+"""The facts about plugins for `list`, `show` and `doctor`, from separate processes."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -22,27 +22,27 @@ from benchnav.plugins import (
 from benchnav.processes.channel import Channel
 from benchnav.source.parts import local_names
 
-SENTENCE, MADE, PAGE, PAIR = "sentence", "made", "page", "pair"  # what can be asked
-_TIMEOUT = 30.0  # [s] for an import, or to be made
-_MADE = (NAVIGATORS, PLANNERS, CONTROLLERS)  # that `benchnav run` makes from a Config
+SENTENCE, MADE, PAGE, PAIR = "sentence", "made", "page", "pair"  # kinds of facts
+_TIMEOUT = 30.0  # [s] for an import or a construction
+_MADE = (NAVIGATORS, PLANNERS, CONTROLLERS)  # plugins that `benchnav run` makes from a Config
 _REGISTRIES = {r.kind: r for r in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, TRAINERS)}
 
 
 def inspect_plugins(
-    registry: Registry, names: Iterable[str], what: str
+    registry: Registry, names: Iterable[str], fact: str
 ) -> dict[str, str | BenchnavError]:
     """Return the facts about each plugin, or the reason why it cannot be used.
 
-    Those of one distribution share a process. What is part of benchnav alone, or is known in
-    this process alone, is asked in it.
+    Plugins of one distribution share a process. Plugins of benchnav, and plugins that only this
+    process knows, are loaded in this process.
     """
     found: dict[str, str | BenchnavError] = {}
     groups: dict[str, list[Plugin]] = {}
     names = list(names)
     for name in names:
-        question = {"kind": registry.kind, "name": name, "what": what}
+        question = {"kind": registry.kind, "name": name, "fact": fact}
         try:
-            source = registry.source(HIERARCHICAL if what == PAIR else name)
+            source = registry.source(HIERARCHICAL if fact == PAIR else name)
         except PluginError as error:  # two distributions claim it
             found[name] = error
             continue
@@ -55,24 +55,24 @@ def inspect_plugins(
     for group, answered in zip(groups.values(), answers, strict=True):
         for plugin, answer in zip(group, answered, strict=True):
             known = isinstance(answer, BenchnavError)
-            found[plugin.name] = answer if known else _cleaned(answer, what)
+            found[plugin.name] = answer if known else _cleaned(answer, fact)
     return {name: found[name] for name in names}
 
 
 def tell_inspected(channel: Channel, notes: "memoryview[float]") -> None:
-    """Say what the channel asks of plugins. Of a process of its own."""
+    """Send the requested facts about plugins. Runs in a separate process."""
     tell(channel, notes, _inspected)
 
 
 def _inspected(question: Any, stepping: Stepping) -> str:
-    registry, name, what = _REGISTRIES[question["kind"]], question["name"], question["what"]
+    registry, name, fact = _REGISTRIES[question["kind"]], question["name"], question["fact"]
     stepping(IMPORT)
-    if what == PAIR:
+    if fact == PAIR:
         return pair_page(name)
     plugin = registry.load(name)
-    if what == SENTENCE:
+    if fact == SENTENCE:
         return short(sentence(plugin))
-    if what == PAGE:
+    if fact == PAGE:
         return plugin_page(registry, name)
     if registry in _MADE:
         declared = getattr(plugin, "Config", None)
@@ -84,12 +84,12 @@ def _inspected(question: Any, stepping: Stepping) -> str:
 
 
 def _is_known_here(registry: Registry, name: str) -> bool:
-    """Whether this process alone knows it, or a part of it."""
+    """Whether only this process knows the plugin or a part of it."""
     if registry is not NAVIGATORS:
         return registry.is_local(name)
     try:
         full, parameters = split(registry, name)
-    except PluginError:  # it is refused wherever it is asked
+    except PluginError:  # it is invalid in every process
         return False
     return bool(local_names({"type": full, **parameters}))
 
@@ -101,5 +101,5 @@ def _here(question: Any) -> str | BenchnavError:
         return error
 
 
-def _cleaned(answer: Any, what: str) -> str:
-    return plain(answer) if what in (PAGE, PAIR) else short(answer)
+def _cleaned(answer: Any, fact: str) -> str:
+    return plain(answer) if fact in (PAGE, PAIR) else short(answer)

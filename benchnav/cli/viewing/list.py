@@ -1,4 +1,4 @@
-"""`benchnav list`: what is installed, and what of it is broken."""
+"""`benchnav list`: all installed components, and the broken ones."""
 
 from collections.abc import Iterator
 from enum import StrEnum
@@ -42,7 +42,7 @@ REGISTRIES = {
     Kind.TRAINERS: TRAINERS,
 }
 
-Row = tuple[str, str, str]  # name, where from, what it is
+Row = tuple[str, str, str]  # name, origin, description
 
 
 def list_(
@@ -55,7 +55,7 @@ def list_(
         ),
     ] = None,
 ) -> None:
-    """List what can be named, and what is broken."""
+    """List the names of all components, and the broken ones."""
     if kind is not None:
         put(columns(list(_rows(one_of(Kind, "KIND", kind)))))
         return

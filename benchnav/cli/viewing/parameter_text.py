@@ -7,11 +7,11 @@ from benchnav.errors import BenchnavError
 from benchnav.plugins import Registry
 
 WIDEST = 40  # characters of a type
-UNKNOWN_BEFORE_CONSTRUCTION = "what it says once it is made"
+UNKNOWN_BEFORE_CONSTRUCTION = "inputs that depend on its parameters"
 
 
 def parameters(plugin: Any) -> list[tuple[str, str, str, str]]:
-    """Name, type, default and description of every parameter; none for a plugin without."""
+    """Return name, type, default and description of every parameter; [] without parameters."""
     return [
         (key, _type(field.annotation), _default(field), field.description or "")
         for key, field in (plugin.Config.model_fields if hasattr(plugin, "Config") else {}).items()
@@ -33,24 +33,24 @@ def answers(registry: Registry, name: str) -> str:
 
 
 def _made(registry: Registry, name: str) -> Any:
-    """The plugin made without parameters; if it cannot be made, a text that says so."""
+    """Return the plugin made without parameters; if it cannot be made, a text with the reason."""
     from benchnav.navigation.plugin.configure import make
 
-    if name in registry.names():  # and not a pair
+    if name in registry.names():  # it is not a pair
         declared = registry.load(name).Config.model_fields.values()
         if any(field.is_required() for field in declared):
             return UNKNOWN_BEFORE_CONSTRUCTION
     try:
         return make(registry, name)
     except BenchnavError as error:
-        return f"what it says once it can be made: {error}"
+        return f"unknown inputs, because it cannot be made: {error}"
 
 
 def _type(annotation: Any) -> str:
     if isinstance(annotation, type):
         return annotation.__name__
     text = re.sub(r"\b(?:\w+\.)+(?=\w)", "", str(annotation)).replace("NoneType", "None")
-    return text if len(text) <= WIDEST else "one of several"  # which, its description says
+    return text if len(text) <= WIDEST else "one of several"  # the description lists them
 
 
 def _default(field: Any) -> str:

@@ -1,4 +1,4 @@
-"""The page of a plugin for `benchnav show`: made where its code may run."""
+"""The page of a plugin for `benchnav show`, from a process in which its code may run."""
 
 import inspect
 from typing import Any
@@ -28,7 +28,7 @@ def plugin_page(registry: Registry, name: str) -> str:
 
 
 def pair_page(name: str) -> str:
-    """A navigator named by its parts, and these."""
+    """Return the page of a navigator that is named by its parts, and the pages of its parts."""
     navigator = make(NAVIGATORS, name)
     distributions = dict.fromkeys(part.distribution for part in navigator.parts)
     facts = [
@@ -39,7 +39,7 @@ def pair_page(name: str) -> str:
     ]
     head = f"{name}\n" + columns([("  " + key, value) for key, value in facts])
     others = _parameters(type(navigator), named=(PLANNERS.kind, CONTROLLERS.kind, MAPPING))
-    pages = [f"{head}\n  parameters beside its parts'\n{others}"]
+    pages = [f"{head}\n  parameters in addition to those of its parts\n{others}"]
     planner, controller = name.split("+")[-2:]
     if planner != NO_PLANNER:
         pages.append(plugin_page(PLANNERS, planner))
@@ -49,17 +49,17 @@ def pair_page(name: str) -> str:
 def _metric_facts(metric: Any) -> list[tuple[str, str]]:
     facts = [
         ("unit", metric.unit or "none"),
-        ("better", metric.better or "neither: it describes, and is never ranked"),
+        ("better", metric.better or "neither: descriptive, never ranked"),
         ("range", f"{metric.low:g} to {metric.high:g}"),
         ("per", metric.scope),
     ]
     if metric.conditional:
-        facts.append(("of", "those that arrived, so it shows their number and never ranks"))
+        facts.append(("of", "agents that arrive: it shows their number, and never ranks"))
     return [*facts, ("reference", metric.reference)]
 
 
 def _parameters(plugin: Any, named: tuple[str, ...] = ()) -> str:
-    """One line each, without those ``named`` elsewhere."""
+    """Return one line per parameter, without those in ``named``."""
     rows = [("    " + row[0], *row[1:]) for row in parameters(plugin) if row[0] not in named]
     return columns(rows) if rows else "    none"
 

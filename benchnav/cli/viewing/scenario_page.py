@@ -1,4 +1,4 @@
-"""A scenario on one page: who, where, among what, until when, and which worlds come of it."""
+"""The page of a scenario: arena, teams, obstacles, terms, parameters and worlds."""
 
 from collections.abc import Iterator
 from textwrap import fill
@@ -53,7 +53,7 @@ def scenario_page(scenario: "Scenario") -> str:
 def _parameters(scenario: "Scenario") -> Iterator[str]:
     for name, p in scenario.parameters.items():
         note = f" ({p.description})" if p.description else ""
-        yield f"{name} = {p.default:g} unless chosen, from {p.low:g} to {p.high:g}{note}"
+        yield f"{name} = {p.default:g} by default, from {p.low:g} to {p.high:g}{note}"
 
 
 def _line(key: str, value: str) -> str:
@@ -62,9 +62,9 @@ def _line(key: str, value: str) -> str:
 
 
 def worlds_text(scenario: "Scenario") -> str:
-    """Whether worlds differ from seed to seed and between the splits, of seeds 0 and 1 of each.
+    """Return whether worlds differ between seeds and splits, from seeds 0 and 1 of each split.
 
-    Raises UnsolvableError where a world cannot be drawn.
+    Raises UnsolvableError if a world cannot be drawn.
     """
     from benchnav.generation.world_digest import coincidences
     from benchnav.scenario.terms import SPLITS
@@ -99,7 +99,7 @@ def _arena(scenario: "Scenario") -> Iterator[Fact]:
 def _static(group: "StaticGroup") -> str:
     text = f"{_count(group)} × {_shape(group.shape)}, {_where(group)}"
     if group.gap:
-        text += f", {group.gap:g} m or more from all else"
+        text += f", at least {group.gap:g} m from all others"
     if group.was_moved:
         by = "" if group.moved is True else f" by {group.moved:g} m"
         text += f"; moved{by} since the stale map was made"
@@ -172,9 +172,9 @@ def _terms(scenario: "Scenario") -> Iterator[Fact]:
         seen.append(f"the nearest {near.count} neighbours within {near.range:g} m")
     if sensing.edges is not None:
         seen.append(f"the nearest {sensing.edges.count} edges within {sensing.edges.range:g} m")
-    hidden = "" if sensing.occlusion else "; nothing hides what is behind it"
+    hidden = "" if sensing.occlusion else "; without occlusion"
     yield "sensing", (", ".join(seen) or "nothing") + hidden
-    budget = "" if clock.decision_budget is None else f", to be made in {clock.decision_budget:g} s"
+    budget = "" if clock.decision_budget is None else f" within {clock.decision_budget:g} s"
     yield (
         "clock",
         f"a decision every {clock.dt:g} s{budget}, {clock.substeps} substeps, until"
@@ -188,7 +188,7 @@ def _terms(scenario: "Scenario") -> Iterator[Fact]:
 
 
 def number(scalar: "Scalar") -> str:
-    """A number, or what it is drawn from."""
+    """Return a number, or the distribution that it is drawn from."""
     from benchnav.scenario.sampling.sampler import Choice, Normal, support
 
     if isinstance(scalar, int | float):

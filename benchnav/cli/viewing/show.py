@@ -1,4 +1,4 @@
-"""`benchnav show`: one thing by name, with its parameters, units and source."""
+"""`benchnav show`: one component by name, with its parameters, units and source."""
 
 from collections.abc import Iterator
 from typing import Annotated
@@ -16,12 +16,12 @@ from benchnav.text.columns import columns
 
 def show(
     name: Annotated[
-        str, typer.Argument(metavar="NAME", help="Of anything that `benchnav list` lists.")
+        str, typer.Argument(metavar="NAME", help="Any name that `benchnav list` prints.")
     ],
 ) -> None:
-    """Show what a name stands for.
+    """Show a component by name.
 
-    Purpose, parameters with units and defaults, and where it comes from.
+    Purpose, parameters with units and defaults, and source.
     """
     from benchnav.cli.viewing.inspection import PAGE, inspect_plugins
 
@@ -48,7 +48,7 @@ def _shown(page: "str | BenchnavError") -> str:
 
 
 def _pair(name: str) -> Iterator[str]:
-    """A navigator named by its parts, and these."""
+    """Yield the page of a navigator that is named by its parts."""
     from benchnav.cli.viewing.inspection import PAIR, inspect_plugins
 
     if is_pair(name):
@@ -56,7 +56,7 @@ def _pair(name: str) -> Iterator[str]:
 
 
 def _is_class(name: str) -> bool:
-    """True for ``module:Class``; a scenario's parameters stand behind a colon, too."""
+    """Whether a name is ``module:Class``, and not a scenario with parameters after a colon."""
     return ":" in name and "=" not in name
 
 

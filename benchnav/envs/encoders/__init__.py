@@ -1,1 +1,1 @@
-"""Observations as vectors of numbers for a learner, made of the benchmark's own sensors."""
+"""Encoders: observations of the benchmark's sensors as vectors of numbers for a learner."""

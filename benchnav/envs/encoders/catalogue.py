@@ -9,9 +9,9 @@ ENCODERS = ("paper", "paper-static", "ego", "ego-static", "surround")
 
 
 def encoder(name: str) -> Encoder:
-    """The encoder called ``name``; the static ones leave out what tells of movers.
+    """Return the encoder with ``name``; the static ones have no numbers about movers.
 
-    Raises UsageError where there is none.
+    Raises UsageError if there is none.
     """
     if name not in ENCODERS:
         raise UsageError(

@@ -1,4 +1,4 @@
-"""What every encoder is: a fixed list of described numbers per agent."""
+"""The contract of an encoder: a fixed list of described numbers per agent."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -24,12 +24,12 @@ class Number:
     unit: str  # before scaling: "m", "m/s", "rad", or "" for a flag
     low: float  # after scaling
     high: float
-    says: str
+    meaning: str
 
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """(B, A) of the agents that are encoded; padding may hold any positive number."""
+    """(B, A) properties of the encoded agents; padding may have any positive number."""
 
     radius: FloatArray  # [m]
     max_speed: FloatArray  # [m/s]
@@ -37,7 +37,7 @@ class Bodies:
 
 
 class Encoder(ABC):
-    """Observation → (B, A, D) float32. A pure function of one decision's view."""
+    """Observation → (B, A, D) float32: a pure function of the observation of one decision."""
 
     name: ClassVar[str]
     needs: ClassVar[frozenset[Need]]
@@ -45,7 +45,7 @@ class Encoder(ABC):
     @property
     @abstractmethod
     def numbers(self) -> tuple[Number, ...]:
-        """(D,) what each number is, in order."""
+        """(D,) the descriptions of the numbers, in order."""
 
     @property
     def size(self) -> int:
@@ -54,11 +54,11 @@ class Encoder(ABC):
 
     @abstractmethod
     def encode(self, seen: Observation, bodies: Bodies) -> Float32Array:
-        """(B, A, D), every number within its range; inactive agents hold anything finite."""
+        """Return (B, A, D), each number within its range; inactive agents may have any."""
 
 
 def within(numbers: tuple[Number, ...], values: FloatArray) -> Float32Array:
-    """``values`` (…, D) clipped to the ranges of ``numbers``."""
+    """Return ``values`` (…, D) clipped to the ranges of ``numbers``."""
     low = np.array([n.low for n in numbers])
     high = np.array([n.high for n in numbers])
     clipped: Float32Array = np.clip(values, low, high).astype(np.float32)
@@ -66,14 +66,14 @@ def within(numbers: tuple[Number, ...], values: FloatArray) -> Float32Array:
 
 
 def ahead_aside(heading: FloatArray, vector: FloatArray) -> FloatArray:
-    """``vector`` (…, 2) in the frame of ``heading`` (…): x ahead, y to the left."""
+    """Return ``vector`` (…, 2) in the frame of ``heading`` (…): x ahead, y to the left."""
     c, s = np.cos(heading), np.sin(heading)
     x, y = vector[..., 0], vector[..., 1]
     return np.stack([c * x + s * y, c * y - s * x], axis=-1)
 
 
 def rays_of(seen: Observation, count: int, name: str) -> Rays:
-    """The rays, of which there must be ``count``."""
+    """Return the rays. Raises UsageError if their number is not ``count``."""
     if seen.rays is None or len(seen.rays.angle) != count:
         got = "none" if seen.rays is None else str(len(seen.rays.angle))
         raise UsageError(

@@ -1,8 +1,8 @@
 """The paper's state: 7 rays and 6 numbers of agent and goal; 48 numbers, 62 with movers.
 
-A ray holds a one-hot of what it meets (agent, wall, static obstacle, goal), whether it
-meets nothing, and its length. A mover hides what is behind it, reads as nothing, and
-fills two numbers of its own.
+A ray has a one-hot code of the object that it meets (agent, wall, static obstacle, goal), a
+flag for no object, and its length. A mover hides the objects behind it, counts as no object,
+and has two numbers of its own.
 """
 
 from functools import cached_property
@@ -26,16 +26,16 @@ from benchnav.navigation.observation import Observation
 from benchnav.sensors.readings import Rays
 
 RAYS = 7
-RANGE = 8.0  # [m] that a length of 1 stands for
-SPAN = 10.0  # [m] that a coordinate of 1 stands for: half of the paper's arena
-SPEED = 2.0  # [m/s] that a speed of 1 stands for
+RANGE = 8.0  # [m] scale of lengths
+SPAN = 10.0  # [m] scale of coordinates: half of the paper's arena
+SPEED = 2.0  # [m/s] scale of speeds
 _ONE_HOT = (Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.GOAL)
 _WORDS = {Kind.AGENT: "an agent", Kind.WALL: "a wall", Kind.STATIC: "a static obstacle",
           Kind.GOAL: "the own goal"}  # fmt: skip
 
 
 class PaperEncoder(Encoder):
-    """Absolute positions, as printed."""
+    """The paper's numbers with absolute positions, as printed."""
 
     name: ClassVar[str] = "paper"
     needs: ClassVar[frozenset[Need]] = frozenset({Need.RAYS})
@@ -72,7 +72,7 @@ class PaperEncoder(Encoder):
 
 
 class EgoEncoder(PaperEncoder):
-    """The paper's numbers with goal and velocity in the agent's own frame, at equal width."""
+    """The paper's numbers with goal and velocity in the agent's own frame, of equal size."""
 
     name: ClassVar[str] = "ego"
 
@@ -91,7 +91,7 @@ class EgoEncoder(PaperEncoder):
 
 
 def own_frame(seen: Observation) -> FloatArray:
-    """(B, A, 6) goal and velocity as `EgoEncoder` has them."""
+    """Return goal and velocity (B, A, 6) in the agent's own frame, for `EgoEncoder`."""
     goal = ahead_aside(seen.heading, seen.goal - seen.position)
     velocity = ahead_aside(seen.heading, seen.velocity)
     distance = np.hypot(goal[..., 0], goal[..., 1])[..., None]

@@ -1,7 +1,7 @@
-"""All that an agent may sense, all round: a scan of what stands, and who is near.
+"""An encoder of all directions: a scan of static edges, and the nearest agents and movers.
 
-The scan is cast by the encoder against the edges that the agent senses, with its own
-disc; agents and movers are told one by one, nearest first, with their velocity and the
+The encoder casts the scan against the edges that the agent senses, with the agent's disc.
+Agents and movers follow one by one, nearest first, with their velocity and the
 collision probability of Eq. 24.
 """
 
@@ -25,13 +25,13 @@ from benchnav.sensors.readings import Edges, Neighbours
 DIRECTIONS = 24
 OTHERS = 6
 RANGE = 8.0  # [m] of the scan
-FADE = 2.0  # [m] over which nearness falls by e
+FADE = 2.0  # [m] distance over which nearness falls by the factor e
 _EACH = 8  # numbers per other
 _MOVER = int(Kind.DYNAMIC)
 
 
 class SurroundEncoder(Encoder):
-    """8 numbers of the goal and oneself, 24 of what stands, 8 for each of 6 others."""
+    """8 numbers of goal and agent, 24 of the scan, 8 for each of the 6 nearest others."""
 
     name: ClassVar[str] = "surround"
     needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
@@ -73,7 +73,7 @@ class SurroundEncoder(Encoder):
             _others(
                 seen.position.reshape(agents, 2), seen.velocity.reshape(agents, 2),
                 seen.heading.reshape(agents), bodies.radius.reshape(agents),
-                *_told(seen.neighbours, agents), others.reshape(agents, -1),
+                *_neighbour_numbers(seen.neighbours, agents), others.reshape(agents, -1),
             )  # fmt: skip
         own = own_frame(seen)
         distance = np.linalg.norm(seen.goal - seen.position, axis=-1)
@@ -85,8 +85,8 @@ def _other_numbers(k: int) -> list[Number]:
     return [
         Number(f"other{k}.cos", "", -1, 1, "cosine of its bearing"),
         Number(f"other{k}.sin", "", -1, 1, "sine of its bearing"),
-        Number(f"other{k}.close", "m", 0, 1, "1 - gap / 10 m, 0 if nobody"),
-        Number(f"other{k}.near", "m", 0, 1, "exp(-gap / 1 m), 0 if nobody"),
+        Number(f"other{k}.close", "m", 0, 1, "1 - gap / 10 m, 0 if there is none"),
+        Number(f"other{k}.near", "m", 0, 1, "exp(-gap / 1 m), 0 if there is none"),
         Number(f"other{k}.v_ahead", "m/s", -2, 2, f"its velocity less the own, over {SPEED:g} m/s"),
         Number(f"other{k}.v_left", "m/s", -2, 2, f"its velocity less the own, over {SPEED:g} m/s"),
         Number(f"other{k}.p", "", 0, 1, "collision probability, Eq. 24"),
@@ -101,7 +101,7 @@ def _flat(edges: Edges, agents: int) -> tuple[FloatArray, FloatArray, IntArray]:
     )  # fmt: skip
 
 
-def _told(
+def _neighbour_numbers(
     seen: Neighbours, agents: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, ByteArray, IntArray]:
     return (

@@ -7,9 +7,9 @@ from gymnasium.wrappers.vector import RecordEpisodeStatistics
 
 
 class AttemptStatistics(RecordEpisodeStatistics):
-    """Statistics that leave idle steps out: use it in its place around a `LeaderVectorEnv`.
+    """RecordEpisodeStatistics without idle steps, for a `LeaderVectorEnv`.
 
-    Both count attempts, and only those. This one counts only decisions in their lengths.
+    Both wrappers count only attempts. This one counts only decisions in the length of an attempt.
     """
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:

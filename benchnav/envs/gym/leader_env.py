@@ -5,7 +5,7 @@ from typing import Any, ClassVar
 import gymnasium
 import numpy as np
 
-from benchnav.envs.background_agents import Others
+from benchnav.envs.background_agents import BackgroundNavigator
 from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.factory import Reward, drawn_index, make_batch, refuse_rendering
 from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
@@ -15,9 +15,9 @@ from benchnav.navigation.plugin.configure import Spec
 
 
 class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
-    """An attempt is terminated on arriving or touching anything, truncated by time.
+    """One learning agent. An attempt is terminated by arrival or contact, and truncated by time.
 
-    Each attempt is by an agent drawn anew in a world drawn anew. Registered as
+    Each attempt has a newly drawn agent in a newly drawn world. Registered as
     ``benchnav/Leader-v0`` by `benchnav.envs.gym.registration`.
     """
 
@@ -34,14 +34,14 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         others: Spec | None = None,
         render_mode: str | None = None,
     ) -> None:
-        """Draws the worlds.
+        """Draw the worlds.
 
         Args:
-            scenario: a name or a YAML file; agents with a driver of its own do not learn.
-            encoder: what the agent observes, one of `encoders.catalogue.ENCODERS`.
+            scenario: a name or a YAML file; agents with a driver of the scenario do not learn.
+            encoder: encoder of observations, one of `encoders.catalogue.ENCODERS`.
             split: train or validation.
-            worlds: how many of the split.
-            reward: weights that are not the defaults, see `RewardWeights`.
+            worlds: number of worlds of the split.
+            reward: weights that differ from the defaults of `RewardWeights`.
             others: the navigator of the other agents, by name or ``{"type": name, …}``; required.
             render_mode: None; nothing is drawn.
 
@@ -57,7 +57,9 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         self.observation_space = observation_space(self.batch.encoder)
         self.action_space = action_space()
         self.agent = 0
-        self._others = Others(others, self.batch.simulation, self.batch.width - 1, "others")
+        self._others = BackgroundNavigator(
+            others, self.batch.simulation, self.batch.width - 1, "others"
+        )
         self._going = False
 
     def reset(
@@ -66,12 +68,12 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         """Start an attempt.
 
         Args:
-            seed: from here on worlds, agents, and what other navigators draw, follow from it.
+            seed: determines all further worlds, agents, and draws of other navigators.
             options: ``world``, one of the pool, and ``agent``, one of the learning agents of
-                that world, instead of what would be drawn.
+                that world; by default, they are drawn.
 
         Returns:
-            (D,) and an info that names the world and the agent, as the options do.
+            The observation (D,), and an info with the keys ``world`` and ``agent``.
         """
         super().reset(seed=plain_seed(seed))
         others, drivers = self.np_random.spawn(2)
@@ -86,17 +88,17 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         return seen[0, self.agent].copy(), {"world": world, "agent": chosen}
 
     def step(self, action: Float32Array) -> tuple[Float32Array, float, bool, bool, dict[str, Any]]:
-        """Decide. ``action`` (2,) in [-1, 1]: speed from 0 to the limit, turn rate.
+        """Execute one decision. ``action`` (2,) in [-1, 1]: speed from 0 to the limit, turn rate.
 
-        ``info`` holds the reward's ``terms`` before scaling and ``is_success``: it arrived,
-        and touched nothing before. Raises UsageError where the attempt is over.
+        ``info`` contains the reward's ``terms`` before scaling, and ``is_success``: the agent
+        arrived without a contact. Raises UsageError if the attempt is over.
         """
         if not self._going:
             raise UsageError("An attempt must begin before it goes on: call reset() first.")
         at = (0, self.agent)
-        everybody = np.zeros((1, self.batch.width, 2))
-        everybody[at] = action
-        step = self.batch.step(everybody, self._others.decide(self.batch.active))
+        commands = np.zeros((1, self.batch.width, 2))
+        commands[at] = action
+        step = self.batch.step(commands, self._others.decide(self.batch.active))
         terminated, truncated = bool((step.arrived | step.touched)[at]), bool(step.timed_out[at])
         self._going = not (terminated or truncated)
         info = {

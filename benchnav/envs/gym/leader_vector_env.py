@@ -22,10 +22,10 @@ Stepped = tuple[Float32Array, FloatArray, BoolArray, BoolArray, dict[str, Any]]
 class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
     """Slots of a batch, row by row. A slot is terminated or truncated once in each attempt.
 
-    It is idle from then until its row starts again, which is at once where it was the last of
-    its row: it observes zeros and is paid nothing. ``info["idle"]`` (N,) marks the slots that are
-    idle now, ``info["acted"]`` (N,) those whose last step was a decision: a learner leaves the
-    others out, and `AttemptStatistics` leaves them out of the lengths of episodes.
+    It is idle from then until its row starts again: it observes zeros and gets no reward. The
+    row starts again in the step in which its last attempt ends. ``info["idle"]`` (N,) marks slots
+    that are idle now, ``info["acted"]`` (N,) slots with a decision in the last step: a learner
+    ignores the others, and `AttemptStatistics` excludes them from the lengths of episodes.
     """
 
     metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
@@ -46,11 +46,11 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         render_mode: str | None = None,
         num_worlds: int = 1,
     ) -> None:
-        """Draws the worlds. The parameters are those of `LeaderEnv`, but three.
+        """Draw the worlds. The parameters are those of `LeaderEnv`, except for three.
 
         ``num_envs`` is N = B L, a multiple of the learning agents of a world, or None: then
-        ``num_worlds`` gives B. ``others`` must be None, since all agents learn that the scenario
-        does not drive.
+        ``num_worlds`` gives B. ``others`` must be None, because all agents without a driver of the
+        scenario learn.
 
         Raises BenchnavError for a mistake in any of these.
         """
@@ -74,9 +74,9 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         seed: int | Sequence[int | None] | None = None,
         options: dict[str, Any] | None = None,
     ) -> tuple[Float32Array, dict[str, Any]]:
-        """Start every row. From a seed on, the order of worlds follows from it.
+        """Start every row. A seed determines the order of all further worlds.
 
-        A list of N seeds is one seed as a whole, since sub-environments share worlds.
+        A list of N seeds counts as one seed, because sub-environments share worlds.
         """
         given = seed is not None
         if isinstance(seed, Sequence | np.ndarray):
@@ -94,7 +94,7 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         return seen, self._masked({"idle": self._idle()}, np.ones(self.num_envs, np.bool_))
 
     def step(self, actions: Float32Array) -> Stepped:
-        """Decide. ``actions`` (N, 2) in [-1, 1]; those of idle slots are ignored."""
+        """Execute one decision. ``actions`` (N, 2) in [-1, 1]; those of idle slots are ignored."""
         step = self._slots.step(actions)
         terminated = (step.arrived | step.touched).reshape(-1)
         reward: FloatArray = step.reward.reshape(-1)
@@ -124,5 +124,5 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
 
     @staticmethod
     def _masked(values: dict[str, Any], mask: BoolArray) -> dict[str, Any]:
-        """``values`` in Gymnasium's form: beside each key the mask (N,) of slots that have it."""
+        """Return ``values`` in Gymnasium's form, with the mask (N,) of its slots for each key."""
         return values | {f"_{key}": mask for key in values}

@@ -1,6 +1,6 @@
-"""Tells Gymnasium of ``benchnav/Leader-v0``; importing this module is enough.
+"""Register ``benchnav/Leader-v0`` in Gymnasium, by an import of this module.
 
-``gymnasium.make("benchnav.envs.gym.registration:benchnav/Leader-v0")`` imports it by itself.
+``gymnasium.make("benchnav.envs.gym.registration:benchnav/Leader-v0")`` imports it.
 """
 
 import gymnasium
@@ -9,7 +9,7 @@ LEADER = "benchnav/Leader-v0"
 
 
 def register_envs() -> None:
-    """Register what is not registered yet."""
+    """Register the environments that are not registered yet."""
     if LEADER not in gymnasium.registry:
         gymnasium.register(
             id=LEADER,

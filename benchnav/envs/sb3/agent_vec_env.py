@@ -19,10 +19,10 @@ from benchnav.errors import UsageError
 class AgentVecEnv(VecEnv):
     """The learning agents of one or more batches, one slot each, one batch after the other.
 
-    A slot is done when its attempt ends, and at no other time. It is idle from then until its
-    row starts again: it observes zeros and is paid nothing. `acted` and ``infos[i]["idle"]``
-    tell whether the last transition of a slot was a decision, so that a learner can leave the
-    others out; `AttemptMonitor` and `AttemptPPO` do.
+    A slot is done only when its attempt ends. It is idle from then until its row starts again:
+    it observes zeros and gets no reward. `acted` and ``infos[i]["idle"]`` distinguish decisions
+    from idle transitions, so that a learner can ignore the latter; `AttemptMonitor` and
+    `AttemptPPO` do.
     """
 
     render_mode: str | None = None
@@ -39,19 +39,17 @@ class AgentVecEnv(VecEnv):
         super().__init__(size, space, cast(Any, action_space()))
 
     def enter(self, weights: RewardWeights, seed: int, correct: Correction | None = None) -> None:
-        """From the next reset on, pay by ``weights``, draw worlds in the order of ``seed``, and
-        execute what ``correct`` makes of commands.
-        """
+        """Set reward weights, seed of worlds and correction of commands, from the next reset on."""
         self.tally = Tally()
         for batch in self.batches:
             batch.weights, batch.correct = weights, correct
         self.seed(seed)
 
     def seed(self, seed: int | None = None) -> Sequence[int | None]:
-        """Decide the order of worlds, and all else that is random, from the next reset on.
+        """Seed the order of worlds, and all other randomness, from the next reset on.
 
-        Returns the seeds of the slots, as Stable-Baselines3 counts them; None draws one. Worlds
-        are shared between slots, so the first seed stands for all. Raises UsageError below 0.
+        Returns one seed per slot, as Stable-Baselines3 does; None draws one. Slots share worlds, so
+        only the first seed is used. Raises UsageError for a seed below 0.
         """
         if seed is not None and index(seed) < 0:
             raise UsageError(f"The seed must be 0 or more. Got {seed} instead.")
@@ -120,7 +118,7 @@ def _joined(arrays: Sequence[Any]) -> Any:
 
 
 def _describe_ends(step: Transition, infos: list[dict[str, Any]]) -> None:
-    """Add to ``infos``, one for each slot, how the attempts that ended did end."""
+    """Add the outcomes of ended attempts to ``infos``, one per slot."""
     last, named = last_seen(step), terms(step)
     for b, a in np.argwhere(step.over):
         infos[b * step.acted.shape[1] + a] |= {

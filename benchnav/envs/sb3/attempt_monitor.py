@@ -10,13 +10,12 @@ from benchnav.errors import UsageError
 
 
 class AttemptMonitor(VecMonitor):
-    """VecMonitor that leaves idle steps out: use it in its place around an `AgentVecEnv`.
+    """VecMonitor without idle steps, for an `AgentVecEnv`.
 
-    Both count attempts, and only those. This one counts only decisions in their lengths, and a
-    slot that begins an attempt after it was idle is done with the idle stretch, without an
-    ``episode`` in its info: recurrent policies then begin each attempt with an empty memory, in
-    training and in `evaluate_policy`, and no value is passed from an attempt to the idle stretch
-    before it.
+    Both monitors count only attempts. This one counts only decisions in their lengths. It also
+    marks a slot as done when an attempt follows an idle period, without an ``episode`` in its
+    info. Recurrent policies then begin each attempt with an empty memory, in training and in
+    `evaluate_policy`, and no value passes from an attempt to the idle period before it.
     """
 
     def __init__(self, venv: VecEnv, *args: Any, **kwargs: Any) -> None:

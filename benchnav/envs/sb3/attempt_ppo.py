@@ -10,7 +10,7 @@ from benchnav.errors import UsageError
 
 
 class AttemptPPO(PPO):
-    """PPO that leaves out the steps at which slots of an `AgentVecEnv` were idle."""
+    """PPO that excludes the steps at which slots of an `AgentVecEnv` are idle."""
 
     def _setup_model(self) -> None:
         self.rollout_buffer_class = LiveBuffer

@@ -1,4 +1,4 @@
-"""Rollouts of Stable-Baselines3 without the steps at which slots were idle."""
+"""Rollouts of Stable-Baselines3 without the steps at which slots are idle."""
 
 from collections.abc import Generator
 from typing import Any
@@ -11,7 +11,7 @@ from benchnav.arrays import BoolArray
 
 
 class LiveBuffer(RolloutBuffer):
-    """Minibatches hold decisions only; `env`, set by the learner, tells which steps were any."""
+    """Minibatches of decisions only; the learner sets `env`, which distinguishes them."""
 
     env: Any = None  # an AgentVecEnv
     rng: Any = np.random  # Stable-Baselines3 draws from the global generator, which it seeds

@@ -10,7 +10,7 @@ from benchnav.leaderboard.statistics.curve import HORIZON, Point, panels
 from benchnav.text.plural import counted
 
 FORMATS = ("markdown", "csv", "json")
-COLUMNS = 10  # places on the axis in a table for people
+COLUMNS = 10  # values of the axis in a table for people
 
 LEGENDS = {
     True: "Share of all agents that would have succeeded had the episodes ended by then; failures"
@@ -20,7 +20,7 @@ LEGENDS = {
 
 
 def render_curves(points: Sequence[Point], format: str) -> str:
-    """Curves as text that ends with a line break: Markdown tables, or tidy CSV or JSON.
+    """Return curves as text that ends with a line break: Markdown tables, or tidy CSV or JSON.
 
     Raises UsageError for another format.
     """
@@ -35,7 +35,7 @@ def render_curves(points: Sequence[Point], format: str) -> str:
 
 
 def titled(points: Sequence[Point], role: bool = True) -> str:
-    """What one panel shows."""
+    """Return the heading of a panel."""
     p = points[0]
     worlds = {q.worlds for q in points}
     parts = [p.scenario, f"track {p.track}", *([f"{p.role}s"] if role else [])]
@@ -46,7 +46,7 @@ def titled(points: Sequence[Point], role: bool = True) -> str:
 
 
 def _table(points: list[Point]) -> str:
-    """The curves of one scenario, track and role, a row for each navigator."""
+    """Return the curves of one scenario, track and role, a row for each navigator."""
     every = sorted({p.x for p in points})
     step = max(1, len(every) // COLUMNS)
     shown = every[step - 1 :: step]

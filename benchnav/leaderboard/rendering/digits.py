@@ -70,7 +70,7 @@ def figures(
 
 
 def figure(value: float, low: float, high: float, whole: float | None = None) -> str:
-    """Return ``value`` alone, with the decimals that its interval resolves, to four figures.
+    """Return only ``value``, with the decimals that its interval resolves, to four figures.
 
     One more is shown if it would look like 0 or ``whole`` and is not.
     """
@@ -170,7 +170,7 @@ class _Grid:
         return self._exact(x) is None and steps in ends
 
     def bound(self, x: float) -> str:
-        """Return the text of a bound, or of a number alone."""
+        """Return the text of a bound, or of a number without bounds."""
         steps = self._steps(x)
         if not self.hides_end(x):
             return self._exact(x) or self._text(steps)

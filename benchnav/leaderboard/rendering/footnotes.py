@@ -5,7 +5,7 @@ from dataclasses import replace
 from benchnav.leaderboard.rendering.cell import Cell
 from benchnav.leaderboard.rendering.section import Section
 
-LONGEST = 24  # characters of a reason that stands in its cell
+LONGEST = 24  # largest number of characters of a reason that stays in its cell
 
 
 def with_footnotes(section: Section) -> Section:

@@ -1,4 +1,4 @@
-"""Leaderboard → Markdown, CSV, LaTeX, HTML, JSON, or text for a terminal."""
+"""Render a leaderboard as Markdown, CSV, LaTeX, HTML, JSON, or text for a terminal."""
 
 import shutil
 import sys
@@ -28,15 +28,15 @@ def render(
     metrics: Sequence[str] | None = None,
     columns: Sequence[str] | None = None,
 ) -> str:
-    """The leaderboard as text that ends with a line break.
+    """Return the leaderboard as text that ends with a line break.
 
-    Markdown, LaTeX and HTML show a few ``metrics`` unless told otherwise (``["all"]``:
-    all); LaTeX shows each as a matrix of navigators and scenarios. ``columns`` are instead those
-    of every table, in this order: metrics and the names of
+    Markdown, LaTeX and HTML show a few ``metrics`` by default, and all for ``["all"]``;
+    LaTeX shows each as a matrix of navigators and scenarios. ``columns`` replaces ``metrics`` and
+    gives the columns of every table, in this order: metrics and the names of
     `benchnav.leaderboard.columns.NAMES`. CSV and JSON are tidy, one record each with every field,
-    and hold all metrics unless some are named in either way. "terminal" fits the tables to the
-    width of the terminal, with bold text where standard output is one.
-    Raises UsageError for an unknown format, metric or column, and for metrics beside columns.
+    and contain all metrics unless ``metrics`` or ``columns`` name some. "terminal" fits the tables
+    to the width of the terminal, with bold text if standard output is a terminal.
+    Raises UsageError for an unknown format, metric or column, and for both metrics and columns.
     """
     if format not in _RENDERERS:
         raise UsageError(
@@ -68,7 +68,7 @@ def _csv(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
 def _chapters(
     board: Leaderboard, metrics: Metrics, columns: Metrics
 ) -> Iterator[tuple[str, list[Section]]]:
-    """The tables of each track, then those of the price of ignorance."""
+    """Yield the tables of each track, then those of the price of ignorance."""
     for chapter, tables in groupby(sections(board, metrics, columns), key=lambda s: s.chapter):
         yield chapter, list(tables)
 
@@ -101,7 +101,7 @@ def _terminal(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
 
 
 def _latex(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
-    """Matrices of the leading metric, or of those named; tables where columns are named."""
+    """Return matrices of the leading metric or of ``metrics``; tables if ``columns`` are given."""
     if columns is not None:
         return latex_document(list(sections(board, None, columns)), legend(board))
     shown = choose(board.metrics, metrics)[: 1 if metrics is None else None]

@@ -19,7 +19,7 @@ Place = tuple[bool, str, str, float, float]
 
 
 def price_sections(board: Leaderboard, shown: Sequence[str]) -> Iterator[Section]:
-    """A table for each metric of ``shown`` that has a better end, and each role and grant."""
+    """Yield a table for each metric of ``shown`` with a better direction, role and grant."""
     priced = [r for r in board.records if r.track == PRICE]
     priced.sort(key=lambda r: (r.split, r.role, r.rehearsal))  # stable
     for _, group in groupby(priced, key=lambda r: (r.split, r.role, r.rehearsal)):
@@ -31,7 +31,7 @@ def price_sections(board: Leaderboard, shown: Sequence[str]) -> Iterator[Section
 
 
 def _tables(records: list[Record]) -> Iterator[Section]:
-    """One metric: as many tables as its scenarios need."""
+    """Yield the tables of one metric, each with at most `ABREAST` scenarios."""
     first = records[0]
     at = {(r.navigator, _place(r)): r for r in records}
     places = sorted({_place(r) for r in records})
@@ -50,20 +50,20 @@ def _tables(records: list[Record]) -> Iterator[Section]:
 
 
 def _place(r: Record) -> Place:
-    """Where a column stands: what is over all scenarios first."""
+    """Return the sort key of a column: the mean over all scenarios is first."""
     whole = r.scenario == ALL
     variant = (0.0, 0.0) if whole else (r.horizon, r.dt)
     return not whole, r.scenario, r.scenario_hash, *variant
 
 
 def _bare(at: dict[tuple[str, Place], Record], name: str, places: list[Place]) -> tuple[bool, str]:
-    """Who has no price stands below."""
+    """Return the sort key of a row: navigators without a price are last."""
     found = [at[name, p] for p in places if (name, p) in at]
     return all(r.note == NO_MAP or not r.episodes for r in found), name
 
 
 def _row(records: Sequence[Record | None]) -> Iterator[Cell]:
-    """Numbers; or the reason for none, once where all share it."""
+    """Yield numbers, or the reason for none; a reason of all is given once."""
     reasons = {r.note for r in records if r and (r.note == NO_MAP or not r.episodes)}
     alike = len(reasons) == 1 and all(r and r.note in reasons for r in records)
     for k, r in enumerate(records):

@@ -1,4 +1,4 @@
-"""Tables in LaTeX that fit the text of an article, whatever stands in them."""
+"""LaTeX tables that fit the text width of an article, for any content."""
 
 import re
 from collections import Counter
@@ -13,17 +13,17 @@ HEAD = (
     "% Every table fits into 345 pt, \\textwidth of the class article.",
 )
 TEXT_WIDTH = 345.0  # [pt]
-SIZE = 8.0  # [pt] of \footnotesize, in which cells are set
-HEAD_SIZE = 7.7  # [pt] of \scriptsize, at which its letters are as wide
-BOLD = 1.15  # times as wide
+SIZE = 8.0  # [pt] of \footnotesize, the size of cells
+HEAD_SIZE = 7.7  # [pt] effective size of \scriptsize, for letter widths at 8 pt
+BOLD = 1.15  # width of bold text relative to normal text
 GAP = 6.0  # [pt] between columns, twice \tabcolsep
-WIDEST = 120.0  # [pt] of a column; what is wider is broken into lines
-HEADING = 14  # characters of a heading on one line
-FLOATS = 12  # tables after which a page ends: LaTeX holds few that still seek a place
+WIDEST = 120.0  # [pt] of a column; wider text is broken into lines
+HEADING = 14  # largest number of characters on a line of a heading
+FLOATS = 12  # tables between page breaks: LaTeX can hold only few floats without a place
 
 
 def latex_document(tables: Sequence[Section], legend: Sequence[str]) -> str:
-    """The tables, one after another, and the legend below them; ends with a line break."""
+    """Return the tables in sequence, and the legend below them; ends with a line break."""
     lines, labels, shown = list(HEAD), Counter[str](), 0
     for section in tables:
         parts = list(_parts(section))
@@ -38,7 +38,7 @@ def latex_document(tables: Sequence[Section], legend: Sequence[str]) -> str:
 
 
 def _parts(section: Section) -> Iterator[list[int]]:
-    """Columns that fit beside each other; the first stands in each part."""
+    """Yield groups of columns that fit side by side; the first column is in every group."""
     widths = [min(_column_width(section, c), WIDEST) for c in range(len(section.headings))]
     part, used = [0], widths[0]
     for c in range(1, len(widths)):
@@ -51,14 +51,14 @@ def _parts(section: Section) -> Iterator[list[int]]:
 
 
 def _column_width(section: Section, column: int) -> float:
-    """[pt]"""
+    """Return the width of a column [pt]."""
     heads = [HEAD_SIZE * width(line) for line in _heading_lines(section.headings[column].text)]
     cells = [row[column] for row in section.rows]
     return max([*heads, *(SIZE * width(c.text) * (BOLD if c.bold else 1.0) for c in cells)])
 
 
 def _heading_lines(text: str) -> list[str]:
-    """A heading, broken after punctuation so that its column stays narrow."""
+    """Return the lines of a heading, broken after punctuation so that its column stays narrow."""
     lines = [""]
     for piece in re.findall(rf"@?[^-/+:,=@ ]{{1,{HEADING}}}[-/+:,=]?|[-/+:,=@ ]", text):
         if lines[-1] and (len(lines[-1] + piece) > HEADING or lines[-1][-1] in "/:,"):
@@ -103,7 +103,7 @@ def _kind(place: int, broken: bool) -> str:
 
 
 def _line(parts: Iterator[str]) -> str:
-    return f"    {' & '.join(parts)} \\tabularnewline"  # also behind \\raggedright
+    return f"    {' & '.join(parts)} \\tabularnewline"  # unlike \\, works after \raggedright
 
 
 def _cell(part: Cell, broken: bool) -> str:
@@ -121,7 +121,7 @@ def _heading(text: str, first: bool) -> str:
 
 
 def _label(section: Section, part: int, labels: Counter[str]) -> str:
-    """One that no other table has, of letters, digits and hyphens."""
+    """Return a label of letters, digits and hyphens that no other table has."""
     plain = (re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-") for text in section.name)
     label = "tab:" + "-".join(filter(None, plain)) + (f"-{part + 1}" if part else "")
     labels[label] += 1

@@ -1,6 +1,6 @@
-"""Text as LaTeX prints it with no package at all, and how wide that is.
+"""Convert text to LaTeX that needs no package, and estimate its width.
 
-The result is ASCII, so that it does not matter which engine reads it in which encoding.
+The result is ASCII, so it is independent of the LaTeX engine and of its input encoding.
 """
 
 import re
@@ -47,19 +47,19 @@ _WIDTHS = {  # [em] of Computer Modern at 8 pt, rounded up
     0.84: "ABCDGHIKNOQRTUVXYw&+=@<>", 0.98: "#%mM", 1.1: "W",
 }  # fmt: skip
 _WIDTH = {c: width for width, characters in _WIDTHS.items() for c in characters}
-_RUN = 10.0  # [em] of a word without punctuation, after which a line may end
+_RUN = 10.0  # [em] of text without a break, after which a break is allowed
 _BREAKS = frozenset("-/+.:,=_")
 _COMMAND = re.compile(r"\\[A-Za-z]+(\{\})?|\\.")
 
 
 def latex(text: str) -> str:
-    """Text that LaTeX prints as it is; a character that it lacks is shown as ``[U+4E2D]``."""
+    """Return text that LaTeX prints literally; an unknown character is shown as ``[U+4E2D]``."""
     plain = re.sub("-(?=-)", "-\0", unicodedata.normalize("NFC", visible(text)))
-    return "".join("{}" if c == "\0" else _character(c) for c in plain)  # no dash of hyphens
+    return "".join("{}" if c == "\0" else _character(c) for c in plain)  # {} prevents dashes
 
 
 def breakable(text: str) -> str:
-    """The same, where a line may also end after punctuation and within very long words."""
+    """Return the same with line breaks allowed after punctuation and within very long words."""
     plain = visible(text)
     pieces, run = [""], 0.0
     for c, following in zip(plain, plain[1:] + " ", strict=False):
@@ -75,7 +75,7 @@ def breakable(text: str) -> str:
 
 
 def width(text: str) -> float:
-    """How wide a text is [em], at least."""
+    """Return an upper estimate of the width of a text [em]."""
     return sum(map(_width, unicodedata.normalize("NFC", visible(text))))
 
 
@@ -93,7 +93,7 @@ def _character(c: str) -> str:
 
 
 def _letter(c: str) -> str:
-    """A Greek letter, an accented one, or one that stands for others; empty for none of them."""
+    """Return a Greek letter, an accented letter, or a compatibility character; else ""."""
     if c in _AS_LATIN:
         return _AS_LATIN[c]
     greek = _GREEK_LETTER.fullmatch(unicodedata.name(c, ""))
@@ -117,7 +117,7 @@ def _macro(name: str, case: str) -> str:
 
 
 def _accented(base: str, marks: list[str]) -> str:
-    """A Latin letter with one accent; empty for anything else."""
+    """Return a Latin letter with one accent; "" for anything else."""
     if len(marks) != 1 or chr(int(marks[0], 16)) not in _ACCENTS:
         return ""
     letter = chr(int(base, 16))

@@ -1,4 +1,4 @@
-"""What a table for people shows, whatever it is printed as."""
+"""The content of tables for people, in every format."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -14,9 +14,9 @@ from benchnav.leaderboard.rendering.section import Section
 from benchnav.leaderboard.statistics.order import by_merit, leading
 from benchnav.text.plural import counted
 
-NARROW = 4  # metrics up to which every cell shows its interval
-INTERVALS = 2  # metrics that show it in a wider table
-WIDE = 8  # metrics beyond which a table has a row for each of them
+NARROW = 4  # largest number of metrics for which every cell shows its interval
+INTERVALS = 2  # metrics that show an interval in a wider table
+WIDE = 8  # with more metrics, a table has a row for each of them
 PRICED = 3  # of the default metrics that have a table of the price of ignorance
 ABREAST = 5  # navigators side by side in such a table
 
@@ -69,7 +69,7 @@ def _sections(
 
 
 def legend(board: Leaderboard) -> tuple[str, ...]:
-    """What is said below all tables."""
+    """Return the lines below all tables."""
     priced = any(r.track == PRICE for r in board.records)
     caveats = tuple(f"Caveat: {text}" for text in board.caveats)
     modes = _modes(board)
@@ -78,7 +78,7 @@ def legend(board: Leaderboard) -> tuple[str, ...]:
 
 
 def _modes(board: Leaderboard) -> list[str]:
-    """The modes in which the navigators ran."""
+    """Return the modes in which the navigators ran, sorted."""
     return sorted({r.mode for r in board.records})
 
 
@@ -88,14 +88,14 @@ def _overall_first(key: tuple[str, ...]) -> tuple[str, str, bool]:
 
 
 def failures_and_remarks(leaders: Sequence[Record]) -> list[str]:
-    """The notes on what went wrong in the episodes of navigators."""
+    """Return notes about the failures and remarks of navigators."""
     failures = [f"{r.navigator} failed {_closed(r.failure)}" for r in leaders if r.failure]
     remarks = [f"Remark of {r.navigator} {_closed(r.remark)}" for r in leaders if r.remark]
     return failures + remarks
 
 
 def granted(rehearsals: int) -> str:
-    """The note of a table of entries that rehearsed."""
+    """Return the note of a table of entries that rehearsed."""
     return (
         f"Granted {counted(rehearsals, 'rehearsal')} of each world before it was scored; ranked"
         " among entries with the same grant alone."
@@ -103,7 +103,7 @@ def granted(rehearsals: int) -> str:
 
 
 def _key(r: Record) -> tuple[str, ...]:
-    """What stands in one table: the scenario is third, role and grant last."""
+    """Return the key of a table: the scenario is third, role and grant are last."""
     variant = r.scenario_hash, f"{r.horizon!r}", f"{r.dt!r}"
     return r.split, r.track, r.scenario, *variant, r.role, f"{r.rehearsal}"
 
@@ -124,7 +124,7 @@ def _title(records: list[Record], variants: bool) -> str:
 
 
 def _name(r: Record, variants: bool) -> tuple[str, ...]:
-    """What tells a table from the others of a leaderboard."""
+    """Return the fields that distinguish a table from others of a leaderboard."""
     variant = f"{r.scenario_hash[:8]}-{r.horizon:g}-{r.dt:g}" if variants else ""
     grant = f"rehearsal-{r.rehearsal}" if r.rehearsal else ""
     return r.scenario, r.track, r.role, "" if r.split == "test" else r.split, grant, variant
@@ -148,7 +148,7 @@ class _Table:
         self.metrics = [name for name in shown if name in known]
         self.leading = leading(records, self.metrics)
         self.navigators = by_merit({r.navigator: r for r in records if r.metric == self.leading})
-        # bold says something only where somebody is significantly worse
+        # bold is informative only if a navigator is significantly worse
         self.decided = {r.metric for r in records if (r.rank_low or 0) > 1}
         self.rehearsed = records[0].rehearsal
         self.verified = any(r.verified for r in records)
@@ -160,7 +160,7 @@ class _Table:
         ]
 
     def _usual(self, records: list[Record]) -> Iterator[str]:
-        """The rank, the metrics, and beside the leading one what else is known."""
+        """Yield the default columns: rank and metrics, with facts after the leading metric."""
         yield "rank"
         if self.modes_differ:
             yield "mode"
@@ -178,7 +178,7 @@ class _Table:
                 yield "verified"
 
     def sections(self, title: str, name: tuple[str, ...]) -> Iterator[Section]:
-        """A row for each navigator, or for each column where those are many."""
+        """Yield a table with a row per navigator; for many metrics, a row per column."""
         if len(self.metrics) <= WIDE:
             rows = [self._row(navigator) for navigator in self.navigators]
             heads = (Cell("navigator"), *map(self._heading, self.columns))
@@ -213,7 +213,7 @@ class _Table:
         return entrant(leader), *cells
 
     def _absence(self, leader: Record, column: str) -> Cell:
-        """Return a cell of a navigator that was not run: the reason stands once."""
+        """Return a cell of a navigator that was not run: the leading metric gives the reason."""
         if column in ("rank", "mode"):
             return DESCRIPTIVE[column](leader)
         return Cell(leader.note if column == self.leading else "")

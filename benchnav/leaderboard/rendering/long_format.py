@@ -1,4 +1,4 @@
-"""Records → JSON and CSV: one row each, what is undefined is null or empty."""
+"""Write records as JSON and CSV: one row each; undefined values are null or empty."""
 
 import csv
 import io
@@ -12,13 +12,13 @@ from benchnav.leaderboard.rendering import escape
 
 
 def as_json(records: Sequence[Any]) -> str:
-    """A list of objects, one a line, from records of one dataclass."""
+    """Return a list of objects, one per line, from records of one dataclass."""
     lines = [json.dumps(_plain(record), allow_nan=False) for record in records]
     return "[\n" + ",\n".join(lines) + "\n]\n"
 
 
 def as_csv(kind: type, records: Sequence[Any]) -> str:
-    """A head line and a line for each record of the dataclass ``kind``."""
+    """Return a head line and a line for each record of the dataclass ``kind``."""
     out = io.StringIO()
     writer = csv.DictWriter(out, [f.name for f in fields(kind)], lineterminator="\n")
     writer.writeheader()

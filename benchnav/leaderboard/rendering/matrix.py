@@ -16,7 +16,7 @@ INTERVAL = "95 % interval"
 
 
 def matrix_sections(board: Leaderboard, metrics: Sequence[str]) -> Iterator[Section]:
-    """A matrix for each of ``metrics``, track, role, split and grant; then what ignorance costs."""
+    """Yield a matrix per metric, track, role, split and grant; then the prices of ignorance."""
     for price in (False, True):
         records = [r for r in board.records if (r.track == PRICE) == price]
         records = [r for r in records if r.scenario != ALL_INTERQUARTILE]
@@ -33,7 +33,7 @@ def _contest(r: Record) -> tuple[str, str, str, int]:
 
 
 def _place(r: Record) -> Place:
-    """A column: the mean over scenarios is the first."""
+    """Return the sort key of a column: the mean over scenarios is first."""
     whole = r.scenario == ALL
     variant = (0.0, 0.0) if whole else (r.horizon, r.dt)
     return not whole, r.scenario, r.scenario_hash, *variant
@@ -68,16 +68,16 @@ def _cell(r: Record | None, interval: bool, decided: bool) -> Cell:
 
 
 def _heading(place: Place, places: Sequence[Place]) -> str:
-    """The scenario; with its hash, horizon and time step where they alone tell it from another."""
+    """Return the scenario, with hash, horizon and time step if another column has the same name."""
     if not place[0]:
         return "all scenarios"
     _, scenario, digest, horizon, dt = place
-    alone = sum(other[1] == scenario for other in places) == 1
-    return scenario if alone else f"{scenario} {digest[:8]} {horizon:g} s {dt:g} s"
+    unique = sum(other[1] == scenario for other in places) == 1
+    return scenario if unique else f"{scenario} {digest[:8]} {horizon:g} s {dt:g} s"
 
 
 def _title(records: Sequence[Record], places: Sequence[Place]) -> str:
-    """The caption: what is shown of which agents, and what the numbers are."""
+    """Return the caption: the metric, the agents, the track, and the meaning of the numbers."""
     first = records[0]
     priced = first.track == PRICE
     where = "track known less track unknown" if priced else f"track {first.track}"
@@ -98,7 +98,7 @@ def _name(r: Record) -> tuple[str, ...]:
 
 
 def _notes(leaders: Sequence[Record], idle: set[str]) -> tuple[str, ...]:
-    """Why navigators have no number or no rank, once for all that share the reason."""
+    """Return notes, with each reason for no number or no rank once for all of its navigators."""
     reasons: dict[str, list[str]] = {}
     for r in leaders:
         if r.note and not r.episodes:
@@ -114,7 +114,7 @@ def _notes(leaders: Sequence[Record], idle: set[str]) -> tuple[str, ...]:
 
 
 def _costs(leaders: Sequence[Record]) -> Iterator[str]:
-    """What navigators learned and rehearsed, which other formats show in columns."""
+    """Yield notes about training, rehearsals and verification: columns in other formats."""
     for title, cost in (("training", training), ("rehearsal of a world", rehearsal)):
         spent = [f"{r.navigator} {text}" for r in leaders if (text := cost(r).text)]
         if spent:

@@ -1,4 +1,4 @@
-"""A comparison in words: what is different, by how much, and how sure that is."""
+"""Sentences about a comparison: the difference, its size, and its significance."""
 
 import math
 from collections import Counter
@@ -16,16 +16,16 @@ from benchnav.metrics.metric import Metric
 from benchnav.text.plural import counted
 
 FORMATS = ("markdown", "csv", "json")
-SMALLEST = 1e-4  # p below which only that is said
+SMALLEST = 1e-4  # smaller p are only called smaller than this
 VERBS = {
     "success": "succeeds", "arrival": "arrives", "collided": "collides", "timeout": "times out",
     "stuck": "gets stuck", "failed": "fails",
 }  # fmt: skip
-"""Of rates that happen to an agent; others are higher or lower."""
+"""The verbs of rates of events of an agent; all other metrics are "higher" or "lower"."""
 
 
 def render_duel(duel: Duel, metrics: Mapping[str, Metric], format: str = "markdown") -> str:
-    """A comparison as text that ends with a line break: sentences, or tidy CSV or JSON.
+    """Return a comparison as text that ends with a line break: sentences, or tidy CSV or JSON.
 
     Raises UsageError for another format.
     """
@@ -46,7 +46,7 @@ def render_duel(duel: Duel, metrics: Mapping[str, Metric], format: str = "markdo
 
 
 def _block(found: Sequence[Comparison], metric: Metric) -> list[str]:
-    """The sentences about one metric, its outcome first."""
+    """Return the sentences about one metric, its outcome first."""
     roles, splits = {c.role for c in found}, {c.split for c in found}
     lines = [f"## {escape.markdown(metric.name)}: {escape.markdown(outcome(found))}", ""]
     lines += [f"{escape.markdown(metric.title)}.", ""]
@@ -57,7 +57,7 @@ def _block(found: Sequence[Comparison], metric: Metric) -> list[str]:
 
 
 def outcome(found: Sequence[Comparison]) -> str:
-    """How often the first is better, worse, tied."""
+    """Return how often each verdict about the first navigator occurs."""
     counts = Counter(c.verdict for c in found)
     if len(found) == 1:
         return str(found[0].verdict)
@@ -65,7 +65,7 @@ def outcome(found: Sequence[Comparison]) -> str:
 
 
 def place(c: Comparison, *, role: bool, split: bool) -> str:
-    """Where it was, ``leaders/dynamic@1, unknown (100 worlds)``."""
+    """Return the place of a comparison, ``leaders/dynamic@1, track unknown (100 worlds)``."""
     scenario = "all scenarios" if c.scenario == ALL else c.scenario
     parts = [scenario, f"track {c.track}"]
     parts += [f"{c.role}s"] if role else []
@@ -74,7 +74,7 @@ def place(c: Comparison, *, role: bool, split: bool) -> str:
 
 
 def sentence(c: Comparison, metric: Metric) -> str:
-    """What one comparison says."""
+    """Return the sentence of one comparison."""
     if not c.worlds:
         return "no world in which both have a value."
     if c.verdict == "tie":
@@ -83,12 +83,12 @@ def sentence(c: Comparison, metric: Metric) -> str:
         return f"a tie, {signed(c, metric)}{chance}."
     if c.verdict == "too few worlds":
         return f"too few worlds to tell, {signed(c, metric)}."
-    said = f"{_said(c, metric)}; {_chance(c)}"
-    return f"{said}. Not as equals." if c.verdict == "not as equals" else f"{said}."
+    text = f"{_difference(c, metric)}; {_chance(c)}"
+    return f"{text}. Not as equals." if c.verdict == "not as equals" else f"{text}."
 
 
-def _said(c: Comparison, metric: Metric) -> str:
-    """``A succeeds 4.2 points more often [2.9, 5.6]``."""
+def _difference(c: Comparison, metric: Metric) -> str:
+    """Return ``A succeeds 4.2 points more often [2.9, 5.6]``."""
     sign = math.copysign(1.0, c.difference)
     bounds = sorted((sign * c.low, sign * c.high))
     value, ends, unit = _figures(metric, sign * c.difference, bounds)
@@ -101,20 +101,20 @@ def _said(c: Comparison, metric: Metric) -> str:
 
 
 def signed(c: Comparison, metric: Metric) -> str:
-    """``A − B = +0.5 points [−2.1, +3.0]``."""
+    """Return ``A − B = +0.5 points [−2.1, +3.0]``."""
     value, ends, unit = _figures(metric, c.difference, [c.low, c.high], plus=True)
     return f"{c.first} − {c.second} = {value}{unit}{ends}"
 
 
 def scaled(metric: Metric, widest: float) -> tuple[float, str]:
-    """By what to divide differences of a metric, and the unit then; rates are in points."""
+    """Return the divisor of differences of a metric, and their unit; rates are in points."""
     return (0.01, "points") if metric.rate else prefixed(metric.unit, widest)
 
 
 def _figures(
     metric: Metric, value: float, bounds: Sequence[float], plus: bool = False
 ) -> tuple[str, str, str]:
-    """Value, interval and unit, the last two with a space before."""
+    """Return value, interval and unit; the last two begin with a space."""
     known = [x for x in bounds if not math.isnan(x)]
     size, unit = scaled(metric, max(map(abs, (value, *known))))
     whole = 100.0 if metric.rate else None  # points
@@ -128,12 +128,12 @@ def _figures(
 
 
 def _chance(c: Comparison) -> str:
-    """How often nothing but chance differs as much, after Holm."""
+    """Return how often chance alone gives such a difference, from p after Holm's correction."""
     p = c.adjusted
     if p < SMALLEST:
         return f"by chance less than once in {1 / SMALLEST:,.0f} times"
     if p >= 0.95:
-        return "which is what chance does"
+        return "as chance alone would give"
     if p >= 0.1:
         return f"by chance {counted(round(10 * p), 'time')} in 10"
     times = math.floor(1 / p)

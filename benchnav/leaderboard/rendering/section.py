@@ -1,4 +1,4 @@
-"""One table for people, whatever it is printed as."""
+"""One table for people, independent of the output format."""
 
 from dataclasses import dataclass
 
@@ -7,11 +7,11 @@ from benchnav.leaderboard.rendering.cell import Cell
 
 @dataclass(frozen=True)
 class Section:
-    """Title, head, body and what is to be said below it."""
+    """A table: title, headings, rows, and the notes below it."""
 
-    chapter: str  # what tables that stand together share: a track, or the price of ignorance
+    chapter: str  # shared by adjacent tables: a track, or the price of ignorance
     title: str
-    name: tuple[str, ...]  # what tells the table from the others; parts may be empty
+    name: tuple[str, ...]  # distinguishes the table from all others; parts may be empty
     headings: tuple[Cell, ...]
     rows: tuple[tuple[Cell, ...], ...]
     notes: tuple[str, ...]

@@ -15,13 +15,13 @@ if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderableType
     from rich.table import Table
 
-GAP = 2  # cells between two columns
-NARROWEST_NAMES = 16  # cells that the column of names may always take
-SHARE_OF_NAMES = 3  # it takes at most this fraction of the width: 1/3
+GAP = 2  # characters between two columns
+NARROWEST_NAMES = 16  # characters that the column of names may always take
+SHARE_OF_NAMES = 3  # otherwise, it takes at most 1/3 of the width
 
 
 class TerminalTables:
-    """The tables of a leaderboard for `rich.print`: each takes the width that the console has.
+    """The tables of a leaderboard for `rich.print`, fitted to the width of the console.
 
     ``metrics`` and ``columns`` as in `benchnav.leaderboard.render`. Columns that do not fit beside
     each other continue below, with the names repeated.
@@ -81,7 +81,7 @@ def terminal(
 
 
 def _tables(section: Section, width: int) -> Iterator["Table"]:
-    """One table, or several below each other where the columns do not fit beside each other."""
+    """Yield one table, or several in sequence if the columns do not fit side by side."""
     from rich.cells import cell_len
 
     columns = zip(section.headings, *section.rows, strict=True)
@@ -94,7 +94,7 @@ def _tables(section: Section, width: int) -> Iterator["Table"]:
 
 
 def _blocks(widths: Sequence[int], width: int) -> Iterator[list[int]]:
-    """Columns that fit beside the names; at least one each."""
+    """Yield groups of columns that fit beside the names; at least one column each."""
     block, used = list[int](), widths[0]
     for column in range(1, len(widths)):
         needed = GAP + widths[column]
@@ -107,7 +107,7 @@ def _blocks(widths: Sequence[int], width: int) -> Iterator[list[int]]:
 
 
 def _table(section: Section, block: Sequence[int], widths: Sequence[int]) -> "Table":
-    """The columns of a block. A table that continues another one leaves out empty rows."""
+    """Return the columns of a block; a table that continues another one has no empty rows."""
     from rich import box
     from rich.table import Table
 

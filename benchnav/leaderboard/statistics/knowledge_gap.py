@@ -1,4 +1,4 @@
-"""The price of ignorance: what knowing the map is worth to each navigator, in the same worlds."""
+"""The price of ignorance: the gain of each navigator by the map, in the same worlds."""
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,12 +23,12 @@ def prices(
     mapless: Collection[str],
     gaps: Sequence[NotApplicable],
 ) -> Iterator[Record]:
-    """Paired differences known − unknown, in every scenario and over all: records of `PRICE`.
+    """Yield paired differences known − unknown, per scenario and over all: records of `PRICE`.
 
-    ``mapless`` navigators use no map: nothing differs, and their records say so. Those that
-    cannot be run in one of the two tracks, by ``gaps``, say why.
+    ``mapless`` navigators use no map: their difference is 0, with the note `NO_MAP`. If ``gaps``
+    contain a navigator in one of the two tracks, its note is the reason.
     """
-    why = {(gap.navigator, gap.scenario): gap.reason for gap in gaps if gap.track in TRACKS}
+    reasons = {(gap.navigator, gap.scenario): gap.reason for gap in gaps if gap.track in TRACKS}
     ordered = sorted((s for s in found if s.track in TRACKS), key=_contest)
     for _, contest in groupby(ordered, key=_contest):
         priced = [_Priced(*pair) for pair in _pairs(align(list(contest)))]
@@ -39,10 +39,10 @@ def prices(
         parts = [Moments.of(each.differences) for each in priced]
         for each, part in zip(priced, parts, strict=True):
             own = difference([part], column)
-            yield from _records(each.known, [each], own, metrics, _notes([each], mapless, why))
+            yield from _records(each.known, [each], own, metrics, _notes([each], mapless, reasons))
         if len(priced) > 1:
             whole = difference(parts, column)
-            yield from _records(None, priced, whole, metrics, _notes(priced, mapless, why))
+            yield from _records(None, priced, whole, metrics, _notes(priced, mapless, reasons))
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,27 +54,27 @@ class _Priced:
 
     @property
     def places(self) -> tuple[IntArray, IntArray]:
-        """(n,), (n,) of the seeds of both, in each."""
+        """The indices (n,), (n,) of the common seeds in both strata."""
         _, one, other = np.intersect1d(self.known.seeds, self.unknown.seeds, return_indices=True)
         return one, other
 
     @cached_property
     def differences(self) -> FloatArray:
-        """(n, N·M) known − unknown, navigator by navigator."""
+        """The differences known − unknown (n, N·M), navigator by navigator."""
         one, other = self.places
         apart: FloatArray = self.known.value[one] - self.unknown.value[other]
         return apart.reshape(len(one), -1)
 
     @property
     def episodes(self) -> IntArray:
-        """(N,) worlds attempted in both tracks."""
+        """The number (N,) of worlds attempted in both tracks."""
         one, other = self.places
         count: IntArray = (self.known.attempted[one] & self.unknown.attempted[other]).sum(axis=0)
         return count
 
     @property
     def failures(self) -> IntArray:
-        """(N,) of the navigators, in either."""
+        """The number (N,) of failures of the navigators, in both tracks together."""
         count: IntArray = self.known.failed.sum(axis=0) + self.unknown.failed.sum(axis=0)
         return count
 
@@ -84,7 +84,7 @@ def _contest(s: Stratum) -> tuple[str, str, int]:
 
 
 def _pairs(found: list[Stratum]) -> Iterator[tuple[Stratum, Stratum]]:
-    """(known, unknown) of each scenario that was run in both, with common seeds."""
+    """Yield (known, unknown) of each scenario that was run in both tracks with common seeds."""
     at = {(s.scenario, s.scenario_hash, s.horizon, s.dt, s.track): s for s in found}
     for key, known in sorted(at.items()):
         unknown = at.get((*key[:-1], TRACKS[1]))
@@ -93,14 +93,14 @@ def _pairs(found: list[Stratum]) -> Iterator[tuple[Stratum, Stratum]]:
 
 
 def _notes(
-    priced: list[_Priced], mapless: Collection[str], why: Mapping[tuple[str, str], str]
+    priced: list[_Priced], mapless: Collection[str], reasons: Mapping[tuple[str, str], str]
 ) -> list[str]:
-    """Of each navigator, why it has no price, or not in every scenario; "" where it has."""
+    """Return, per navigator, the reason for a price that is missing in some scenario; else ""."""
     held = np.sum([each.episodes > 0 for each in priced], axis=0)
     notes = []
     for name, count in zip(priced[0].known.navigators, held.tolist(), strict=True):
-        reasons = [why.get((name, each.known.scenario)) for each in priced]
-        note = f"n/a ({reasons[0]})" if reasons[0] else "not run in both tracks"
+        reason = reasons.get((name, priced[0].known.scenario))
+        note = f"n/a ({reason})" if reason else "not run in both tracks"
         if count:
             note = "" if count == len(priced) else f"in {count} of {len(priced)} scenarios"
         notes.append(NO_MAP if name in mapless else note)
@@ -114,7 +114,7 @@ def _records(
     metrics: Mapping[str, Metric],
     notes: list[str],
 ) -> Iterator[Record]:
-    """Of one scenario, or (None) of all."""
+    """Yield the records of one scenario, or of all (None)."""
     s = priced[0].known
     episodes = np.sum([each.episodes for each in priced], axis=0)
     failures = np.sum([each.failures for each in priced], axis=0)

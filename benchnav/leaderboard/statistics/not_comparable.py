@@ -1,4 +1,4 @@
-"""What two navigators cannot be compared by, and why: every sentence is for people."""
+"""Sentences about results of two navigators that are missing or not comparable, and why."""
 
 from collections.abc import Iterator, Sequence
 from itertools import groupby
@@ -11,37 +11,37 @@ from benchnav.text.plural import counted
 def absences(
     found: Sequence[Stratum], first: str, second: str, gaps: Sequence[NotApplicable]
 ) -> list[str]:
-    """Where one of the two was not run, ran other worlds, failed, or was granted more.
+    """Return notes on places where one was not run, ran other worlds, failed, or was granted more.
 
-    ``found`` are the strata of these two alone.
+    ``found`` are the strata of only these two navigators.
     """
-    notes = [*_alone(found, (first, second), gaps), *_uneven(found), *_failed(found)]
+    notes = [*_single(found, (first, second), gaps), *_uneven(found), *_failed(found)]
     granted = {name: int(n) for s in found for name, n in zip(s.navigators, s.granted, strict=True)}
     if len(set(granted.values())) > 1:
-        said = " and ".join(f"{name} {granted[name] or 'none'}" for name in (first, second))
+        counts = " and ".join(f"{name} {granted[name] or 'none'}" for name in (first, second))
         notes.append(
-            f"Not as equals: of rehearsals of each world {said} was granted, so nobody is called"
+            f"Not as equals: of rehearsals of each world {counts} was granted, so neither is called"
             " better, and they are never ranked together."
         )
-    return list(dict.fromkeys(notes))  # roles repeat each other
+    return list(dict.fromkeys(notes))  # the strata of several roles give equal notes
 
 
-def _alone(
+def _single(
     found: Sequence[Stratum], names: tuple[str, str], gaps: Sequence[NotApplicable]
 ) -> Iterator[str]:
-    """Scenarios and tracks that only one was run in, a sentence for each reason."""
-    why = {(gap.navigator, gap.scenario, gap.track): gap.reason for gap in gaps}
-    alone: list[tuple[str, str, str]] = []  # who was run, why the other was not, where
+    """Yield a sentence per reason about scenarios and tracks in which only one was run."""
+    reasons = {(gap.navigator, gap.scenario, gap.track): gap.reason for gap in gaps}
+    single: list[tuple[str, str, str]] = []  # navigator, reason of the other, place
     for s in found:
         if len(s.navigators) == 2:
             continue
         (name,) = s.navigators
         other = names[name == names[0]]
-        reason = why.get((other, s.scenario, s.track), "was not run there")
+        reason = reasons.get((other, s.scenario, s.track), "was not run there")
         if any(other in t.navigators and _place(t) == _place(s) for t in found):
             reason = "ran other worlds: horizon, time step or hash differ"
-        alone.append((name, f"{other} {reason}", f"{s.scenario} ({s.track})"))
-    for (name, reason), places in groupby(sorted(set(alone)), key=lambda row: row[:2]):
+        single.append((name, f"{other} {reason}", f"{s.scenario} ({s.track})"))
+    for (name, reason), places in groupby(sorted(set(single)), key=lambda row: row[:2]):
         where = ", ".join(place for _, _, place in places)
         yield f"Only {name} in {where}: {reason}."
 
@@ -51,17 +51,17 @@ def _place(s: Stratum) -> tuple[str, str, str, str]:
 
 
 def _uneven(found: Sequence[Stratum]) -> Iterator[str]:
-    """Where both were run, but not in the same worlds."""
+    """Yield sentences about scenarios in which both were run, but not in the same worlds."""
     for s in found:
         count = s.attempted.sum(axis=0)
         both = int(s.attempted.all(axis=1).sum())
         if len(s.navigators) == 2 and both < count.max():
-            said = " and ".join(f"{n} in {k}" for n, k in zip(s.navigators, count, strict=True))
-            yield f"{s.scenario} ({s.track}): {said} worlds, compared in the {both} of both."
+            counts = " and ".join(f"{n} in {k}" for n, k in zip(s.navigators, count, strict=True))
+            yield f"{s.scenario} ({s.track}): {counts} worlds, compared in the {both} of both."
 
 
 def _failed(found: Sequence[Stratum]) -> Iterator[str]:
-    """Where an episode counts as a failure because the navigator failed."""
+    """Yield sentences about scenarios in which a navigator failed."""
     for s in found:
         if len(s.navigators) < 2:
             continue
@@ -69,5 +69,5 @@ def _failed(found: Sequence[Stratum]) -> Iterator[str]:
             if failures:
                 yield (
                     f"{s.scenario} ({s.track}): {name} failed in {counted(failures, 'world')}:"
-                    " a failure counts as the worst that can happen."
+                    " a failure counts as the worst possible value."
                 )

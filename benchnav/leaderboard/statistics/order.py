@@ -18,7 +18,7 @@ def by_merit(leaders: Mapping[str, Record]) -> list[str]:
 
 
 def _merit(r: Record) -> tuple[float, float, float]:
-    """Return a sort key: ranked before unranked before absent; then by value."""
+    """Return a sort key: ranked before unranked before missing; then by value."""
     if r.rank_low is None or r.rank_high is None:
         ranks = (math.inf, math.inf if math.isnan(r.value) else 0.0)
     else:

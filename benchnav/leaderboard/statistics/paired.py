@@ -29,7 +29,7 @@ def comparisons(
     The pairs in one scenario, track and role are a family. If one of a pair
     rehearsed, the comparison gives the rehearsals of both, and has no verdict.
     ``results`` has the schema `benchnav.store.parts.results.RESULTS`. Raises UsageError for a
-    metric that is not among ``metrics``, or if one label stands for two navigators.
+    metric that is not among ``metrics``, or if one label is used for two navigators.
     """
     if metric not in metrics:
         raise UsageError(

@@ -47,7 +47,7 @@ def standings(
 
 
 def _never(metric: Metric | None) -> str:
-    """Return why no entry ranks on a metric; "" if entries may."""
+    """Return the reason why no entry ranks on a metric; "" if entries may."""
     if metric is None:
         return "the metric's definition is not installed"
     if metric.better is None:

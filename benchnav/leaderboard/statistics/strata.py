@@ -105,7 +105,7 @@ def _failed(column: Any) -> BoolArray:
 
 
 def _filled(results: pa.Table, name: str) -> AnyArray:
-    """Return a column (rows,) with 0 where it is missing (older results) or empty."""
+    """Return a column (rows,) with 0 if it is missing (older results) or empty."""
     import pyarrow.compute as pc
 
     if name not in results.column_names:
@@ -204,7 +204,7 @@ def _charge(
 
 
 def align(group: list[Stratum]) -> list[Stratum]:
-    """Return strata with the same navigators and metrics; absent ones count as unattempted."""
+    """Return strata with the same navigators and metrics; missing ones count as unattempted."""
     navigators = tuple(sorted({name for s in group for name in s.navigators}))
     metrics = tuple(sorted({name for s in group for name in s.metrics}))
     aligned = []

@@ -1,11 +1,11 @@
 """Voronoi density in the measurement area, computed with PedPy.
 
-Places are taken at 1 Hz, whatever the decision step. Cells are cut by everything that
-never moves (walls and static obstacles; what is thinner than 2 mm is made so thick,
-so that no cell reaches through a thin wall) and, as Steffen & Seyfried do for sparse
-crowds, kept below 2 m²: no cell reaches farther than 0.8 m from its agent. So an agent
-farther than that from the area adds nothing, and one farther than three times that does
-not even bound a cell that does: both, and what is built out there, are left out.
+Positions are sampled at 1 Hz for every decision step. Walls and static obstacles cut the
+cells; thinner ones are made 2 mm thick, so that no cell reaches through a thin wall. As in
+Steffen & Seyfried for sparse crowds, cells end at a distance of 0.8 m from their agent, so they
+are smaller than about 2 m². Therefore an agent farther than 0.8 m from the area adds nothing,
+and an agent farther than three times that bounds no cell that does. Agents and obstacles that
+have no influence are left out.
 """
 
 from typing import Any
@@ -17,16 +17,16 @@ from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, Extent, FloatArray, IntArray
 from benchnav.metrics.quantities.trajectory import Trajectories, positions_at, present_at
 
-FRAME_RATE = 2.0  # [Hz] of what is quick to compute
+FRAME_RATE = 2.0  # [Hz] of quantities that are quick to compute
 DENSITY_RATE = 1.0  # [Hz]
 REACH = 0.8  # [m]: a circle of 2.01 m²
 QUARTER = 16  # segments of a quarter of that circle
-SKIN = 1e-3  # [m] half the least thickness of a wall
-AWAY = 128.0  # [m] by which all is moved: GEOS cannot cut cells with corners like 1e-33
+SKIN = 1e-3  # [m] half the minimum thickness of a wall
+AWAY = 128.0  # [m] shift of all geometry: GEOS cannot cut cells with corners such as 1e-33
 
 
 def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
-    """(N,) [1/m²] at 1 Hz from the start on; (0,) where the world has no measurement area."""
+    """Return densities (N,) [1/m²] at 1 Hz from the start; (0,) without a measurement area."""
     area = world.measurement_area
     if area is None:
         return np.zeros(0)
@@ -37,7 +37,7 @@ def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
     times = frame_times(trajectories, DENSITY_RATE)
     ids, frames, points = bodies_at(trajectories, times)
     density = np.zeros(len(times))
-    counts = _matter(area, frames, points)
+    counts = _relevant(area, frames, points)
     if not counts.any():
         return density
     walkable = _nearby(walkable_area(world), area)
@@ -58,18 +58,18 @@ def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
     return density
 
 
-def _matter(area: Extent, frames: IntArray, points: FloatArray) -> BoolArray:
-    """(N,) points that can change the density, in frames in which there is any."""
+def _relevant(area: Extent, frames: IntArray, points: FloatArray) -> BoolArray:
+    """Return the mask (N,) of points that can change the density."""
     beyond = np.maximum(np.maximum(area[:2] - points, points - area[2:]), 0.0)
     away = np.hypot(beyond[:, 0], beyond[:, 1])
     busy = np.zeros(int(frames.max(initial=0)) + 1, dtype=np.bool_)
     busy[frames[away <= REACH]] = True
-    matter: BoolArray = busy[frames] & (away <= 3.0 * REACH)
-    return matter
+    relevant: BoolArray = busy[frames] & (away <= 3.0 * REACH)
+    return relevant
 
 
 def _nearby(walkable: Any, area: Extent) -> Any:
-    """The part of the walkable area that cells of those who matter can reach."""
+    """Return the part of the walkable area that the cells of relevant agents can reach."""
     import shapely
 
     x0, y0, x1, y1 = area
@@ -79,7 +79,7 @@ def _nearby(walkable: Any, area: Extent) -> Any:
 
 
 def frame_times(trajectories: Trajectories, rate: float = FRAME_RATE) -> FloatArray:
-    """(N,) [s] at ``rate`` [Hz], to the end of the record."""
+    """Return the times (N,) [s] at ``rate`` [Hz], to the end of the record."""
     record = trajectories.duration.shape[1] * trajectories.dt
     return np.arange(int(record * rate + 1e-9) + 1) / rate
 
@@ -87,13 +87,13 @@ def frame_times(trajectories: Trajectories, rate: float = FRAME_RATE) -> FloatAr
 def bodies_at(
     trajectories: Trajectories, times: FloatArray
 ) -> tuple[IntArray, IntArray, FloatArray]:
-    """Agent (N,), frame (N,) and place (N, 2) [m] of every agent that is present at ``times``."""
+    """Return agent (N,), frame (N,) and place (N, 2) [m] of all agents present at ``times``."""
     ids, frames = np.nonzero(present_at(trajectories, times))
     return ids, frames, positions_at(trajectories, times)[ids, frames]
 
 
 def walkable_area(world: World) -> Any:
-    """The part of the bounds, free of solids, that holds most of the measurement area."""
+    """Return the free part of the bounds that contains most of the measurement area."""
     import shapely
 
     free = shapely.box(*world.bounds)
@@ -107,7 +107,7 @@ def walkable_area(world: World) -> Any:
 
 
 def _without(free: Any, solid: Solid) -> Any:
-    """``free`` less a solid: loops that run counter-clockwise are filled, clockwise ones hollow."""
+    """Return ``free`` without a solid; counter-clockwise loops are filled, others hollow."""
     import shapely
 
     if solid.is_disc:

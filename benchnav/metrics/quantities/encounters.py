@@ -1,10 +1,10 @@
-"""How near every agent came to everything that it can hit: kernels.
+"""Smallest distances and times to collision of agents and obstacles: kernels.
 
-Between states everything moves straight, so the smallest distance within a step is
-that of two segments, not of two samples. A partner that is far cannot matter for
-some steps to come: nobody is faster than its greatest speed, so those steps are
-skipped without changing any result. Time to collision falls within a step, so its
-smallest value there is that of the step's end.
+All motion between states is straight, so the smallest distance within a step is the distance
+of two segments, not of two samples. A partner that is far away has no influence in the next
+steps, because no agent is faster than its largest speed: these steps are skipped without a
+change of any result. Time to collision falls within a step, so its smallest value in the step
+is the one at its end.
 """
 
 import math
@@ -21,23 +21,23 @@ from benchnav.geometry.sweep import segment_distance2
 from benchnav.kernels import kernel
 from benchnav.metrics.quantities.trajectory import Trajectories
 
-TTC_CAP = 5.0  # [s] a collision that is later than this counts as no threat
+TTC_CAP = 5.0  # [s] later collisions do not count
 RECORDED = 2.4  # [m] gaps between agents are recorded up to this
 NEAR = 4.0  # radii between centres: two diameters
-SLACK = 1e-9  # [m] rounding, where steps are left out that cannot matter
+SLACK = 1e-9  # [m] tolerance for rounding when steps are skipped
 
 
 class Things(NamedTuple):
-    """Solids and bodies as capsules; bodies as centred at the origin and carried by an offset."""
+    """Solids and bodies as capsules; bodies are centred at the origin and moved by an offset."""
 
     capsules: FloatArray  # (P, 5)
-    body: IntArray  # (P,) which offset carries it, -1: none
+    body: IntArray  # (P,) index of its offset, -1: none
     offset: FloatArray  # (M, T+1, 2) [m]
-    jumps: BoolArray  # (M,) re-placed at once, so that it never travels
+    jumps: BoolArray  # (M,) it is re-placed instantly and does not travel
 
 
 class Encounters(NamedTuple):
-    """The result, all within each agent's own attempt."""
+    """The result, for the duration of each agent's attempt."""
 
     clearance: (
         FloatArray  # (A,) [m] smallest gap to anything; negative in overlap, inf: nothing there
@@ -59,7 +59,7 @@ def things_of(world: World, body_position: FloatArray) -> Things:
 
 
 def encounters(trajectories: Trajectories, radius: FloatArray, things: Things) -> Encounters:
-    """Clearance, time to collision and nearest agents for agents of ``radius`` (A,) [m]."""
+    """Return clearance, time to collision and nearest agents of agents with ``radius`` (A,) [m]."""
     t = trajectories
     shape = t.position.shape[:2]
     found = Encounters(
@@ -74,7 +74,7 @@ def encounters(trajectories: Trajectories, radius: FloatArray, things: Things) -
 
 @kernel
 def _skip(gap: float, clearance: float, ttc: float, top: float, dt: float) -> float:
-    """Steps after which the partner can first matter, at closing speeds up to ``top``."""
+    """Return the steps until a partner can have influence, at closing speeds up to ``top``."""
     if top <= 0.0:
         return math.inf
     return min((gap - clearance) / (top * dt), (gap / top - ttc) / dt)
@@ -86,7 +86,7 @@ def meet_things(
     radius: FloatArray, top: FloatArray, dt: float, capsules: FloatArray, body: IntArray,
     offset: FloatArray, jumps: BoolArray, clearance: FloatArray, ttc: FloatArray,
 ) -> None:  # fmt: skip
-    """Lower ``clearance`` and ``ttc`` (A,) by what solids and bodies do."""
+    """Lower ``clearance`` and ``ttc`` (A,) to their values for solids and bodies."""
     body_top = _body_top(offset, jumps, dt)
     for a in range(position.shape[0]):
         for c in range(capsules.shape[0]):
@@ -104,7 +104,7 @@ def meet_things(
 
 @kernel
 def _body_top(offset: FloatArray, jumps: BoolArray, dt: float) -> FloatArray:
-    """(M,) [m/s] greatest speed; inf for what jumps."""
+    """Return the largest speeds (M,) [m/s] of bodies; inf for bodies that jump."""
     top = np.zeros(len(offset))
     for m in range(len(offset)):
         for k in range(offset.shape[1] - 1):
@@ -122,10 +122,10 @@ def _thing_step(
     radius: float, dt: float, capsules: FloatArray, m: int, offset: FloatArray, jumps: BoolArray,
     moves: bool, clearance: FloatArray, ttc: FloatArray,
 ) -> float:  # fmt: skip
-    """One step against one capsule; returns the gap [m] at its start.
+    """Handle one step of an agent and a capsule, and return the gap [m] at its start.
 
-    In the capsule's frame the agent's centre goes from p to q with velocity w. What
-    is re-placed is so at the beginning of a step: the next state has it.
+    In the capsule's frame the agent's centre goes from p to q with velocity w. An
+    obstacle is re-placed at the beginning of a step: the next state holds its new position.
     """
     px, py = position[a, k, 0], position[a, k, 1]
     x0, y0, x1, y1 = capsules[c, 0], capsules[c, 1], capsules[c, 2], capsules[c, 3]
@@ -193,7 +193,7 @@ def _pair_sample(
     i: int, j: int, k: int, position: FloatArray, last: IntArray, radius: FloatArray,
     clearance: FloatArray, gap: FloatArray, near: BoolArray,
 ) -> float:  # fmt: skip
-    """One pair in one state; returns the gap [m]."""
+    """Handle one pair of agents in one state, and return the gap [m]."""
     dx = position[j, k, 0] - position[i, k, 0]
     dy = position[j, k, 1] - position[i, k, 1]
     apart = math.sqrt(dx * dx + dy * dy)
@@ -212,7 +212,7 @@ def _pair_matters(
     i: int, j: int, k: int, between: float, velocity: FloatArray, clearance: FloatArray,
     ttc: FloatArray, fastest: float, dt: float,
 ) -> bool:  # fmt: skip
-    """False where the step from ``between`` [m] on can lower neither clearance nor ttc."""
+    """Whether a step from a gap of ``between`` [m] can lower clearance or ttc."""
     if between - fastest * dt <= max(clearance[i], clearance[j]) + SLACK:
         return True
     wx = velocity[j, k, 0] - velocity[i, k, 0]
@@ -227,7 +227,7 @@ def _pair_step(
     i: int, j: int, k: int, position: FloatArray, velocity: FloatArray, duration: FloatArray,
     last: IntArray, leaves: IntArray, radius: FloatArray, clearance: FloatArray, ttc: FloatArray,
 ) -> None:  # fmt: skip
-    """One pair within one step: straight until the first of them stops, and straight after."""
+    """Handle one pair within one step: straight motion before and after the first one stops."""
     px = position[j, k, 0] - position[i, k, 0]
     py = position[j, k, 1] - position[i, k, 1]
     wx = velocity[j, k, 0] - velocity[i, k, 0]

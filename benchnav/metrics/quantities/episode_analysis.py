@@ -1,7 +1,7 @@
 """Quantities that several metrics of one episode share, computed once.
 
-`analyse(episode)` is pure from outside: an episode is immutable, its analysis is
-kept as long as the episode lives, and nothing in it may be written to.
+`analyse(episode)` has no visible side effects: an episode is immutable, its analysis is
+cached as long as the episode exists, and callers must not modify it.
 """
 
 from dataclasses import dataclass
@@ -20,21 +20,21 @@ from benchnav.metrics.quantities.trajectory import Trajectories, cut, positions_
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """Intermediate results. It does not hold the episode, so that both can be dropped."""
+    """Intermediate results. It has no reference to the episode, so both can be freed."""
 
     world: World
     trajectories: Trajectories
     body_position: FloatArray  # (T+1, M, 2) [m]
     failed: BoolArray  # (A,) its navigator failed in this episode
-    asked: IntArray  # (T,) agents that the navigator drove in each decision
+    driven: IntArray  # (T,) number of agents that the navigator drives in each decision
     active_at_end: BoolArray  # (A,) still on its way when the record ends
-    arrival: FloatArray  # (A,) [s], NaN where it never came or its navigator failed
+    arrival: FloatArray  # (A,) [s], NaN without an arrival or if its navigator failed
     contacts: Contacts
     decision: FloatArray  # (T,) [s]
 
     @property
     def arrived(self) -> BoolArray:
-        """(A,)"""
+        """(A,) it arrived, and its navigator did not fail."""
         return ~np.isnan(self.arrival)
 
     @cached_property
@@ -68,20 +68,20 @@ class Analysis:
 
     @cached_property
     def decision_per_agent(self) -> FloatArray:
-        """(N,) [s] time per decision and agent that it was for, ascending."""
-        count = self.asked[: len(self.decision)]
+        """(N,) [s] time per decision and active agent, ascending."""
+        count = self.driven[: len(self.decision)]
         return np.sort(self.decision[count > 0] / count[count > 0])
 
     @cached_property
     def group_motion(self) -> tuple[FloatArray, FloatArray, BoolArray]:
-        """At 2 Hz: places, steps of the next 0.25 s (A, N, 2) [m], who is on its way (A, N)."""
+        """At 2 Hz: places, steps of the next 0.25 s (A, N, 2) [m], agents on their way (A, N)."""
         times = frame_times(self.trajectories)
         place = positions_at(self.trajectories, times)
         step = positions_at(self.trajectories, times + 0.25) - place
         return place, step, times[None] < self.trajectories.end[:, None]
 
     def smooth_velocity(self, agent: int) -> FloatArray:
-        """(N, 2) [m/s] at a fixed rate, low-passed; see `filter`."""
+        """Return the velocity (N, 2) [m/s] of an agent at a fixed rate, low-passed by `lowpass`."""
         if agent not in self._smooth:
             self._smooth[agent] = smooth_velocity(self.trajectories, agent)
         return self._smooth[agent]
@@ -97,11 +97,12 @@ class Analysis:
         return encounters(self.trajectories, self.world.agents.radius, things)
 
 
-_KEPT = "_analysis"  # among an episode's own: a table here would show episodes to navigators
+# The attribute of an episode. A global cache here would give navigators access to episodes.
+_KEPT = "_analysis"
 
 
 def analyse(episode: Episode) -> Analysis:
-    """The analysis of an episode: the same object every time."""
+    """Return the analysis of an episode: the same object in every call."""
     found: Analysis | None = vars(episode).get(_KEPT)
     if found is None:
         final = episode.status[-1]
@@ -113,8 +114,8 @@ def analyse(episode: Episode) -> Analysis:
             trajectories=cut(episode),
             body_position=episode.body_position,
             failed=failed,
-            asked=(episode.status == int(Status.ACTIVE))[:-1, episode.world.agents.evaluated].sum(
-                1
+            driven=(episode.status == int(Status.ACTIVE))[:-1, episode.world.agents.evaluated].sum(
+                axis=1
             ),
             active_at_end=final == int(Status.ACTIVE),
             arrival=np.where(failed, np.nan, episode.arrival),

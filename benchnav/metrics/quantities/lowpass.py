@@ -1,9 +1,9 @@
-"""Velocity at one fixed rate, low-passed: what derivatives and spectra are taken of.
+"""Velocity at one fixed rate, low-passed, as the input of derivatives and spectra.
 
 Velocity is interpolated linearly between the middles of the segments, sampled at
 20 Hz and smoothed by a Gaussian whose gain is 1/√2 at 1 Hz, below the step frequency
-of walking, as is usual for pedestrian trajectories. The value is then the same
-whatever decision step the motion was recorded with, up to 0.25 s.
+of walking, as is usual for pedestrian trajectories. The value then does not depend on the
+decision step of the record, for steps up to 0.25 s.
 """
 
 import math
@@ -14,7 +14,7 @@ from benchnav.arrays import FloatArray
 from benchnav.metrics.quantities.trajectory import Trajectories
 
 RATE = 20.0  # [Hz] at which velocity is sampled
-CUTOFF = 1.0  # [Hz] where the filter's gain is 1/sqrt(2)
+CUTOFF = 1.0  # [Hz] frequency at which the gain of the filter is 1/sqrt(2)
 SIGMA = math.sqrt(math.log(2.0)) / (2.0 * math.pi * CUTOFF)  # [s] of the Gaussian
 LEAD = 12  # samples before the start: 0.6 s, more than four sigma
 
@@ -23,10 +23,10 @@ TAPS = _taps / _taps.sum()
 
 
 def smooth_velocity(trajectories: Trajectories, agent: int) -> FloatArray:
-    """(N, 2) [m/s] of one agent that moved, at RATE, from LEAD samples before its start on.
+    """Return the velocity (N, 2) [m/s] of one agent that moved, at RATE.
 
-    Before the start it stands; after its end its last velocity is held, so that only
-    what it did until then counts.
+    It begins LEAD samples before the start of the agent, with velocity 0 until its start. After
+    the end of its attempt, its last velocity is kept, so that only motion until then counts.
     """
     last, end = int(trajectories.last[agent]), float(trajectories.end[agent])
     middle = np.arange(last) * trajectories.dt + 0.5 * trajectories.duration[agent, :last]

@@ -1,9 +1,8 @@
-"""Every agent's trajectory, cut where its attempt is over: the ground that metrics stand on.
+"""Trajectories of all agents, cut at the end of each attempt: the input of metrics.
 
-An agent moves from the start until it arrives, ends or fails; what the record holds
-after that instant is not its doing and never counts. An agent that arrives within a
-step stops there and then, so its last segment lasts until its arrival, not until the
-end of the step.
+An agent moves from the start until it arrives, ends or fails; the record after that instant
+does not count. An agent that arrives within a step stops at that instant, so its last segment
+lasts until its arrival, not until the end of the step.
 """
 
 from dataclasses import dataclass
@@ -14,7 +13,7 @@ from benchnav.arena.world import Afterwards
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode, Status
 
-INSTANT = 1e-9  # [s] a segment that is shorter than this has no velocity
+INSTANT = 1e-9  # [s] a shorter segment has no velocity
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,31 +22,31 @@ class Trajectories:
 
     dt: float  # [s]
     last: IntArray  # (A,) index of the first state that is not active, T if all are
-    end: FloatArray  # (A,) [s] when its attempt was over: arrival, or the time of ``last``
+    end: FloatArray  # (A,) [s] end of its attempt: arrival, or the time of ``last``
     position: FloatArray  # (A, T+1, 2) [m], constant from ``last`` on
-    duration: FloatArray  # (A, T) [s] for which each segment was travelled, 0 from ``last`` on
+    duration: FloatArray  # (A, T) [s] travel time of each segment, 0 from ``last`` on
     velocity: FloatArray  # (A, T, 2) [m/s] mean over each segment, 0 from ``last`` on
-    leaves: IntArray  # (A,) index of the state from which the agent is no body any more; T+1: never
+    leaves: IntArray  # (A,) index of the first state without a body of the agent; T+1: never
     length: FloatArray  # (A,) [m] travelled
-    moved: BoolArray  # (A,) True where it travelled at least its own radius
+    moved: BoolArray  # (A,) it travelled at least its own radius
 
     def __len__(self) -> int:
         return len(self.last)
 
     @property
     def speed(self) -> FloatArray:
-        """(A, T) [m/s]"""
+        """(A, T) [m/s] mean speed over each segment."""
         return np.hypot(self.velocity[..., 0], self.velocity[..., 1])
 
     @property
     def counted(self) -> BoolArray:
-        """(A, T) True for the segments before the agent's attempt was over."""
+        """(A, T) True for the segments before the end of the agent's attempt."""
         steps: BoolArray = np.arange(self.duration.shape[1]) < self.last[:, None]
         return steps
 
 
 def cut(episode: Episode) -> Trajectories:
-    """The trajectories of all agents of an episode."""
+    """Return the trajectories of all agents of an episode."""
     dt, states = episode.world.clock.dt, len(episode.position)
     over = episode.status != int(Status.ACTIVE)  # (T+1, A)
     last = np.where(over.any(axis=0), over.argmax(axis=0), states - 1).astype(np.int64)
@@ -68,7 +67,7 @@ def cut(episode: Episode) -> Trajectories:
 
 
 def _end(episode: Episode, last: IntArray) -> FloatArray:
-    """(A,) [s]: the arrival where it lies in the segment before ``last``, else its time."""
+    """Return ends (A,) [s]: the arrival if it is in the segment before ``last``, else its time."""
     dt = episode.world.clock.dt
     before = np.maximum(last - 1, 0) * dt
     arrived = episode.status[-1] == int(Status.ARRIVED)
@@ -78,7 +77,7 @@ def _end(episode: Episode, last: IntArray) -> FloatArray:
 
 
 def _leaves(episode: Episode, last: IntArray) -> IntArray:
-    """(A,) who vanishes does so once it has arrived or ended; who failed stands."""
+    """Return the first state (A,) without a body; agents vanish at their arrival or end."""
     rules, final, states = episode.world.rules, episode.status[-1], len(episode.position)
     vanishes = (final == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
     vanishes |= (final == int(Status.ENDED)) & (rules.on_end == Afterwards.VANISH)
@@ -86,7 +85,7 @@ def _leaves(episode: Episode, last: IntArray) -> IntArray:
 
 
 def positions_at(trajectories: Trajectories, times: FloatArray) -> FloatArray:
-    """(A, N, 2) [m]: places at ``times`` (N,) [s], straight between states."""
+    """Return the places (A, N, 2) [m] at ``times`` (N,) [s], linear between states."""
     dt, steps = trajectories.dt, trajectories.duration.shape[1]
     if steps == 0:
         return np.repeat(trajectories.position, len(times), axis=1)
@@ -99,9 +98,9 @@ def positions_at(trajectories: Trajectories, times: FloatArray) -> FloatArray:
 
 
 def present_at(trajectories: Trajectories, times: FloatArray) -> BoolArray:
-    """(A, N) True where the agent is a body in the arena at ``times`` (N,) [s].
+    """Return the mask (A, N) of agents that are bodies in the arena at ``times`` (N,) [s].
 
-    Who vanishes is a body up to its arrival or end, that instant included.
+    An agent that vanishes is a body up to and including its arrival or end.
     """
     gone = trajectories.leaves <= trajectories.duration.shape[1]
     here: BoolArray = ~gone[:, None] | (times[None] <= trajectories.end[:, None] + INSTANT)

@@ -1,13 +1,13 @@
-"""A navigator by the names of its parts, read from left to right like what happens in it.
+"""Names of navigators that consist of parts. The parts are in the order of processing.
 
 ``PLANNER+CONTROLLER``            a planner on the granted map, a controller along its path
-``none+CONTROLLER``               a controller alone, whose target is the goal; needs no map
-``mapping+PLANNER+CONTROLLER``    a planner on the map that the agent makes of what it senses
+``none+CONTROLLER``               only a controller, whose target is the goal; needs no map
+``mapping+PLANNER+CONTROLLER``    a planner on the map that the agent builds from its sensors
 
-Such a name is a short way to write a `hierarchical` navigator, wherever a navigator
-is named: ``ompl.bit-star+orca`` stands for ``{type: hierarchical, planner:
-ompl.bit-star, controller: orca}``. Beside it stand the other parameters, and those of
-a part under its kind: ``{type: ompl.prm+orca, replan: never, controller: {margin: 0.1}}``.
+Such a name is a short form of a `hierarchical` navigator, wherever a navigator is
+named: ``ompl.bit-star+orca`` means ``{type: hierarchical, planner: ompl.bit-star,
+controller: orca}``. Other parameters follow the name, and the parameters of a part are
+under its kind: ``{type: ompl.prm+orca, replan: never, controller: {margin: 0.1}}``.
 """
 
 from collections.abc import Mapping
@@ -16,18 +16,18 @@ from typing import Any
 from benchnav.errors import ConfigError, UnknownPluginError, did_you_mean
 from benchnav.plugins import CONTROLLERS, NAVIGATORS, PLANNERS, Registry
 
-HIERARCHICAL = "hierarchical"  # the navigator that pairs are
+HIERARCHICAL = "hierarchical"  # the registered navigator of every pair
 NO_PLANNER = "none"
 MAPPING = "mapping"
 
 
 def is_pair(name: str) -> bool:
-    """True where a navigator is named by its parts."""
+    """Whether a navigator is named by its parts."""
     return "+" in name and name not in NAVIGATORS.names()
 
 
 def hint(name: str) -> str:
-    """How a navigator is named by the part ``name``; "" where it is none."""
+    """Return how to name a navigator with the part ``name``; "" if it is not a part."""
     if name in PLANNERS.names():
         return f" It is a planner: {name}+CONTROLLER is a navigator."
     if name in CONTROLLERS.names():
@@ -36,11 +36,11 @@ def hint(name: str) -> str:
 
 
 def parameters_of(name: str, given: Mapping[str, Any]) -> dict[str, Any]:
-    """What `hierarchical` must be given to be the pair ``name`` with the parameters ``given``.
+    """Return the parameters of `hierarchical` for the pair ``name`` with the parameters ``given``.
 
     Raises:
-        ConfigError: it is no name of a pair, or a parameter contradicts it.
-        UnknownPluginError: a part does not exist; the text suggests the nearest one.
+        ConfigError: the name is not a pair's, or a parameter contradicts it.
+        UnknownPluginError: a part does not exist; the message suggests the nearest name.
     """
     *before, planner, controller = name.split("+")
     if before not in ([], [MAPPING]) or not (planner and controller):
@@ -68,7 +68,7 @@ def _require(registry: Registry, part: str, name: str) -> None:
 
 
 def _refined(name: str, key: str, named: Any, given: Any) -> Any:
-    """The part ``named`` with the parameters ``given`` under its kind."""
+    """Return the part ``named`` with the parameters ``given`` under its kind."""
     if isinstance(given, Mapping) and "type" not in given and named != NO_PLANNER:
         return dict(given) if named is True else {"type": named, **given}
     raise ConfigError(

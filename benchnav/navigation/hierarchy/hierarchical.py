@@ -1,4 +1,4 @@
-"""Any planner with any controller; itself a navigator."""
+"""A navigator that combines any planner with any controller."""
 
 from collections.abc import Sequence
 from typing import ClassVar
@@ -26,19 +26,19 @@ from benchnav.navigation.planner import UNSOLVED, Plan, Planner
 from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import CONTROLLERS, PLANNERS, Source
 
-TOUCH = 1e-3  # [m] by which a path may come nearer than its disc's radius: rounding blocks nothing
-LEAST_DISC = 0.5  # of its radius: for a smaller disc no agent that stands too close is planned
+TOUCH = 1e-3  # [m] by which a path may come nearer than its disc's radius, because of rounding
+LEAST_DISC = 0.5  # share of the agent's radius: the smallest disc to plan for
 NO_MAP = Plan(UNSOLVED, False, reason="no map is granted")
-CONTACT = 1e-5  # [m] from what is known at which a disc still counts as standing in it
+CONTACT = 1e-5  # [m] from a mapped obstacle at which a disc still counts as overlapping it
 
 
 class Hierarchical(Navigator):
-    """Plans a path for each agent on the map that it has, and follows it.
+    """Plans a path for each agent on its map, and follows the path.
 
-    The map is the granted one, or with ``mapping`` what the agent makes of that and of
-    what it senses, in the track `unknown` from nothing. Where planning fails, the agent
-    keeps the path that it has; without one its target is the goal. `remarks` say so, and
-    why; `plans` holds what planning answered last. ``PLANNER+CONTROLLER`` and
+    The map is the granted one. With ``mapping`` the agent corrects and extends it with its
+    sensors; in the track `unknown` the agent starts with an empty map. If planning fails, the
+    agent keeps its path; without a path its target is the goal. `remarks` report this with the
+    reason; `plans` holds the last plans. ``PLANNER+CONTROLLER`` and
     ``mapping+PLANNER+CONTROLLER`` are names of such navigators
     (`benchnav.navigation.hierarchy.composition`).
     """
@@ -113,8 +113,8 @@ class Hierarchical(Navigator):
         return PLANNERS.source(_name(self.config.planner)), controller
 
     def unfit(self, sensing: Sensing) -> str:
-        why = self.controller.unfit(sensing)
-        return why if why or self.mapping is None else self.mapping.unfit(sensing)
+        reason = self.controller.unfit(sensing)
+        return reason if reason or self.mapping is None else self.mapping.unfit(sensing)
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         self.controller.reset(briefings, rows)
@@ -149,14 +149,14 @@ class Hierarchical(Navigator):
     def _due(
         self, row: int, place: FloatArray, active: BoolArray, map: Map | None, time: float
     ) -> BoolArray:
-        """(A,) who plans again now; nobody does where the answer would be the same."""
+        """Return (A,), True for agents that plan again now; False if the plan would be the same."""
         watch, policies = self._watch[row], self._policies
         if map is None and self.mapping is None:
             return np.zeros(len(place), np.bool_)
         version = self._versions(row, map)
         changed: BoolArray = version != watch.version
         due = changed & policies.map_change
-        if self.mapping is not None:  # it learns all the time
+        if self.mapping is not None:  # its map may change at every decision
             due = due & self._ready(watch, time)
         if policies.blocked:
             for agent in np.flatnonzero(active & (version != watch.looked)):
@@ -174,25 +174,28 @@ class Hierarchical(Navigator):
     def _give_way(
         self, row: int, place: FloatArray, due: BoolArray, stuck: BoolArray, time: float
     ) -> BoolArray:
-        """Send some of the stuck back; (A,) who plans again: none of these until they are back."""
+        """Send some stuck agents back. Return (A,), True for agents that plan again now.
+
+        An agent that goes back does not plan until its retreat ends.
+        """
         retreat, watch = self._retreats[row], self._watch[row]
         retreat.note(place, time)
-        came = ~retreat.going(time) & np.isfinite(retreat.until)
-        retreat.until[came] = -np.inf
+        ended = ~retreat.going(time) & np.isfinite(retreat.until)
+        retreat.until[ended] = -np.inf
         for agent in np.flatnonzero(stuck & ~retreat.going(time)).tolist():
             rng = watch.streams[agent]
             if rng.random() < self.config.give_way:
                 self._tracker.follow(row, agent, retreat.begin(agent, place[agent], time, rng))
-        again: BoolArray = (due | came) & ~retreat.going(time)
+        again: BoolArray = (due | ended) & ~retreat.going(time)
         return again
 
     def _ready(self, watch: Watch, time: float) -> BoolArray:
-        """(A,) whose last plan is long enough ago."""
+        """Return (A,), True for agents whose last plan is at least ``pause`` old."""
         ready: BoolArray = time - watch.planned >= self.config.pause * (1.0 - 1e-9)
         return ready
 
     def _look(self, row: int, agent: int, map: Map | None, version: int) -> None:
-        """Hold the rest of a path against the map as it is now."""
+        """Check the rest of a path against the current map."""
         watch = self._watch[row]
         watch.looked[agent] = version
         if not watch.solved[agent]:
@@ -208,9 +211,9 @@ class Hierarchical(Navigator):
         if map is None and self.mapping is None:
             self._logs[row].note(agent, NO_MAP)
             return
-        plan, radius = self._answer(row, agent, map, start)
+        plan, radius = self._query_planner(row, agent, map, start)
         if not plan.solved and self.mapping is not None and self.mapping.doubt(row, agent):
-            plan, radius = self._answer(row, agent, map, start)
+            plan, radius = self._query_planner(row, agent, map, start)
         plans[agent : agent + 1] = [plan]
         self._logs[row].note(agent, plan)
         watch.planned[agent], watch.blocked[agent] = time, False
@@ -220,20 +223,23 @@ class Hierarchical(Navigator):
             watch.radius[agent] = radius
             self._tracker.follow(row, agent, plan.path, plan.clearance)
 
-    def _answer(
+    def _query_planner(
         self, row: int, agent: int, map: Map | None, start: FloatArray
     ) -> tuple[Plan, float]:
-        """(what the planner says now, [m] radius of the disc that it was asked for)."""
+        """Return (plan, radius [m] of the disc that it is for)."""
         known = map if self.mapping is None else self.mapping.map(row, agent)
         assert self.planner is not None and known is not None  # noqa: S101, PT018 - see `_plan`
-        told, radius = self._watch[row].briefing, self._disc(row, agent, start)
+        briefing, radius = self._watch[row].briefing, self._disc(row, agent, start)
         rng = self._watch[row].streams[agent]
-        goal, tolerance = told.goal[agent], told.goal_tolerance
+        goal, tolerance = briefing.goal[agent], briefing.goal_tolerance
         plan = self.planner.plan(known, start, goal, radius, tolerance, rng)
         return checked_plan(plan, self.planner), radius
 
     def _disc(self, row: int, agent: int, start: FloatArray) -> float:
-        """[m] The agent's radius, or less where it stands in what it mapped: a disc's octagon."""
+        """Return the radius [m] to plan for: the agent's, or less if it overlaps its own map.
+
+        It can overlap the octagon of a mapped disc without touching the disc.
+        """
         radius = float(self._watch[row].briefing.radius[agent])
         if self.mapping is None:
             return radius
@@ -242,7 +248,7 @@ class Hierarchical(Navigator):
         return min(radius, max(room, LEAST_DISC * radius))
 
     def _versions(self, row: int, map: Map | None) -> IntArray:
-        """(A,) of the map that each agent plans on."""
+        """Return (A,), the version of the map that each agent plans on."""
         count = len(self._watch[row].briefing)
         if self.mapping is not None:
             return self.mapping.versions(row, count)

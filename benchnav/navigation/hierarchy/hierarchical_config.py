@@ -15,7 +15,7 @@ PartSpec = str | dict[str, Any]
 
 
 class GuidedConfig(PluginConfig):
-    """Of the planner, of planning again, and of following a path."""
+    """The parameters of the planner, of replanning, and of following a path."""
 
     planner: PartSpec = Field(
         description="a planner: name or {type: name, …}; none: the goal is the target, and no map"
@@ -24,46 +24,47 @@ class GuidedConfig(PluginConfig):
     mapping: MappingConfig | None = Field(
         None,
         description="true or {…}: plan on a map that is made of the granted one, if there is any,"
-        " and of what the agents sense",
+        " and of the agents' sensor data",
     )
     replan: Replan | None = Field(
         None,
-        description="when to plan again: never; when the map changes (map-change); when the rest"
-        " of the path leads through what the map now holds, or there was no path and the map"
-        " changed (blocked); at intervals ({every: seconds}); or a list of these. Unless told:"
-        " blocked with mapping, else map-change",
+        description="when to plan again: never; when the map changes (map-change); when the map"
+        " blocks the rest of the path, or there was no path and the map changed (blocked); at"
+        " intervals ({every: seconds}); or a list of these. Default: blocked with mapping, else"
+        " map-change",
     )
     pause: float = Field(
         0.4,
         ge=0,
         description="[s] at least between plans of an agent because its path is blocked, or because"
-        " of what mapping learned",
+        " mapping changed its map",
     )
     patience: float = Field(
         4.0,
         gt=0,
-        description="[s] without getting a radius away, after which an agent that may"
-        " plan again does (twice as long if that does not help, and so on): others can push it"
-        " round a corner that its path does not turn",
+        description="[s] without moving a radius away, after which an agent plans again, if it may"
+        " plan again at all; the time doubles with each such plan in one place. Other agents can"
+        " push it round a corner that its path does not turn",
     )
     give_way: float = Field(
         0.0,
         ge=0,
         le=1,
         description="probability that an agent whose patience ends goes back the way it came for 2"
-        " to 6 s before it plans again: two that meet in a door wait for each other otherwise",
+        " to 6 s before it plans again. Otherwise two agents that meet in a door can wait for each"
+        " other forever",
     )
     lookahead: float | None = Field(
         None,
         gt=0,
-        description="[m] of path between agent and target, at most; unless told, as the controller"
-        " declares",
+        description="[m] of path between agent and target, at most. Default: the controller's"
+        " value",
     )
     cut: float | None = Field(
         None,
         gt=0,
-        description="[m] by which corners of the path may be missed; unless told, as the controller"
-        " declares",
+        description="[m] by which the agent may miss corners of the path. Default: the controller's"
+        " value",
     )
 
     @field_validator("mapping", mode="before")
@@ -77,14 +78,14 @@ class GuidedConfig(PluginConfig):
         return part if part == NO_PLANNER else resolved(PLANNERS, part)
 
     @model_validator(mode="after")
-    def _refuse_a_map_for_nobody(self) -> Self:
+    def _refuse_a_map_without_a_planner(self) -> Self:
         if self.mapping is not None and self.planner == NO_PLANNER:
-            raise ValueError("given a planner where it maps")
+            raise ValueError("given a planner if mapping is on")
         return self
 
 
 def resolved(registry: Registry, part: PartSpec) -> dict[str, Any]:
-    """``{type: name, …every parameter}`` of a part.
+    """Return ``{type: name, …every parameter}`` of a part.
 
     Raises what `benchnav.navigation.plugin.configure.configure` raises.
     """

@@ -1,9 +1,9 @@
-"""Online mapping: any planner's map, made of what the agents themselves sense.
+"""Online mapping: a map for any planner, made of the agents' own observations.
 
-What was never seen counts as free, so that a plan leads through the unknown and is
-made anew where it proves blocked: planning with the free-space assumption (Koenig,
-Tovey & Smirnov 2003), which reaches every goal that can be reached, because each new
-plan follows something learned.
+Unseen space counts as free, so a plan may lead through unknown space, and the agent plans
+again if the path proves blocked. This is planning with the free-space assumption (Koenig,
+Tovey & Smirnov 2003). It reaches every goal that can be reached, because the map has changed
+before each new plan.
 """
 
 from collections.abc import Sequence
@@ -17,16 +17,16 @@ from benchnav.arena.sensing import Sensing
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arrays import AnyArray, ByteArray, Extent, FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.hierarchy.learned_map import GUESSED, TOLD, learn
+from benchnav.navigation.hierarchy.learned_map import GUESSED, SENSED_EDGE, learn
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Need, PluginConfig
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.randomness.agent_streams import canonical_order
 from benchnav.threads import run_rows
 
-SIDE = 2.0  # [m] at least, around all that is known, in which plans may lead; bounds grow in such
-# steps, so that few plans see other bounds than the one before
-LEAST = 4  # worlds below which a second thread costs more than it saves
+SIDE = 2.0  # [m] of free margin at least around the known geometry; the bounds of the map grow in
+# steps of this size, so that they change rarely from plan to plan
+LEAST = 4  # number of worlds below which a second thread costs more than it saves
 
 
 class MappingConfig(PluginConfig):
@@ -35,34 +35,34 @@ class MappingConfig(PluginConfig):
     sensors: tuple[Literal["rays", "edges"], ...] = Field(
         ("rays", "edges"),
         min_length=1,
-        description="edges are mapped as they are told; rays, which must be thick, clear the map"
-        " where they pass and, without edges, map where they are stopped by what stands",
+        description="edges are mapped exactly; rays, which must be thick, clear the map where they"
+        " pass and, without edges, add the obstacles that stop them",
     )
     share: bool = Field(
-        False, description="the agents of a world make one map together, else each its own"
+        False, description="the agents of a world make one map together; else each makes its own"
     )
 
 
 @dataclass(eq=False)
 class _Row:
-    """What is kept of one world besides the arrays."""
+    """The state of one world besides the arrays."""
 
-    told: Briefing
+    briefing: Briefing
     granted: Map | None
-    maps: dict[int, tuple[int, Map]] = field(default_factory=dict)  # map → (version, made of it)
+    maps: dict[int, tuple[int, Map]] = field(default_factory=dict)  # index → (version, map)
 
 
 class Mapping:
-    """The maps of all rows: the granted one, if any, corrected and extended by what is seen.
+    """The maps of all rows: the granted map, if any, corrected and extended by sensor data.
 
-    Agents and dynamic obstacles are never mapped. Where the granted map's revision
+    Agents and dynamic obstacles are never mapped. When the revision of the granted map
     rises, mapping starts again from it.
     """
 
     def __init__(self, config: MappingConfig) -> None:
         self.config = config
         self._rows: dict[int, _Row] = {}
-        self._solids: dict[tuple[float, ...], Solid] = {}  # by capsule: plans ask for the same ones
+        self._solids: dict[tuple[float, ...], Solid] = {}  # by capsule, for reuse in other maps
         self._capsules = np.zeros((0, 0, 0, 5))  # (R, M, N, 5)
         self._owner = np.zeros((0, 0, 0), np.int64)
         self._count = np.zeros((0, 0), np.int64)
@@ -76,27 +76,27 @@ class Mapping:
         return frozenset(Need(sensor) for sensor in self.config.sensors)
 
     def unfit(self, sensing: Sensing) -> str:
-        """Why it cannot map with such sensors, beyond what it needs; "" where it can."""
+        """Return why it cannot map with these sensors, beyond missing needs; "" if it can."""
         thin = Need.RAYS in self.needs and sensing.rays is not None and not sensing.rays.thick
         return "maps with thick rays, and those there are thin" if thin else ""
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
-        """Start the worlds ``rows`` (N,) from their granted maps, or from nothing."""
-        for row, told in zip(rows.tolist(), briefings, strict=True):
-            agents = len(told)
+        """Start the worlds ``rows`` (N,) from their granted maps, or from empty maps."""
+        for row, briefing in zip(rows.tolist(), briefings, strict=True):
+            agents = len(briefing)
             self._reserve(row + 1, agents, 0)
             self._order[row] = -1
-            self._order[row, :agents] = canonical_order(told)
-            self._radius[row, :agents] = told.radius
-            self._begin(row, told, told.map)
+            self._order[row, :agents] = canonical_order(briefing)
+            self._radius[row, :agents] = briefing.radius
+            self._begin(row, briefing, briefing.map)
 
     def see(self, seen: Observation) -> None:
-        """Take in one decision's view."""
+        """Update the maps with the observation of one decision."""
         for world, row in enumerate(seen.rows.tolist()):
             map, state = seen.maps[world], self._rows[row]
             granted = state.granted
             if map is not None and granted is not None and map.revision != granted.revision:
-                self._begin(row, state.told, map)
+                self._begin(row, state.briefing, map)
         worlds, agents = seen.active.shape
         angle, distance, kind = self._rays(seen)
         edges, known = self._edges(seen)
@@ -111,7 +111,7 @@ class Mapping:
         )  # fmt: skip
 
     def _rays(self, seen: Observation) -> tuple[FloatArray, FloatArray, ByteArray]:
-        """Angle (K,), distance and kind (B, A, K); K is 0 where no rays are used."""
+        """Return angle (K,), distance and kind (B, A, K); K is 0 if rays are not used."""
         rays = seen.rays
         if rays is None or Need.RAYS not in self.needs:
             at = (*seen.active.shape, 0)
@@ -119,7 +119,7 @@ class Mapping:
         return rays.angle, rays.distance, rays.kind
 
     def _edges(self, seen: Observation) -> tuple[FloatArray, IntArray]:
-        """(B, A, E, 8) as `learn` takes them, and (B, A) how many; E is 0 where none are used."""
+        """Return edges (B, A, E, 8) for `learn` and counts (B, A); E is 0 if edges are not used."""
         edges = seen.edges
         if edges is None or Need.EDGES not in self.needs:
             return np.zeros((*seen.active.shape, 0, 8)), np.zeros(seen.active.shape, np.int64)
@@ -127,7 +127,7 @@ class Mapping:
         return np.concatenate(parts, axis=-1), edges.count
 
     def doubt(self, row: int, agent: int) -> bool:
-        """Forget the agent's guesses; False where there are none."""
+        """Remove the guesses from the agent's map. Return whether there were any."""
         m = self._place(agent)
         count = self._count[row, m]
         sure = self._owner[row, m, :count] != GUESSED
@@ -141,22 +141,22 @@ class Mapping:
         return True
 
     def version(self, row: int, agent: int) -> int:
-        """Rises whenever the agent's map changes."""
+        """Return the version of the agent's map, which rises with each change."""
         return int(self._version[row, self._place(agent)])
 
     def versions(self, row: int, agents: int) -> IntArray:
-        """(A,) the version of each agent's map."""
+        """Return (A,), the version of each agent's map."""
         own: IntArray = self._version[row, :agents]
         return np.repeat(own[:1], agents) if self.config.share else own
 
     def capsules(self, row: int, agent: int) -> FloatArray:
-        """(P, 5) what the agent's map holds."""
+        """Return the capsules (P, 5) of the agent's map."""
         m = self._place(agent)
         held: FloatArray = self._capsules[row, m, : self._count[row, m]]
         return held
 
     def map(self, row: int, agent: int) -> Map:
-        """The agent's map as it is now; the same object until it changes."""
+        """Return the agent's current map; the same object until it changes."""
         m, state = self._place(agent), self._rows[row]
         version = self.version(row, agent)
         made = state.maps.get(m)
@@ -168,11 +168,11 @@ class Mapping:
     def _place(self, agent: int) -> int:
         return 0 if self.config.share else agent
 
-    def _begin(self, row: int, told: Briefing, granted: Map | None) -> None:
-        self._rows[row] = _Row(told, granted)
+    def _begin(self, row: int, briefing: Briefing, granted: Map | None) -> None:
+        self._rows[row] = _Row(briefing, granted)
         solids = () if granted is None else granted.solids
         count = sum(len(solid.capsules) for solid in solids)
-        self._reserve(row + 1, len(told), count)
+        self._reserve(row + 1, len(briefing), count)
         self._count[row] = count
         self._version[row] += 1
         if granted is not None and count:
@@ -185,7 +185,7 @@ class Mapping:
         held, owner = self._capsules[row, m, :count], self._owner[row, m, :count]
         kept = np.unique(owner[owner >= 0]).tolist()
         solids = [state.granted.solids[s] for s in kept] if state.granted is not None else []
-        solids += [self._solid(capsule) for capsule in held[owner == TOLD]]
+        solids += [self._solid(capsule) for capsule in held[owner == SENSED_EDGE]]
         solids += [self._solid(capsule) for capsule in held[owner == GUESSED]]
         return Map(self._bounds(state, held), tuple(solids), int(self._version[row, m]))
 
@@ -207,14 +207,17 @@ class Mapping:
     def _bounds(state: _Row, held: FloatArray) -> Extent:
         if state.granted is not None:
             return state.granted.bounds
-        corner = state.told.start.min(axis=0)
-        places = np.vstack([held[:, :2], held[:, 2:4], state.told.start, state.told.goal]) - corner
+        corner = state.briefing.start.min(axis=0)
+        places = (
+            np.vstack([held[:, :2], held[:, 2:4], state.briefing.start, state.briefing.goal])
+            - corner
+        )
         x0, y0 = corner + SIDE * (np.floor(places.min(axis=0) / SIDE) - 1.0)
         x1, y1 = corner + SIDE * (np.ceil(places.max(axis=0) / SIDE) + 1.0)
         return float(x0), float(y0), float(x1), float(y1)
 
     def _reserve(self, rows: int, agents: int, capsules: int) -> None:
-        """Room for so many; maps are kept per agent, or one per row where they are shared."""
+        """Grow the arrays to these sizes; there is one map per agent, or one per row if shared."""
         old = self._capsules.shape
         maps = min(agents, 1) if self.config.share else agents
         wide = max(self._order.shape[1], agents)

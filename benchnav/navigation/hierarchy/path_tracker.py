@@ -1,7 +1,7 @@
-"""Where on its path each agent is, and where along it to go next; shared by all controllers.
+"""The progress of each agent along its path, and its next target; shared by all controllers.
 
-Progress never falls and moves along the path only, never across: an agent whose
-path comes back on the other side of a wall is not taken to be there already.
+Progress never decreases, and follows the path without jumps: if the path returns on the
+other side of a wall, the progress does not skip the part between.
 """
 
 import numpy as np
@@ -13,7 +13,7 @@ from benchnav.navigation.controller import Guide
 from benchnav.navigation.observation import Observation
 from benchnav.threads import run_rows
 
-_HALVINGS = 20  # of a segment in search of the farthest target: a millionth of its length
+_HALVINGS = 20  # bisections of a segment for the farthest target: to a millionth of its length
 
 
 class PathTracker:
@@ -38,9 +38,9 @@ class PathTracker:
         self._clearance = np.zeros((0, 0))
 
     def reset(self, row: int, step_length: FloatArray) -> None:
-        """Forget the paths of ``row``; ``step_length`` (A,) [m] is what an agent drives in a step.
+        """Remove the paths of ``row``; ``step_length`` (A,) [m] is the usual motion in one step.
 
-        An agent looks at least two steps ahead, so that a target does not slow it down.
+        An agent looks at least two steps ahead, so that a near target does not slow it down.
         """
         agents = len(step_length)
         self._reserve(row + 1, agents, 0)
@@ -51,9 +51,9 @@ class PathTracker:
     def follow(
         self, row: int, agent: int, path: FloatArray, clearance: float | None = None
     ) -> None:
-        """Start ``agent`` of ``row`` on ``path`` (W, 2) [m]; no path where W is 0.
+        """Start ``agent`` of ``row`` on ``path`` (W, 2) [m]; W = 0 means no path.
 
-        It leaves ``clearance`` [m] beside the agent; None: as the path before.
+        The path leaves ``clearance`` [m] beside the agent; None: keep the value of the last path.
         """
         distinct = np.ones(len(path), np.bool_)
         distinct[1:] = np.any(path[1:] != path[:-1], axis=1)
@@ -70,7 +70,7 @@ class PathTracker:
             self._clearance[row, agent] = clearance
 
     def guide(self, observation: Observation) -> Guide:
-        """Advance the active agents along their paths and say where to go."""
+        """Advance the active agents along their paths and return their targets."""
         worlds, agents = observation.active.shape
         rows = observation.rows
         self._reserve(int(rows.max(initial=-1)) + 1, agents, 0)
@@ -86,7 +86,7 @@ class PathTracker:
         return Guide(target, remaining, has_path, self._clearance[rows, :agents])
 
     def rest(self, row: int, agent: int) -> FloatArray:
-        """(W, 2) [m] what is left of a path, from where the agent was last seen; none if W is 0."""
+        """Return the rest (W, 2) [m] of a path from the last known progress; W = 0: no path."""
         count, k = self._count[row, agent], self._segment[row, agent]
         way, arc = self._path[row, agent, :count], self._arc[row, agent, :count]
         if count < 2:
@@ -128,18 +128,18 @@ def track(
     Args:
         low: first world.
         high: one past the last world.
-        rows: (B,) where a world's paths lie.
-        active: (B, A) others are left alone.
+        rows: (B,) the row of each world's paths.
+        active: (B, A) True for agents to advance; the entries of others are unchanged.
         position: (B, A, 2) [m].
-        path: (R, A, W, 2) [m] waypoints, no two in succession equal.
+        path: (R, A, W, 2) [m] waypoints; successive ones differ.
         arc: (R, A, W) [m] length of the path up to each waypoint.
         count: (R, A) waypoints.
         ahead: (R, A) [m] lookahead.
         cut: [m] tolerance at corners.
         progress: (R, A) [m] updated.
         segment: (R, A) updated: the segment of ``progress``.
-        target: (B, A, 2) [m] written where there is a path that is not at its end.
-        remaining: (B, A) [m] written where there is a path.
+        target: (B, A, 2) [m] written for agents with a path that are not at its end.
+        remaining: (B, A) [m] written for agents with a path.
     """
     for b in range(low, high):
         row = rows[b]
@@ -162,10 +162,10 @@ def track(
 def advanced(
     way: FloatArray, along: FloatArray, n: int, k: int, s: float, x: float, y: float, cut: float
 ) -> tuple[int, float]:
-    """(segment, progress) of (x, y), downhill along the path from segment k, progress s.
+    """Return (segment, progress) of (x, y), searched forward from segment k and progress s.
 
-    A corner is passed by coming near it or by passing the line through it that
-    is square to the next segment.
+    An agent passes a corner if it comes near it, or if it crosses the line through the corner
+    that is perpendicular to the next segment.
     """
     while k < n - 1:
         ax, ay, bx, by = way[k, 0], way[k, 1], way[k + 1, 0], way[k + 1, 1]
@@ -188,8 +188,9 @@ def advanced(
 def _farthest(
     way: FloatArray, along: FloatArray, n: int, k: int, reach: float, x: float, y: float, cut: float
 ) -> tuple[float, float]:
-    """The point farthest along the path, not beyond arc length ``reach``, whose straight way from
-    (x, y) passes within ``cut`` of all corners between.
+    """Return the farthest target (x, y) on the path, at most at arc length ``reach``.
+
+    The straight line from the agent to it passes within ``cut`` of all corners between.
     """
     qx, qy = way[k + 1, 0], way[k + 1, 1]
     for j in range(k, n - 1):
@@ -212,7 +213,7 @@ def _farthest(
 
 @kernel
 def _point(way: FloatArray, along: FloatArray, j: int, s: float) -> tuple[float, float]:
-    """The point of segment j at arc length s."""
+    """Return the point of segment j at arc length s."""
     t = (s - along[j]) / (along[j + 1] - along[j])
     return way[j, 0] + t * (way[j + 1, 0] - way[j, 0]), way[j, 1] + t * (way[j + 1, 1] - way[j, 1])
 
@@ -221,7 +222,7 @@ def _point(way: FloatArray, along: FloatArray, j: int, s: float) -> tuple[float,
 def _straight(
     way: FloatArray, first: int, last: int, x: float, y: float, cx: float, cy: float, cut: float
 ) -> bool:
-    """True where the segment from (x, y) to c passes within ``cut`` of waypoints first … last."""
+    """Whether the segment from (x, y) to c passes within ``cut`` of waypoints first … last."""
     for j in range(first, last + 1):
         qx, qy = nearest_on_segment(way[j, 0], way[j, 1], x, y, cx, cy)
         fx, fy = way[j, 0] - qx, way[j, 1] - qy

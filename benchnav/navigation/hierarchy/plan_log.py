@@ -1,4 +1,4 @@
-"""What planning answered in one world: checked, kept, and told after the episode."""
+"""The plans of one world: checked, kept, and reported after the episode."""
 
 import math
 from collections.abc import Iterator
@@ -18,40 +18,40 @@ class PlanLog:
 
     def __init__(self, count: int) -> None:
         self._last: list[Plan | None] = [None] * count
-        self._wanting: list[str] = [""] * count  # why an agent had no path, if it ever had none
-        self._led = np.zeros(count, np.bool_)  # it has been given a path
-        self._narrow = np.zeros(count, np.bool_)  # one that leaves too little clearance
+        self._first_failure: list[str] = [""] * count  # reason while an agent had no path yet
+        self._had_path = np.zeros(count, np.bool_)
+        self._narrow = np.zeros(count, np.bool_)  # whether a path left too little clearance
 
     def note(self, agent: int, plan: Plan) -> None:
-        """Keep what was answered for an agent."""
+        """Store the plan of an agent."""
         self._last[agent] = plan
         if plan.solved:
-            self._led[agent] = True
+            self._had_path[agent] = True
             self._narrow[agent] |= math.isfinite(plan.clearance)
-        elif not self._led[agent]:
-            self._wanting[agent] = reason_of(plan)
+        elif not self._had_path[agent]:
+            self._first_failure[agent] = reason_of(plan)
 
     def remarks(self, *, adapts: bool) -> list[str]:
-        """What a reader of the results must know of these plans, in short sentences.
+        """Return the facts about these plans for a reader of the results, in short sentences.
 
-        ``adapts`` says that the controller keeps no more from walls than the path leaves.
+        ``adapts``: whether the path's clearance bounds the controller's distance from walls.
         """
         return [*self._paths(), *([] if adapts else self._passages())]
 
     def _paths(self) -> Iterator[str]:
-        """Agents without a path, by reason: the controller alone drove them."""
+        """Yield remarks on agents without a path or without a new one, by reason."""
         found: dict[tuple[str, str], int] = {}
         for agent, plan in enumerate(self._last):
-            said = "" if plan is None or plan.solved else reason_of(plan)
-            if self._wanting[agent]:
-                when = " at first" if self._led[agent] else ""
-                key = f"the planner found no path{when}", self._wanting[agent]
+            reason = "" if plan is None or plan.solved else reason_of(plan)
+            if self._first_failure[agent]:
+                when = " at first" if self._had_path[agent] else ""
+                key = f"the planner found no path{when}", self._first_failure[agent]
                 found[key] = found.get(key, 0) + 1
-            if said and self._led[agent]:
-                key = "the planner found no new path, and the old one was kept", said
+            if reason and self._had_path[agent]:
+                key = "the planner found no new path, and the old one was kept", reason
                 found[key] = found.get(key, 0) + 1
-        for (what, reason), count in found.items():
-            yield f"{what}{self._of(count)}: {reason}"
+        for (fact, reason), count in found.items():
+            yield f"{fact}{self._of(count)}: {reason}"
 
     def _passages(self) -> Iterator[str]:
         count = int(self._narrow.sum())
@@ -66,12 +66,12 @@ class PlanLog:
 
 
 def reason_of(plan: Plan) -> str:
-    """Why a plan is not solved."""
+    """Return why a plan is not solved."""
     return short(plan.reason) or NO_REASON
 
 
 def checked_plan(plan: Any, planner: object) -> Plan:
-    """The plan, if it is one. Raises CallFailed where a planner answered anything else."""
+    """Return the plan of a planner. Raises CallFailed if it is not a valid plan."""
     name = class_name(planner)
     if not isinstance(plan, Plan):
         got = "None" if plan is None else f"a {class_name(plan)}"

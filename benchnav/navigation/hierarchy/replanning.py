@@ -1,4 +1,4 @@
-"""When to plan again: the policies, and what is kept of one world to apply them."""
+"""When to plan again: the policies, and the state of one world to apply them."""
 
 from typing import Literal
 
@@ -22,7 +22,7 @@ Replan = Literal["never"] | When | tuple[When, ...]
 
 
 class Policies:
-    """What is asked for, taken apart."""
+    """The replanning policies of a configuration."""
 
     def __init__(self, replan: Replan) -> None:
         given = replan if isinstance(replan, tuple) else (replan,)
@@ -34,24 +34,27 @@ class Policies:
 
 
 class Watch:
-    """What is kept of one world to tell which of its agents plan again."""
+    """The state of one world that decides which of its agents plan again."""
 
     def __init__(self, briefing: Briefing) -> None:
         count = len(briefing)
         self.briefing = briefing
         self.streams = agent_streams(briefing)
         self.radius = briefing.radius.copy()  # (A,) [m] of the disc that the path is for
-        self.solved = np.zeros(count, np.bool_)  # (A,) its last plan was
-        self.blocked = np.zeros(count, np.bool_)  # (A,) its path was found to be
-        self.looked = np.zeros(count, np.int64)  # (A,) version of the map that it was held against
-        self.version = np.zeros(count, np.int64)  # (A,) of the map that was planned on
-        self.planned = np.zeros(count)  # (A,) [s] when, last
-        self._place = briefing.start.copy()  # (A, 2) [m] within a radius of which it has been
-        self._since = np.zeros(count)  # (A,) [s] when it came there, or last asked
-        self._tries = np.zeros(count, np.int64)  # (A,) how often it asked there
+        self.solved = np.zeros(count, np.bool_)  # (A,) whether the last plan is solved
+        self.blocked = np.zeros(count, np.bool_)  # (A,) whether the path is blocked
+        self.looked = np.zeros(count, np.int64)  # (A,) version of the last map it was checked on
+        self.version = np.zeros(count, np.int64)  # (A,) version of the map of the last plan
+        self.planned = np.zeros(count)  # (A,) [s] time of the last plan
+        self._place = briefing.start.copy()  # (A, 2) [m] the agent stayed within its radius of it
+        self._since = np.zeros(count)  # (A,) [s] time of arrival there, or of the last wait's end
+        self._tries = np.zeros(count, np.int64)  # (A,) number of waits that ended there
 
     def waited(self, position: FloatArray, time: float, patience: float, more: float) -> BoolArray:
-        """(A,) True where an agent has been in one place for so long [s], then ``more`` times …"""
+        """Return (A,), True for agents that were in one place for ``patience`` [s].
+
+        Each further wait in the same place is ``more`` times as long as the one before.
+        """
         offset = position - self._place
         left = np.sum(offset * offset, axis=1) > self.briefing.radius**2
         enough = patience * more**self._tries * (1.0 - 1e-9)

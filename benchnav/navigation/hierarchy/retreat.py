@@ -1,8 +1,8 @@
 """Giving way: an agent that is stuck goes back the way it came for a while.
 
-Two that meet in a door wait for each other for ever if both insist, and meet again if
-both leave; so each draws whether it goes, and for how long, as stations on a shared
-line do after a collision (Metcalfe & Boggs 1976).
+Two agents that meet in a door wait for each other forever if both stay, and meet again if
+both leave. So each agent draws whether it goes back and for how long, as stations on a
+shared line do after a collision (Metcalfe & Boggs 1976).
 """
 
 import numpy as np
@@ -15,15 +15,15 @@ LEAST, MOST = 2.0, 6.0  # [s] of going back
 
 
 class Retreat:
-    """Where the agents of one world came from, and who is going back there."""
+    """The past places of the agents of one world, and the agents that go back along them."""
 
     def __init__(self, start: FloatArray) -> None:
         count = len(start)
         self._crumb = np.repeat(start[:, None], PLACES, axis=1)  # (A, PLACES, 2) [m], newest first
-        self.until = np.full(count, -np.inf)  # (A,) [s] until when it goes back
+        self.until = np.full(count, -np.inf)  # (A,) [s] end of the retreat
 
     def note(self, place: FloatArray, time: float) -> None:
-        """Remember where those who do not go back are (A, 2) [m]."""
+        """Remember the places (A, 2) [m] of the agents that do not go back."""
         offset = place - self._crumb[:, 0]
         far = np.sum(offset * offset, axis=1) > SPACING * SPACING
         far &= ~self.going(time)
@@ -31,13 +31,13 @@ class Retreat:
         self._crumb[far, 0] = place[far]
 
     def going(self, time: float) -> BoolArray:
-        """(A,) who is going back now."""
+        """Return (A,), True for agents that go back now."""
         now: BoolArray = time < self.until * (1.0 - 1e-9)
         return now
 
     def begin(
         self, agent: int, place: FloatArray, time: float, rng: np.random.Generator
     ) -> FloatArray:
-        """The way back (W, 2) [m], for a time that is drawn."""
+        """Start a retreat of random duration. Return the way back (W, 2) [m]."""
         self.until[agent] = time + rng.uniform(LEAST, MOST)
         return np.vstack([place, self._crumb[agent]])

@@ -1,4 +1,4 @@
-"""The navigators that scenarios name as drivers of their teams."""
+"""Check the navigators that scenarios name as drivers of their background teams."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -20,11 +20,11 @@ from benchnav.source.parts import local_names
 
 
 def check_drivers(*scenarios: Scenario, timeout: float = TIMEOUT) -> None:
-    """Raise ScenarioError where a team's driver is no navigator, or refuses its parameters.
+    """Raise ScenarioError if a team's driver is not a navigator or refuses its parameters.
 
-    Each complaint says ``file:line: key``; they are those of the first scenario that has any.
-    Nothing is constructed. Classes are loaded in processes of their own, in which a call may
-    last ``timeout`` [s]; those that this process alone knows are loaded in it.
+    The message lists ``file:line: key`` of all errors of the first scenario that has errors.
+    Nothing is constructed. Classes are loaded in separate processes, in which a call may last
+    ``timeout`` [s]; classes that only this process knows are loaded here.
     """
     drivers = [list(_drivers(scenario)) for scenario in scenarios]
     away = [driver for group in drivers for driver in group if not _is_known_here(driver)]
@@ -43,7 +43,7 @@ def check_drivers(*scenarios: Scenario, timeout: float = TIMEOUT) -> None:
 
 
 def tell_drivers(channel: Channel, notes: "memoryview[float]") -> None:
-    """Check the drivers that the channel asks for. Of a process of its own."""
+    """Check the drivers that the channel requests. Runs in a separate process."""
     tell(channel, notes, _check)
 
 
@@ -68,13 +68,13 @@ def _drivers(scenario: Scenario) -> Iterator[Plugin]:
 def _is_known_here(driver: Plugin) -> bool:
     try:
         name, parameters = split(NAVIGATORS, driver.question["spec"])
-    except PluginError:  # it is refused wherever it is asked
+    except PluginError:  # any process refuses it
         return False
     return bool(local_names({"type": name, **parameters}))
 
 
 def _error_of(driver: Plugin) -> BenchnavError | None:
-    """The error of what this process alone knows."""
+    """Return the error of a driver that only this process knows, or None."""
     try:
         _check(driver.question, lambda step: None)
     except PluginError as error:

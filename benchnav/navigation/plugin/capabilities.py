@@ -1,4 +1,4 @@
-"""What a navigator says of itself before it runs: all that whoever runs it must know."""
+"""The properties that a navigator reports before it runs."""
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -16,7 +16,7 @@ from pydantic import (
 
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import BenchnavError, BrokenPluginError, MissingExtraError, PluginError
-from benchnav.navigation.command_check import said, short
+from benchnav.navigation.command_check import exception_text, short
 from benchnav.navigation.navigator import CommandKind, Navigator, Need, Training
 from benchnav.navigation.plugin.configure import Spec, configure, make, split
 from benchnav.navigation.plugin.plugin_process import CONFIG, IMPORT, Stepping
@@ -27,36 +27,40 @@ Line = Annotated[str, AfterValidator(short)]
 
 
 class Introduction(BaseModel):
-    """Plain data, of which each has the value that it has for most."""
+    """The reported properties as plain data; defaults are the most common values."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
-    needs: frozenset[Need] = Field(frozenset(), description="What it cannot do without.")
-    command: CommandKind = Field("velocity", description="What it answers: velocity or twist.")
-    uses_map: StrictBool = Field(True, description="False where no map changes what it answers.")
-    reproducible: StrictBool = Field(True, description="False where a clock decides its answers.")
-    remarks: StrictBool = Field(False, description="Whether it has something to tell of episodes.")
-    rehearsal: int = Field(0, ge=0, description="Rehearsals that it asks for.")
-    leader: str | dict[str, Any] | None = Field(None, description="Who leads in them.")
-    training: Training | None = Field(None, description="{decisions, seconds} that it took.")
-    fingerprint: Line = Field("", description="Of the files that it reads.")
+    needs: frozenset[Need] = Field(frozenset(), description="The inputs that it requires.")
+    command: CommandKind = Field(
+        "velocity", description="The kind of its commands: velocity or twist."
+    )
+    uses_map: StrictBool = Field(True, description="Whether the map can affect its commands.")
+    reproducible: StrictBool = Field(True, description="False if a clock affects its commands.")
+    remarks: StrictBool = Field(False, description="Whether it makes remarks on episodes.")
+    rehearsal: int = Field(0, ge=0, description="The number of rehearsals that it requests.")
+    leader: str | dict[str, Any] | None = Field(
+        None, description="The leaders' navigator in rehearsals."
+    )
+    training: Training | None = Field(None, description="Its training: {decisions, seconds}.")
+    fingerprint: Line = Field("", description="The fingerprint of the files that it reads.")
     spec: dict[str, Any] = Field({}, description="{type: name, …every parameter}.")
-    made_of: tuple[Line, ...] = Field((), description="Distributions, with their versions.")
+    made_of: tuple[Line, ...] = Field((), description="Its distributions, with versions.")
     parts: tuple[Line, ...] = Field((), description="module:attribute of each part's class.")
-    unfit: tuple[Line, ...] = Field((), description="Why it cannot, for each sensing asked.")
-    lacks: Line = Field("", description="What is not installed that it needs to be made.")
+    unfit: tuple[Line, ...] = Field((), description='Why it cannot use each sensing; "": it can.')
+    lacks: Line = Field("", description="The error that names the missing extra, if any.")
 
 
 def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "") -> Introduction:
-    """What the navigator of ``spec`` says of itself; it is made for it, in this process.
+    """Return the properties of the navigator of ``spec``, which is made in this process.
 
-    Takes and raises what `meet` does.
+    Arguments and errors are those of `meet`.
     """
     return meet(spec, sensings, where=where)[1]
 
 
-def _unnoticed(step: str) -> None:
-    """Nobody is told."""
+def _ignore_step(step: str) -> None:
+    """Do nothing."""
 
 
 def meet(
@@ -64,22 +68,22 @@ def meet(
     sensings: Sequence[Sensing] = (),
     *,
     where: str = "",
-    stepping: Stepping = _unnoticed,
+    stepping: Stepping = _ignore_step,
 ) -> tuple[Navigator | None, Introduction]:
-    """The navigator of ``spec``, and what it says of itself.
+    """Return the navigator of ``spec`` and its properties.
 
     Args:
         spec: a name or ``{type: name, …parameters}``.
-        sensings: of which it says whether it can drive agents that sense so.
-        where: what the spec stands at, for messages.
-        stepping: is told what is asked next.
+        sensings: to check whether it can drive agents with each of them.
+        where: the place of the spec, for messages.
+        stepping: called with the name of each step before the step begins.
 
-    Raises what `make` raises, but for what is not installed: this is said, and there is none.
-    BrokenPluginError also where it says of itself what cannot be.
+    Raises what `make` raises, except for a missing extra: then the navigator is None, and
+    ``lacks`` names the extra. Raises BrokenPluginError also for an invalid property.
     """
     name, _ = split(NAVIGATORS, spec, where=where)
     stepping(IMPORT)
-    with suppress(PluginError):  # `configure` says it better
+    with suppress(PluginError):  # `configure` raises it with a better message
         NAVIGATORS.load(name)
     stepping(CONFIG)
     _, config = configure(NAVIGATORS, spec, where=where)
@@ -93,40 +97,40 @@ def meet(
     broken = f"{where + ': ' if where else ''}The navigator {name!r} cannot be used: "
     if not isinstance(navigator, Navigator):
         raise BrokenPluginError(f"{broken}its class makes a {class_name(navigator)}.")
-    asked = _Asked(navigator, broken, stepping)
-    parts = asked.get("parts", _parts)
+    reader = _PropertyReader(navigator, broken, stepping)
+    parts = reader.get("parts", _parts)
     try:
         return navigator, Introduction(
-            needs=asked.get("required", _needs),
-            command=asked.get("command"),
-            uses_map=asked.get("uses_map"),
-            reproducible=asked.get("reproducible"),
-            remarks=asked.get("remarks", lambda _: _has_remarks(navigator)),
-            rehearsal=asked.get("rehearsal"),
-            leader=asked.get("leader", _leader),
-            training=asked.get("training"),
-            fingerprint=asked.get("fingerprint"),
+            needs=reader.get("required", _needs),
+            command=reader.get("command"),
+            uses_map=reader.get("uses_map"),
+            reproducible=reader.get("reproducible"),
+            remarks=reader.get("remarks", lambda _: _has_remarks(navigator)),
+            rehearsal=reader.get("rehearsal"),
+            leader=reader.get("leader", _leader),
+            training=reader.get("training"),
+            fingerprint=reader.get("fingerprint"),
             spec=full,
             made_of=tuple(dict.fromkeys((source, *(part.distribution for part in parts)))),
             parts=tuple(dict.fromkeys(part.value for part in parts)),
-            unfit=asked.get("unfit", lambda _: tuple(unfit(navigator, each) for each in sensings)),
+            unfit=reader.get("unfit", lambda _: tuple(unfit(navigator, each) for each in sensings)),
         )
     except ValidationError as error:
-        raise BrokenPluginError(broken + lie(error)) from None
+        raise BrokenPluginError(broken + invalid_property(error)) from None
 
 
 @dataclass(frozen=True)
-class _Asked:
-    """Reads what a navigator says of itself, one attribute after another."""
+class _PropertyReader:
+    """Reads the properties of a navigator, one attribute after another."""
 
     navigator: Navigator
-    broken: str  # how a message begins
+    broken: str  # the beginning of messages
     stepping: Stepping
 
     def get(self, name: str, plain: Callable[[Any], Any] = lambda value: value) -> Any:
-        """The attribute ``name`` as ``plain`` makes it of what is there.
+        """Return the attribute ``name``, converted by ``plain``.
 
-        Raises BrokenPluginError where that fails.
+        Raises BrokenPluginError if that fails.
         """
         self.stepping(name)
         try:
@@ -134,7 +138,9 @@ class _Asked:
         except BenchnavError:
             raise
         except (Exception, SystemExit) as error:
-            raise BrokenPluginError(f"{self.broken}its {name} raised {said(error)}.") from error
+            raise BrokenPluginError(
+                f"{self.broken}its {name} raised {exception_text(error)}."
+            ) from error
 
 
 def _has_remarks(navigator: Navigator) -> bool:
@@ -158,8 +164,8 @@ def _parts(value: Any) -> tuple[Source, ...]:
     return parts
 
 
-def lie(error: ValidationError) -> str:
-    """Which attribute is not what it must be, and what it is."""
+def invalid_property(error: ValidationError) -> str:
+    """Return a message on the first invalid property: its name, the rule and the value."""
     first = error.errors()[0]
     name = str(first["loc"][0]) if first["loc"] else "answer"
     key = {"needs": "required"}.get(name, name)
@@ -175,9 +181,9 @@ def _text(value: object) -> str:
 
 
 def unfit(navigator: Navigator, sensing: Sensing) -> str:
-    """Why it cannot drive agents that sense so; "" where it can."""
+    """Return why a navigator cannot drive agents with this sensing; "" if it can."""
     required = navigator.required
-    lacking = sorted(n for n in required - {Need.MAP} if getattr(sensing, n, None) is None)
-    if lacking:
-        return f"needs {' and '.join(lacking)}, which nobody senses there"
+    missing = sorted(n for n in required - {Need.MAP} if getattr(sensing, n, None) is None)
+    if missing:
+        return f"needs {' and '.join(missing)}, which no sensor gives there"
     return navigator.unfit(sensing)

@@ -1,4 +1,4 @@
-"""From a name or ``{type: name, …params}``, as a file or a caller wrote it, to a plugin."""
+"""Make plugins from specs: a name or ``{type: name, …parameters}``, from a file or a caller."""
 
 from collections.abc import Callable, Iterable, Mapping
 from itertools import groupby
@@ -16,30 +16,30 @@ from benchnav.errors import (
     UnknownPluginError,
     did_you_mean,
 )
-from benchnav.navigation.command_check import said
+from benchnav.navigation.command_check import exception_text
 from benchnav.navigation.hierarchy.composition import HIERARCHICAL, hint, is_pair, parameters_of
 from benchnav.plugins import NAVIGATORS, Registry
 from benchnav.text.visible import shortened
 
 Spec = str | Mapping[str, Any]
 Where = str | Callable[[str], str]
-"""What a spec stands at, for messages: a text, or parameter → text, "" being the spec itself."""
+"""The place of a spec, for messages: a text, or parameter → text, with "" for the spec itself."""
 
 
 def make(registry: Registry, spec: Spec, *, where: Where = "") -> Any:
-    """The plugin that ``spec`` names, made from the Config that it describes.
+    """Return the plugin that ``spec`` names, constructed with its parameters.
 
     Args:
         registry: the kind of plugin, e.g. ``benchnav.plugins.NAVIGATORS``.
         spec: a name, or a mapping with ``type`` and that plugin's parameters; a navigator's
-            name may be made of those of its parts (`benchnav.navigation.hierarchy.composition`).
-        where: what the spec stands at (``"suite.yaml:12: navigators[0]"``), for messages;
-            or a function that gives it for each parameter.
+            name may consist of its parts' names (`benchnav.navigation.hierarchy.composition`).
+        where: the place of the spec (``"suite.yaml:12: navigators[0]"``), for messages;
+            or a function that returns the place of each parameter.
 
     Raises:
-        ConfigError: the spec is neither form, or the Config refuses a parameter.
-        UnknownPluginError, PluginConflictError, BrokenPluginError: as Registry.load,
-            and the last one also where the plugin cannot be constructed.
+        ConfigError: the spec has neither form, or the Config refuses a parameter.
+        UnknownPluginError, PluginConflictError, BrokenPluginError: as Registry.load;
+            BrokenPluginError also if the plugin cannot be constructed.
     """
     plugin, config = configure(registry, spec, where=where)
     try:
@@ -49,12 +49,12 @@ def make(registry: Registry, spec: Spec, *, where: Where = "") -> Any:
     except (Exception, SystemExit) as error:
         name, _ = _written(registry, spec, where)
         raise BrokenPluginError(
-            f"{_at(where)}The {registry.kind} {name!r} cannot be made: {said(error)}."
+            f"{_at(where)}The {registry.kind} {name!r} cannot be made: {exception_text(error)}."
         ) from error
 
 
 def configure(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[Any, BaseModel]:
-    """The class that ``spec`` names and its validated Config; nothing is constructed.
+    """Return the class that ``spec`` names and its validated Config, without an instance.
 
     Raises what `make` raises.
     """
@@ -86,14 +86,15 @@ def configure(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[Any
         written, _ = _written(registry, spec, where)
         raise BrokenPluginError(
             f"{_at(where)}The Config of the {registry.kind} {written!r} cannot be made:"
-            f" {said(error)}."
+            f" {exception_text(error)}."
         ) from error
 
 
 def split(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[str, dict[str, Any]]:
-    """(registered name, parameters) of either form of a spec; a pair is a `hierarchical` one.
+    """Return (registered name, parameters) of a spec; a pair is converted to `hierarchical`.
 
-    Raises ConfigError where it is neither, UnknownPluginError where a pair's part is unknown.
+    Raises ConfigError if the spec has neither form, and UnknownPluginError for a pair with an
+    unknown part.
     """
     name, parameters = _written(registry, spec, where)
     if registry is not NAVIGATORS or not is_pair(name):
@@ -105,7 +106,7 @@ def split(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[str, di
 
 
 def _written(registry: Registry, spec: Spec, where: Where) -> tuple[str, dict[str, Any]]:
-    """(name, parameters) as they were written."""
+    """Return (name, parameters) of a spec, without conversion of pairs."""
     if isinstance(spec, str):
         return spec, {}
     rule = f"{_at(where)}A {registry.kind} must be a name or {{type: name, …parameters}}."
@@ -126,7 +127,7 @@ def _written(registry: Registry, spec: Spec, where: Where) -> tuple[str, dict[st
 def _explanations(
     subject: str, declared: type[BaseModel], details: list[ErrorDetails]
 ) -> list[tuple[str, str]]:
-    """(parameter, line) of each mistake; the branches of a union that all fail are one mistake."""
+    """Return (parameter, line) of each error; all failed branches of a union are one error."""
     lines = []
     for key, group in groupby(details, key=lambda detail: detail["loc"][:1]):
         branches = list(group)
@@ -163,12 +164,12 @@ def _explain(subject: str, declared: type[BaseModel], detail: ErrorDetails) -> s
         return f"The {subject} has no parameter {key!r}.{near}{has}{none}"
     if detail["type"] == "missing":
         return f"The {subject} must be given the parameter {key!r}. Got nothing instead."
-    what = f"The parameter {key!r} of the {subject}" if key else f"The {subject}"
-    return f"{what} must be {_rule(detail)}. Got {_short(detail['input'])} instead."
+    named = f"The parameter {key!r} of the {subject}" if key else f"The {subject}"
+    return f"{named} must be {_rule(detail)}. Got {_short(detail['input'])} instead."
 
 
 def _known(declared: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
-    """The parameters at ``place``; none where that is not plainly a nested Config."""
+    """Return the parameters at ``place``; empty if the place is not a nested Config."""
     for part in place:
         field = declared.model_fields.get(str(part))
         if field is None or not isinstance(field.annotation, type):

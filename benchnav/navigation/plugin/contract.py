@@ -1,4 +1,4 @@
-"""What plugins of the navigation layer must be; their registries ask it."""
+"""The contracts of navigators, planners and controllers, which their registries check."""
 
 import inspect
 from typing import Any
@@ -11,17 +11,17 @@ from benchnav.navigation.planner import Planner
 
 
 def navigator_rule(name: str, plugin: Any) -> str:
-    """Return what the navigator ``name`` must be and is not; "" if there is nothing."""
+    """Return the rule that the navigator ``name`` violates; "" if there is none."""
     return _class_rule(Navigator, plugin)
 
 
 def planner_rule(name: str, plugin: Any) -> str:
-    """Return what the planner ``name`` must be and is not; "" if there is nothing."""
+    """Return the rule that the planner ``name`` violates; "" if there is none."""
     return _class_rule(Planner, plugin)
 
 
 def controller_rule(name: str, plugin: Any) -> str:
-    """Return what the controller ``name`` must be and is not; "" if there is nothing."""
+    """Return the rule that the controller ``name`` violates; "" if there is none."""
     return _class_rule(Controller, plugin)
 
 

@@ -1,4 +1,4 @@
-"""A navigator from a function."""
+"""Navigators that call a function."""
 
 import inspect
 from collections.abc import Callable, Sequence

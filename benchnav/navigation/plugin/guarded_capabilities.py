@@ -1,4 +1,4 @@
-"""Introductions of navigators that are made in processes of their own."""
+"""The properties of navigators, read in separate processes."""
 
 import os
 import re
@@ -10,7 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import BenchnavError, PluginError
-from benchnav.navigation.plugin.capabilities import Introduction, lie, meet
+from benchnav.navigation.plugin.capabilities import Introduction, invalid_property, meet
 from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.navigation.plugin.plugin_process import TIMEOUT, Plugin, Stepping, ask_plugins, tell
 from benchnav.plugins import NAVIGATORS
@@ -21,18 +21,16 @@ _SENSINGS = TypeAdapter(list[Sensing])
 
 
 def introductions(
-    asked: Sequence[tuple[Spec, str]], sensings: Sequence[Sensing], timeout: float = TIMEOUT
+    specs: Sequence[tuple[Spec, str]], sensings: Sequence[Sensing], timeout: float = TIMEOUT
 ) -> list[Introduction | BenchnavError]:
-    """What navigators say of themselves, in processes of their own.
+    """Return the properties of navigators, or the errors of `meet` for those that fail.
 
-    Those of one author share a process, which imports their modules once.
+    Navigators with code of the same modules share a process, which imports the modules once.
 
     Args:
-        asked: (spec, what it stands at) of each.
+        specs: (spec, its place for messages) of each navigator.
         sensings: as in `meet`.
         timeout: [s] that a call of a navigator may last.
-
-    An error, which is the answer of one that cannot be used, is what `meet` raises.
     """
     fields = [asdict(sensing) for sensing in sensings]
     plugins = [
@@ -43,7 +41,7 @@ def introductions(
                 "sensings": fields, "environment": dict(os.environ),
             },
         )
-        for spec, where in asked
+        for spec, where in specs
     ]  # fmt: skip
     groups: dict[frozenset[str], list[Plugin]] = {}
     for plugin in plugins:
@@ -58,7 +56,7 @@ def introductions(
 
 
 def _authors(plugin: Plugin) -> frozenset[str]:
-    """Top-level modules whose code makes it."""
+    """Return the top-level modules with the code of a navigator."""
     spec = plugin.question["spec"]
     try:
         name, parameters = split(NAVIGATORS, spec)
@@ -79,16 +77,16 @@ def _understood(plugin: Plugin, answer: Any) -> Introduction | BenchnavError:
     try:
         return Introduction.model_validate_json(answer)
     except ValidationError as error:
-        return plugin.broken(lie(error).removesuffix("."))
+        return plugin.broken(invalid_property(error).removesuffix("."))
 
 
 def introduce(channel: Channel, notes: "memoryview[float]") -> None:
-    """Introduce the navigators that the channel asks for. Of a process of its own."""
-    tell(channel, notes, _told)
+    """Send the properties of navigators to the channel. Runs in a separate process."""
+    tell(channel, notes, _properties)
 
 
-def _told(question: Any, stepping: Stepping) -> str:
-    os.environ.clear()  # it is no worker yet, and sees what the user set
+def _properties(question: Any, stepping: Stepping) -> str:
+    os.environ.clear()  # a navigator that is not in a worker sees the user's environment
     os.environ.update(question["environment"])
     sensings = _SENSINGS.validate_python(question["sensings"])
     _, introduction = meet(question["spec"], sensings, where=question["where"], stepping=stepping)

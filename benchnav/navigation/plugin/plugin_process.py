@@ -1,7 +1,7 @@
-"""Asks plugins in processes of their own, which send plain data or why there is none.
+"""Query plugins in separate processes, which send plain data or the reason for a failure.
 
-Code of a plugin may hang, end its process, raise whatever it likes, or say that it is what it
-is not: this costs the plugin itself, and never the process that asks.
+The code of a plugin may hang, end its process, raise any exception or report invalid
+properties. Only the plugin fails then, never the calling process.
 """
 
 import os
@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from benchnav.errors import BenchnavError, BrokenPluginError, named
-from benchnav.navigation.command_check import said
+from benchnav.navigation.command_check import exception_text
 from benchnav.navigation.plugin.trace import bounded, plain, trace
 from benchnav.processes.channel import Channel, ChannelError
 from benchnav.processes.inquiry import Fault, Inquiry, Limits, Step, inquire
 
-TIMEOUT = 300.0  # [s] of a call of a plugin, unless somebody says otherwise
-_IMPORTING = 10.0  # [s] that at least are granted to an import, of a large library say
+TIMEOUT = 300.0  # [s] the default for a call of a plugin
+_IMPORTING = 10.0  # [s] smallest limit for an import, because large libraries load slowly
 _MEMORY = 4e9  # [bytes]
 IMPORT, CONFIG, MEASURING = "import", "Config", "measuring"
 _STEPS = (
@@ -25,22 +25,22 @@ _STEPS = (
     "leader", "training", "fingerprint", "parts", "unfit", "remarks", MEASURING,
 )  # fmt: skip
 Stepping = Callable[[str], None]
-"""Told which step of `_STEPS` begins."""
-Telling = Callable[[Any, Stepping], Any]
-"""(question, stepping) -> answer, both what JSON can say."""
+"""Called with the step of `_STEPS` that begins."""
+Answering = Callable[[Any, Stepping], Any]
+"""(question, stepping) -> answer; question and answer are JSON data."""
 
 
 @dataclass(frozen=True)
 class Plugin:
-    """Whom a question is about, for messages."""
+    """The plugin of a question, for messages."""
 
     kind: str  # "navigator"
     name: str
-    where: str = ""  # what names it: a line of a file
+    where: str = ""  # the place that names it: a line of a file
     question: Any = None
 
     def broken(self, cause: str) -> BrokenPluginError:
-        """The error that says so."""
+        """Return the error of a plugin that cannot be used."""
         at = f"{self.where}: " if self.where else ""
         return BrokenPluginError(f"{at}The {self.kind} {self.name!r} cannot be used: {cause}.")
 
@@ -48,11 +48,11 @@ class Plugin:
 def ask_plugins(
     target: str, groups: Sequence[Sequence[Plugin]], timeout: float = TIMEOUT
 ) -> list[list[Any]]:
-    """What each plugin of each group answers, or the BenchnavError that says why it does not.
+    """Return the answer of each plugin of each group, or a BenchnavError with the reason.
 
     Args:
         target: "module:function", which calls `tell`.
-        groups: a process is started for each of them; it goes on after a plugin that raises.
+        groups: each gets one process, which continues after a plugin that raises.
         timeout: [s] that a call of a plugin may last.
     """
     steps = tuple(
@@ -68,7 +68,7 @@ def ask_plugins(
 
 
 def _understood(plugin: Plugin, answer: Any) -> Any:
-    """What was sent, of which nothing is believed."""
+    """Return the validated answer, or the error of an invalid one."""
     if isinstance(answer, Fault):
         return plugin.broken(answer.text)
     if isinstance(answer, dict) and "answer" in answer:
@@ -83,26 +83,26 @@ def _understood(plugin: Plugin, answer: Any) -> Any:
     return error
 
 
-def tell(channel: Channel, notes: "memoryview[float]", telling: Telling) -> None:
-    """Answer the questions that come, one by one. Of the process that was asked."""
+def tell(channel: Channel, notes: "memoryview[float]", answering: Answering) -> None:
+    """Answer the questions of a channel, one by one. Runs in the plugin's process."""
     try:
         folder = Path.cwd()
         for question in channel.receive():
             os.chdir(folder)
             notes[0] = 0.0
-            channel.send(_told(telling, question, lambda step: _note(notes, step)))
+            channel.send(_answer_to(answering, question, lambda step: _note(notes, step)))
     except (EOFError, ChannelError):
-        return  # nobody asks any more
+        return  # no more questions
 
 
 def _note(notes: "memoryview[float]", step: str) -> None:
     notes[0] = float(_STEPS.index(step))
 
 
-def _told(telling: Telling, question: Any, stepping: Stepping) -> dict[str, Any]:
+def _answer_to(answering: Answering, question: Any, stepping: Stepping) -> dict[str, Any]:
     try:
-        return {"answer": telling(question, stepping)}
+        return {"answer": answering(question, stepping)}
     except BenchnavError as error:
         return {"error": type(error).__name__, "text": plain(error), "trace": trace(error)}
     except BaseException as error:
-        return {"text": said(error), "trace": trace(error)}
+        return {"text": exception_text(error), "trace": trace(error)}

@@ -1,8 +1,9 @@
-"""Where the code of a plugin failed: file and line for a reason, frames for a traceback.
+"""The place where the code of a plugin failed: file and line, and frames for a traceback.
 
-Exceptions come from strangers: nothing here fails, or returns text without bounds, whatever
-one of them does when it is read. Paths are those of modules (``package/module.py``), so that
-no folder of this machine appears and the same fault reads the same everywhere.
+Exceptions come from untrusted code: no function here fails or returns unbounded text,
+whatever an exception does when it is read. Paths are those of modules
+(``package/module.py``), so the text shows no folder of this machine and is the same on
+every machine.
 """
 
 import linecache
@@ -21,12 +22,12 @@ MOST = 8000  # characters of a traceback
 MESSAGE = 1000  # characters of a message in a traceback
 LINE = 200  # characters of a line of source
 FIRST, LAST = 4, 16  # frames that are shown of a deep stack
-CHAIN = 3  # exceptions that led to another one
-SOURCE = 10_000_000  # bytes of a file that lines are taken from
-RAW = 20_000  # characters that are looked at of a text
+CHAIN = 3  # causes of an exception that are shown
+SOURCE = 10_000_000  # [bytes] largest file from which source lines are read
+RAW = 20_000  # characters that are read of a text
 
-_CORE = str(Path(__file__).parents[2]) + os.sep  # also where a part of it is run as a program
-_CALLERS = ("pydantic",)  # packages that call plugins, besides
+_CORE = str(Path(__file__).parents[2]) + os.sep  # by path: a module may also run as a program
+_CALLERS = ("pydantic",)  # other packages that call plugins
 _LIBRARIES = tuple(
     {sysconfig.get_path(name) for name in ("stdlib", "platstdlib", "purelib", "platlib")}
 )
@@ -34,7 +35,7 @@ _Frames = list[tuple[FrameType, int]]  # with the line that was running, the out
 
 
 def plain(value: object) -> str:
-    """``str(value)`` that can be written as UTF-8: control characters but line breaks marked."""
+    """Return ``str(value)`` as valid UTF-8, with control characters (not line breaks) marked."""
     try:
         text = str.__getitem__(str(value), slice(RAW))
     except BaseException:  # also a KeyboardInterrupt that a plugin raises
@@ -45,13 +46,13 @@ def plain(value: object) -> str:
 
 
 def class_name(value: object) -> str:
-    """The name of the class of ``value``, whatever its metaclass says."""
+    """Return the name of the class of ``value``, even if its metaclass overrides the name."""
     name: str = type.__dict__["__name__"].__get__(type(value))
     return visible(str.__getitem__(name, slice(100)))
 
 
 def location(error: BaseException) -> str:
-    """``package/module.py:12``, the innermost line of the plugin's own code; "" if unknown."""
+    """Return ``package/module.py:12``, the innermost line of the plugin's code; "" if unknown."""
     try:
         frames = list(walk_tb(_of(error, "__traceback__")))
         own = _own(frames) or frames
@@ -62,9 +63,9 @@ def location(error: BaseException) -> str:
 
 
 def trace(error: BaseException) -> str:
-    """The traceback as text, from the first line of the plugin's own code on.
+    """Return the traceback as text, starting at the first line of the plugin's own code.
 
-    Of an error of benchnav that something else caused, it is the traceback of that.
+    For an error of benchnav with a cause, it is the traceback of the cause.
     """
     try:
         while isinstance(error, BenchnavError) and error.__cause__ is not None:
@@ -76,7 +77,7 @@ def trace(error: BaseException) -> str:
 
 
 def bounded(text: object) -> str:
-    """A traceback that another process sent, or one too long: its begin and its end."""
+    """Return a traceback as safe text; of a long one only the beginning and the end."""
     shown = plain(text)
     if len(shown) <= MOST:
         return shown
@@ -85,12 +86,12 @@ def bounded(text: object) -> str:
 
 
 def notes(error: BaseException) -> str:
-    """The traceback of another process that an error of benchnav carries."""
+    """Return the traceback of another process from the notes of an error of benchnav."""
     return "\n".join(getattr(error, "__notes__", ()))
 
 
 def _lines(error: BaseException, deep: int, seen: set[int]) -> Iterator[str]:
-    """As Python prints it, what led to ``error`` first."""
+    """Yield the lines of a traceback as Python prints it, the causes of ``error`` first."""
     cause, context = _of(error, "__cause__"), _of(error, "__context__")
     led = cause or (None if _of(error, "__suppress_context__") else context)
     if led is not None and deep and id(led) not in seen:
@@ -116,8 +117,8 @@ def _lines(error: BaseException, deep: int, seen: set[int]) -> Iterator[str]:
 
 
 def _source_line(path: str, line: int) -> str:
-    """Of a file that is one: a plugin may name a device or a pipe instead."""
-    known = path in linecache.cache  # a cell of a notebook is no file
+    """Return a line of a regular file: a plugin may name a device or a pipe instead."""
+    known = path in linecache.cache  # a cell of a notebook is not a file
     file = Path(path)
     if known or (file.is_file() and file.stat().st_size <= SOURCE):
         return linecache.getline(path, line)
@@ -125,7 +126,7 @@ def _source_line(path: str, line: int) -> str:
 
 
 def _own(frames: _Frames) -> _Frames:
-    """The frames of the plugin, of its package or beside it, without the libraries it calls."""
+    """Return the frames of the plugin's package and other local code, without libraries."""
     called = [f for f in frames if not _is_caller(f[0])]
     if not called:
         return []
@@ -152,7 +153,7 @@ def _is_library(frame: FrameType) -> bool:
 
 
 def _shown(frame: FrameType) -> str:
-    """``package/module.py``; the file's name alone where it is not that of the module."""
+    """Return ``package/module.py``, or only the file's name if it differs from the module's."""
     path, module = PurePath(frame.f_code.co_filename), _module(frame)
     if path.parent.name.startswith("ipykernel_"):
         return "<notebook>"
@@ -163,5 +164,5 @@ def _shown(frame: FrameType) -> str:
 
 
 def _of(error: BaseException, name: str) -> Any:
-    """An attribute that every exception has, whatever its class puts in its place."""
+    """Return an attribute of BaseException, even if the class of ``error`` overrides it."""
     return BaseException.__dict__[name].__get__(error)

@@ -7,13 +7,13 @@ from benchnav.navigation.briefing import Briefing
 
 
 def canonical_order(briefing: Briefing) -> IntArray:
-    """(A,) agent indices sorted by start, then goal: the same agents whatever their numbers."""
+    """Return (A,) agent indices sorted by start, then goal: independent of the numbering."""
     keys = (briefing.goal[:, 1], briefing.goal[:, 0], briefing.start[:, 1], briefing.start[:, 0])
     return np.lexsort(keys).astype(np.int64)
 
 
 def agent_streams(briefing: Briefing) -> list[np.random.Generator]:
-    """One generator for each agent, spawned from the briefing's in canonical order."""
+    """Return one generator per agent, spawned from the briefing's in canonical order."""
     streams = briefing.rng.spawn(len(briefing))
     rank = np.argsort(canonical_order(briefing))
     return [streams[int(k)] for k in rank]

@@ -2,7 +2,7 @@
 
 A pool has one `WorkerSlot` per core: a worker, which runs the tasks of one navigator and is
 replaced for the next one, and a measurer, which never runs code of a navigator. A navigator is
-charged with a failure only after a task of a single seed failed in a process of its own.
+charged with a failure only after a task of a single seed failed in a new process.
 """
 
 import os

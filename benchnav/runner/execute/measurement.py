@@ -1,4 +1,4 @@
-"""Episodes → the table of measured values, now or from a stored run."""
+"""The measurement of new or stored episodes: a table of values."""
 
 from collections.abc import Iterable, Sequence
 
@@ -16,34 +16,34 @@ from benchnav.store.runs.run_path import RunPath
 
 
 def measured(episodes: Iterable[Episode], metrics: Sequence[Metric]) -> pa.Table:
-    """The table of `RESULTS` of these episodes."""
+    """Return the table of `RESULTS` of these episodes."""
     rows = [row for episode in episodes for row in measure(episode, metrics)]
     return pa.Table.from_pylist(rows, schema=RESULTS)
 
 
 def failed_metrics(results: pa.Table) -> list[tuple[str, str]]:
-    """(metric, how it failed) of every value of `RESULTS` that is missing for that."""
+    """Return (metric, reason) for each value of `RESULTS` that is missing after a failure."""
     gaps = results.filter(pc.not_equal(results["missing"], ""))
     return list(zip(gaps["metric"].to_pylist(), gaps["missing"].to_pylist(), strict=True))
 
 
 def tracebacks_of(results: pa.Table) -> dict[str, str]:
-    """Tracebacks of metrics that raised, one for each kind of reason."""
+    """Return tracebacks of metrics that raised, one for each kind of reason."""
     raised = results.filter(pc.is_valid(results["traceback"]))
     reasons, texts = raised["missing"].to_pylist(), raised["traceback"].to_pylist()
     return {kind_of(why): text for why, text in zip(reasons, texts, strict=True) if text}
 
 
 def measure_again(run: RunPath, metrics: Sequence[Metric]) -> pa.Table:
-    """The table of `RESULTS` of a stored run, computed from its episodes: nothing is run again.
+    """Return the table of `RESULTS` of a stored run, computed from its stored episodes.
 
-    In every track that an episode stands for.
+    An episode that is valid for several tracks has rows for each of them.
 
-    Raises what `benchnav.store.runs.reading.read_episodes` raises.
+    Raises as `benchnav.store.runs.reading.read_episodes`.
     """
     return measured_of(RunFolder.open(run), metrics)
 
 
 def measured_of(run: RunFolder, metrics: Sequence[Metric]) -> pa.Table:
-    """The same, of a run that is open already."""
+    """Return the same table as `measure_again`, of an open run."""
     return in_every_track(measured(episodes_of(run), metrics), run.manifest)

@@ -1,8 +1,8 @@
-"""A process in which no evaluated code runs: measures what workers wrote, and seals it.
+"""The measurer process: measures and seals the episodes of workers, and never runs a navigator.
 
-Messages to the parent: {"kind": "episodes"} for each that is measured, {"kind": "done", …} with
-an Outcome, {"kind": "strange", "text"} of what is not what a worker writes, and
-{"kind": "refused", "name", "text"} of another BenchnavError, {"kind": "crashed", "text"}.
+Messages to the parent: {"kind": "episodes"} for each measured episode, {"kind": "done", …} with an
+Outcome, {"kind": "strange", "text"} for invalid files of a worker, {"kind": "refused", "name",
+"text"} for any other BenchnavError, {"kind": "crashed", "text"} for any other exception.
 """
 
 import pickle
@@ -20,7 +20,7 @@ from benchnav.errors import BenchnavError, CorruptPartError
 from benchnav.metrics.measure import measure, own_metrics
 from benchnav.processes.channel import Channel
 from benchnav.runner.execute.call_timer import Notes
-from benchnav.runner.execute.plugin_metrics import guest_rows
+from benchnav.runner.execute.plugin_metrics import plugin_rows
 from benchnav.runner.plan.task import Measuring, Played, Task, measure_part
 from benchnav.store.parts.results import RESULTS
 
@@ -28,7 +28,7 @@ from benchnav.store.parts.results import RESULTS
 def serve(channel: Channel, notes: Notes) -> None:
     """Measure until the channel closes; ``notes`` count episodes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    measuring: Measuring = pickle.loads(channel.receive_bytes())  # noqa: S301 - of who started this
+    measuring: Measuring = pickle.loads(channel.receive_bytes())  # noqa: S301 - from the parent
     while True:
         try:
             task, played = pickle.loads(channel.receive_bytes())  # noqa: S301
@@ -46,7 +46,7 @@ def _answer(
 
     notes[0] += 1
     try:
-        outcome = measure_part(task, played, lambda es: measured_apart(es, measuring, tick))
+        outcome = measure_part(task, played, lambda es: measured_isolated(es, measuring, tick))
     except CorruptPartError as error:
         return {"kind": "strange", "text": str(error)}
     except BenchnavError as error:
@@ -56,10 +56,10 @@ def _answer(
     return {"kind": "done", **asdict(outcome)}
 
 
-def measured_apart(
+def measured_isolated(
     episodes: Iterable[Episode], measuring: Measuring, tick: Callable[[], None]
 ) -> pa.Table:
-    """The table of `RESULTS` of these episodes; no metric of a plugin runs in this process."""
+    """Return the table of `RESULTS`; metrics of plugins run in other processes."""
     kept: list[Episode] = []
     rows: list[list[dict[str, Any]]] = []  # of each episode
     for episode in _ticked(episodes, tick):
@@ -67,12 +67,12 @@ def measured_apart(
         if measuring.plugins:
             kept.append(episode)
     for name in measuring.plugins:
-        guests = guest_rows(
+        plugin_values = plugin_rows(
             name, kept, measuring.registrations, measuring.main, measuring.timeout
         )  # fmt: skip
-        for mine, theirs in zip(rows, guests, strict=True):
-            mine += theirs
-    sorted_rows = [row for mine in rows for row in sorted(mine, key=_place)]
+        for episode_rows, more in zip(rows, plugin_values, strict=True):
+            episode_rows += more
+    sorted_rows = [row for of_episode in rows for row in sorted(of_episode, key=_place)]
     return pa.Table.from_pylist(sorted_rows, schema=RESULTS)
 
 

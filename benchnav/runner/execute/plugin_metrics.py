@@ -1,4 +1,4 @@
-"""Metrics of plugins: each is measured in a process of its own, which may hang or die."""
+"""Metrics of plugins: each runs in its own process, which may hang or crash."""
 
 import math
 import os
@@ -17,21 +17,21 @@ from benchnav.processes.channel import Channel, ChannelError
 from benchnav.processes.main_module import import_main
 from benchnav.processes.process_tree import kill
 
-ATTEMPTS = 3  # processes that may hang or die over one part; then its other values are missing
+ATTEMPTS = 3  # processes that may fail on one part, before its remaining values are missing
 
 Rows = list[dict[str, Any]]
 
 
-def guest_rows(
+def plugin_rows(
     name: str,
     episodes: Sequence[Episode],
     registrations: Sequence[Registration],
     main: Mapping[str, str],
     timeout: float,
 ) -> list[Rows]:
-    """For each episode the rows of `RESULTS` of the metric ``name``.
+    """Return the rows of `RESULTS` of the metric ``name``, for each episode.
 
-    A value that its process does not give within ``timeout`` [s] is missing, with the reason.
+    A value that takes longer than ``timeout`` [s] is missing, with a reason.
     """
     found: list[Rows] = []
     fault = ""
@@ -50,12 +50,12 @@ def _answers(
     name: str, episodes: Sequence[Episode], registrations: Sequence[Registration],
     main: Mapping[str, str], timeout: float,
 ) -> Iterator[Any]:  # fmt: skip
-    """What its process says of each episode; after a text, which is why it failed, no more."""
+    """Yield an answer for each episode, or a text with the reason of a failure as the last one."""
     ours, theirs = socket.socketpair()
     pid = os.fork()
     if not pid:
         ours.close()
-        _be_measured_in(Channel(theirs), name, episodes, registrations, main)
+        _serve_values(Channel(theirs), name, episodes, registrations, main)
     theirs.close()
     channel = Channel(ours)
     try:
@@ -74,11 +74,11 @@ def _answers(
         os.waitpid(pid, 0)
 
 
-def _be_measured_in(
+def _serve_values(
     channel: Channel, name: str, episodes: Sequence[Episode],
     registrations: Sequence[Registration], main: Mapping[str, str],
 ) -> NoReturn:  # fmt: skip
-    """The process: it says the values of each episode, role by role."""
+    """Send the values of each episode, role by role, and end this process."""
     code = 1
     try:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -102,11 +102,11 @@ def _values(name: str, episode: Episode) -> list[dict[str, Any]]:
 
 
 def _rows(name: str, episode: Episode, answer: Any) -> Rows:
-    """Rows of what the process said, of which nothing is believed."""
+    """Return the rows of an answer after its validation."""
     rows = []
     for k, (common, members) in enumerate(subjects(episode)):
-        said = _checked(answer, k, int(members.sum()))
-        rows.append({**common, "metric": name, **said})
+        fields = _checked(answer, k, int(members.sum()))
+        rows.append({**common, "metric": name, **fields})
     return rows
 
 
@@ -114,12 +114,12 @@ def _checked(answer: Any, k: int, most: int) -> dict[str, Any]:
     if isinstance(answer, str):
         return {"value": math.nan, "defined": 0, "missing": answer, "traceback": None}
     try:
-        said = answer[k]
-        value, defined, trace = float(said["value"]), said["defined"], said["traceback"]
+        fields = answer[k]
+        value, defined, trace = float(fields["value"]), fields["defined"], fields["traceback"]
         if not isinstance(defined, int) or not 0 <= defined <= most:
             raise ValueError
         return {
-            "value": value, "defined": defined, "missing": short(plain(said["missing"])),
+            "value": value, "defined": defined, "missing": short(plain(fields["missing"])),
             "traceback": None if trace is None else bounded(trace),
         }  # fmt: skip
     except (KeyError, IndexError, TypeError, ValueError, OverflowError):

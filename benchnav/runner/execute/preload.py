@@ -1,4 +1,4 @@
-"""Loads the modules and kernels of a run in a fork server, before it forks."""
+"""The preloading of modules and kernels in the fork server, before it forks."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What a run tells on stderr: a bar on a terminal, plain lines elsewhere, or nothing."""
+"""The progress of a run on stderr: a bar on a terminal, plain lines elsewhere, or nothing."""
 
 import sys
 from collections.abc import Callable, Hashable, Iterable
@@ -12,32 +12,32 @@ UNKNOWN = "estimating the time left"
 
 
 class Progress:
-    """Counts finished episodes, and says nothing."""
+    """The interface of a progress display; this base class prints nothing."""
 
     def begin(self, total: int, stored: int) -> None:
-        """Of ``total`` episodes, ``stored`` are there already."""
+        """Start with ``total`` episodes, of which ``stored`` are stored already."""
 
     def expect(self, loads: Iterable[Load]) -> None:
-        """These tasks will be run; unless told, the time left follows from the episodes alone."""
+        """Announce all tasks; without it, the remaining time is estimated from episodes only."""
 
     def start(self, worker: Hashable, load: Load) -> None:
-        """A worker begins a task."""
+        """Record that a worker begins a task."""
 
     def finish(self, worker: Hashable) -> None:
-        """Its task is done."""
+        """Record that the task of a worker is finished."""
 
     def drop(self, worker: Hashable) -> None:
-        """The worker is gone, and its task is to be run again."""
+        """Record that a worker ended early: its task will run again."""
 
     def advance(self, episodes: int) -> None:
-        """So many more episodes are finished."""
+        """Add newly finished ``episodes``; a negative number takes failed ones back."""
 
     def end(self) -> None:
-        """No more will come."""
+        """End the display."""
 
 
 class _Shown(Progress):
-    """Counts, and estimates the time that is left."""
+    """Counts episodes, and estimates the remaining time."""
 
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
@@ -65,7 +65,7 @@ class _Shown(Progress):
         self._done += episodes
 
     def left(self) -> str:
-        """``about 40 s left``, or that this is not known yet."""
+        """Return a text like ``about 40 s left``, or `UNKNOWN`."""
         if self._by_load:
             seconds = self._estimate.left()
         else:
@@ -76,7 +76,7 @@ class _Shown(Progress):
 
 
 class Bar(_Shown):
-    """A bar with the time that has passed and that is left."""
+    """A bar with the elapsed and the remaining time."""
 
     def begin(self, total: int, stored: int) -> None:
         from rich.console import Console
@@ -94,7 +94,7 @@ class Bar(_Shown):
         left = self.left
 
         class Left(ProgressColumn):
-            """The time that is left."""
+            """The column of the remaining time."""
 
             max_refresh = 1.0
 
@@ -117,19 +117,19 @@ class Bar(_Shown):
 
 
 class Lines(_Shown):
-    """A line at every tenth of the work, and no more often than every two seconds."""
+    """Prints a line after each tenth of the episodes, at most every two seconds."""
 
     def begin(self, total: int, stored: int) -> None:
         super().begin(total, stored)
-        self._said = self._began
+        self._reported = self._began
         self._tenth = 10 * stored // total if total else 10
 
     def advance(self, episodes: int) -> None:
         super().advance(episodes)
         now, tenth = self._clock(), 10 * self._done // self._total
-        if tenth == self._tenth or (now - self._said < 2.0 and self._done < self._total):
+        if tenth == self._tenth or (now - self._reported < 2.0 and self._done < self._total):
             return
-        self._tenth, self._said = tenth, now
+        self._tenth, self._reported = tenth, now
         text = f"{self._done} of {counted(self._total, 'episode')}"
         if self._done < self._total:
             text += f", {self.left()}"
@@ -138,7 +138,7 @@ class Lines(_Shown):
 
 
 def progress(quiet: bool) -> Progress:
-    """The kind that fits where stderr goes."""
+    """Return the display for stderr: a bar on a terminal, lines elsewhere, none if ``quiet``."""
     if quiet:
         return Progress()
     return Bar() if sys.stderr.isatty() else Lines()

@@ -1,4 +1,4 @@
-"""Stored episodes measured again, with metrics of plugins in processes of their own."""
+"""The remeasurement of stored episodes, with metrics of plugins in separate processes."""
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -28,16 +28,16 @@ from benchnav.store.parts.results import RESULTS
 from benchnav.store.runs.reading import episodes_of, in_every_track
 from benchnav.store.runs.run_folder import RunFolder
 
-_BATCH = 128  # episodes of a question
-_TIMEOUT = 120.0  # [s] for them
+_BATCH = 128  # episodes per request
+_TIMEOUT = 120.0  # [s] per request
 _VALUES = TypeAdapter(list[tuple[float, int, str]])  # value, defined, missing
 _Row = dict[str, Any]
 
 
 def recomputed(run: RunFolder, metrics: Sequence[Metric]) -> pa.Table:
-    """Return the same as `measured_of`; no code of a plugin runs in this process.
+    """Return the same table as `measured_of`, with metrics of plugins in other processes.
 
-    A metric that is registered in this process alone is measured in it.
+    A metric that is registered only in this process runs in this process.
     """
     here = [metric for metric in metrics if METRICS.is_local(metric.name) or is_own(metric.name)]
     away = [metric.name for metric in metrics if metric not in here]
@@ -72,7 +72,7 @@ def _batches(run: RunFolder) -> Iterator[list[Episode]]:
 
 
 def _rows(plugin: Plugin, answer: Any, like: Sequence[_Row]) -> list[_Row]:
-    """The rows of a metric; values are missing where its process gave none."""
+    """Return the rows of a metric; values are missing if its process failed."""
     missing = str(answer) if isinstance(answer, BenchnavError) else ""
     values: list[tuple[float, int, str]] = []
     if not missing:
@@ -94,7 +94,7 @@ def _rows(plugin: Plugin, answer: Any, like: Sequence[_Row]) -> list[_Row]:
 
 
 def tell_values(channel: Channel, notes: "memoryview[float]") -> None:
-    """Measure the episodes that the channel asks for. Of a process of its own."""
+    """Run as a separate process: measure the episodes that the channel requests."""
     kept: dict[str, Any] = {"next": 0}
 
     def values(question: Any, stepping: Stepping) -> list[tuple[float, int, str]]:

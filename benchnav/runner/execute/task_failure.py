@@ -17,7 +17,7 @@ class TaskFailure:
     error_text: str = ""
 
     def error(self) -> Exception:
-        """Return what is raised where no navigator caused the failure."""
+        """Return the exception to raise if no navigator caused the failure."""
         if self.error_name:
             return named(self.error_name, self.error_text)
         if self.error_text:

@@ -32,7 +32,7 @@ def serve(channel: Channel, notes: Notes) -> None:
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent handles Ctrl-C
     prepare_streams()
-    sys.stdout = message_stream(sys.stdout)  # what a navigator prints goes to stderr
+    sys.stdout = message_stream(sys.stdout)  # output of a navigator goes to stderr
     _prefer_to_be_killed()
     write_to(notes, getpid())
     check = SourceCheck()

@@ -1,4 +1,4 @@
-"""The navigators of a suite: who they are, as they say themselves."""
+"""The navigators of a suite, with the properties that they report."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -26,25 +26,25 @@ class Entry:
 
     label: str
     spec: Mapping[str, Any]  # {type: name, …every parameter}
-    source: str  # distributions and versions that it and its parts come from
+    source: str  # distributions and versions of the navigator and its parts
     required: frozenset[Need]
-    lacks: str = ""  # what is not installed that it needs to be made; "" if it can be
+    lacks: str = ""  # the missing extra that it needs; "" if none is missing
     training: Training | None = None
     fingerprint: str = ""  # of the files that it reads
     rehearsal: int = 0  # rehearsals before each episode
-    leader: "Entry | None" = None  # who drives the leaders in them
+    leader: "Entry | None" = None  # the navigator of the leaders in rehearsals
     uses_map: bool = True
-    unfit: Mapping[Sensing, str] = field(default_factory=dict)  # why it cannot sense so; "" if so
+    unfit: Mapping[Sensing, str] = field(default_factory=dict)  # why it cannot use these sensors
     mode: Mode = IN_PROCESS
-    places: tuple[str, ...] = ()  # module:attribute of its class and its parts', leader included
-    source_hash: str = ""  # of what stands there; "" where not known
-    edited: tuple[str, ...] = ()  # modules of it that this process imported before an edit
+    places: tuple[str, ...] = ()  # module:attribute of its class, its parts and its leader
+    source_hash: str = ""  # of the code at these places; "" if unknown
+    edited: tuple[str, ...] = ()  # its modules that were edited after this process imported them
 
     @property
     def hash(self) -> str:
-        """Of type, every parameter, distributions with versions, files that it read, and mode.
+        """Return a hash of type, parameters, distributions with versions, files read, and mode.
 
-        Code counts in `source_hash`, which changes without a new version.
+        It does not depend on code: see `source_hash`.
         """
         led = self.leader.hash if self.leader else ""
         return navigator_hash(self.spec, self.source, self.fingerprint, led, self.mode)
@@ -52,33 +52,33 @@ class Entry:
 
 @dataclass(frozen=True)
 class Meeting:
-    """Asks navigators who they are, each in a process of its own.
+    """Asks navigators for their properties, each in a separate process.
 
-    Those that this process alone knows are asked in it.
+    Navigators that only this process knows are constructed in this process.
     """
 
     sensings: tuple[Sensing, ...]
     isolate: bool
     timeout: float = Limits.timeout  # [s] that a call of a navigator may last
-    here: bool = False  # ask all in this process, which is about to run them
+    here: bool = False  # whether to construct all in this process, which will run them
 
     def entry(self, spec: Spec, where: str) -> Entry:
-        """The entry that ``spec`` describes, as it stands at ``where``."""
+        """Return the entry that ``spec`` describes; ``where`` is its place, for messages."""
         return self.entries([(spec, where)])[0]
 
     def entries(self, wanted: Sequence[tuple[Spec, str]]) -> tuple[Entry, ...]:
-        """The entries that specs describe, each with what it stands at; asked side by side."""
-        asked = [(_without_label(spec, where), where) for spec, where in wanted]
-        met = self._introductions(asked)
+        """Return the entries of (spec, place for messages) pairs; navigators run in parallel."""
+        specs = [(_without_label(spec, where), where) for spec, where in wanted]
+        met = self._introductions(specs)
         return tuple(
             self._entry(label_of(spec), met[k], where) for k, (spec, where) in enumerate(wanted)
         )
 
-    def _introductions(self, asked: Sequence[tuple[Spec, str]]) -> dict[int, Introduction]:
-        """By place; raises for the first that cannot be used."""
+    def _introductions(self, specs: Sequence[tuple[Spec, str]]) -> dict[int, Introduction]:
+        """Return the properties by index. Raises for the first navigator that cannot be used."""
         found: dict[int, Introduction | BenchnavError] = {}
         away = []
-        for k, (spec, where) in enumerate(asked):
+        for k, (spec, where) in enumerate(specs):
             name, parameters = split(NAVIGATORS, spec, where=where)
             if self.isolate and name != PROCESS:
                 found[k] = _isolated(spec, self.sensings, where)
@@ -86,51 +86,56 @@ class Meeting:
                 found[k] = introduction(spec, self.sensings, where=where)
             else:
                 away.append(k)
-        answers = introductions([asked[k] for k in away], self.sensings, self.timeout)
+        answers = introductions([specs[k] for k in away], self.sensings, self.timeout)
         found.update(zip(away, answers, strict=True))
         met = {}
-        for k in range(len(asked)):
-            said = found[k]
-            if isinstance(said, NavigatorError):  # of the program of a process
-                raise _broken(*asked[k], said)
-            if isinstance(said, BenchnavError):
-                raise said
-            met[k] = said
+        for k in range(len(specs)):
+            reported = found[k]
+            if isinstance(reported, NavigatorError):  # raised by the program of a process
+                raise _broken(*specs[k], reported)
+            if isinstance(reported, BenchnavError):
+                raise reported
+            met[k] = reported
         return met
 
-    def _entry(self, label: str, said: Introduction, where: str) -> Entry:
-        led = self._leader(said, where)
-        places = tuple(sorted({*places_of(said.spec, said.parts), *(led.places if led else ())}))
-        program = said.spec["type"] == PROCESS
-        alone = self.isolate or (program and (led is None or led.mode == ISOLATED))
+    def _entry(self, label: str, reported: Introduction, where: str) -> Entry:
+        led = self._leader(reported, where)
+        places = tuple(
+            sorted({*places_of(reported.spec, reported.parts), *(led.places if led else ())})
+        )
+        program = reported.spec["type"] == PROCESS
+        separate = self.isolate or (program and (led is None or led.mode == ISOLATED))
         entry = Entry(
-            label, said.spec, ", ".join(said.made_of), said.needs, said.lacks,
-            training=said.training or (led.training if led else None),
-            fingerprint=said.fingerprint, rehearsal=said.rehearsal, leader=led,
-            unfit=dict(zip(self.sensings, said.unfit, strict=False)),
-            uses_map=said.uses_map, mode=ISOLATED if alone else IN_PROCESS, places=places,
+            label, reported.spec, ", ".join(reported.made_of), reported.needs, reported.lacks,
+            training=reported.training or (led.training if led else None),
+            fingerprint=reported.fingerprint, rehearsal=reported.rehearsal, leader=led,
+            unfit=dict(zip(self.sensings, reported.unfit, strict=False)),
+            uses_map=reported.uses_map, mode=ISOLATED if separate else IN_PROCESS, places=places,
         )  # fmt: skip
         if entry.lacks:
             return entry
         source = source_of(entry)
         return replace(entry, source_hash=source.hash, edited=source.edited)
 
-    def _leader(self, said: Introduction, where: str) -> Entry | None:
-        """Who leads in the rehearsals that a navigator asks for; None where it asks for none."""
-        if not said.rehearsal:
+    def _leader(self, reported: Introduction, where: str) -> Entry | None:
+        """Return the leaders' navigator in rehearsals; None if there are none."""
+        if not reported.rehearsal:
             return None
-        if said.leader is None:
-            raise ScenarioError(f"{where}: who asks for rehearsals must name who leads in them.")
-        led = self.entry(said.leader, f"{where} leader")
+        if reported.leader is None:
+            raise ScenarioError(
+                f"{where}: A navigator that asks for rehearsals must name the leaders' navigator."
+            )
+        led = self.entry(reported.leader, f"{where} leader")
         if led.rehearsal:
             raise ScenarioError(
-                f"{where}: who leads in rehearsals must need none itself. Got {led.label!r}."
+                f"{where}: The leaders' navigator must not ask for rehearsals itself."
+                f" Got {led.label!r}."
             )
         return led
 
 
 def _without_label(spec: Spec, where: str) -> Spec:
-    """``spec`` as the navigator is made of it. Raises ScenarioError for a label that is none."""
+    """Return ``spec`` without its label. Raises ScenarioError if the label is invalid."""
     if isinstance(spec, str):
         return spec
     label = label_of(spec)
@@ -151,20 +156,20 @@ def _broken(spec: Spec, where: str, error: NavigatorError) -> BrokenPluginError:
 
 
 def source_of(entry: Entry) -> FoundSource:
-    """Return the source that ``entry`` is made of here, now."""
+    """Return the current source of ``entry`` on this machine."""
     specs = [entry.spec, *([entry.leader.spec] if entry.leader else [])]
     return find_source(entry.places, specs)
 
 
 def label_of(spec: Spec) -> str:
-    """What tables call the navigator of ``spec``."""
+    """Return the label of the navigator of ``spec`` in tables."""
     if isinstance(spec, str):
         return spec
     return str(spec.get("label", spec.get("type", "")))
 
 
 def sources_of(entries: Iterable[Entry]) -> dict[str, dict[str, Any]]:
-    """Return the source of each navigator that can be made here, by label, for the manifest."""
+    """Return the source of each navigator whose source is known, by label, for the manifest."""
     return {
         entry.label: {"hash": entry.source_hash, "places": list(entry.places)}
         for entry in entries
@@ -173,18 +178,18 @@ def sources_of(entries: Iterable[Entry]) -> dict[str, dict[str, Any]]:
 
 
 def resolved(entry: Entry) -> dict[str, Any]:
-    """All that it stands for, for the manifest."""
-    said: dict[str, Any] = {
+    """Return all properties of an entry, for the manifest."""
+    fields: dict[str, Any] = {
         "label": entry.label, "says": dict(entry.spec), "source": entry.source,
     }  # fmt: skip
     if entry.mode != IN_PROCESS:
-        said["mode"] = entry.mode
+        fields["mode"] = entry.mode
     if entry.leader:
-        said["rehearsal"], said["leader"] = entry.rehearsal, resolved(entry.leader)
+        fields["rehearsal"], fields["leader"] = entry.rehearsal, resolved(entry.leader)
     if entry.training:
-        said["training"] = asdict(entry.training)
+        fields["training"] = asdict(entry.training)
     if not entry.uses_map:
-        said["uses_map"] = False
+        fields["uses_map"] = False
     if entry.fingerprint:
-        said["fingerprint"] = entry.fingerprint
-    return said
+        fields["fingerprint"] = entry.fingerprint
+    return fields

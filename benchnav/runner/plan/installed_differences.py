@@ -1,8 +1,7 @@
-"""Where a run is not what its names say to a reader: compared with what is installed here.
+"""Differences between a run and the installed scenarios, navigators and suites of the same names.
 
-Whether a run is verified and whether it ran the well-known world or suite are two
-questions. A run of an easy world under the name of a hard one may be verified, and then
-says so beside its numbers.
+Verification does not cover this: a run of an easy world under the name of a hard one can be
+verified, and a caveat is then shown beside its numbers.
 """
 
 from collections.abc import Iterator, Mapping
@@ -27,7 +26,7 @@ _LONG = 80  # characters of a name
 
 @dataclass(frozen=True, order=True)
 class Caveat:
-    """A sentence, and the records that it is about."""
+    """A sentence, and the records that it applies to."""
 
     text: str
     scenario: str = ""  # identity; "" for every scenario
@@ -35,7 +34,7 @@ class Caveat:
 
 
 def caveats_of(manifest: Manifest) -> list[Caveat]:
-    """Return every way in which the suite of a run differs from what has its names here."""
+    """Return the differences between the suite of a run and the installed one of that name."""
     suite = manifest.suite
     found: list[Caveat] = []
     for entry in suite.get("scenarios", ()):
@@ -96,7 +95,7 @@ def _of_navigator(entry: Mapping[str, Any]) -> Iterator[Caveat]:
 
 
 def _of_suite(manifest: Manifest) -> Iterator[Caveat]:
-    """One sentence where a run has the name of a suite that ships, and is not that suite."""
+    """Yield one caveat if a run has the name of an installed suite but differs from it."""
     name = str(manifest.suite.get("name"))
     if name not in suite_names():
         return
@@ -124,7 +123,7 @@ def _numbers(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
 
 
 def _members(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
-    """Scenarios, tracks and navigators that are not all that the suite has, or not of it."""
+    """Yield the scenarios, tracks and navigators that are missing, added or changed."""
     suite = manifest.suite
     own = {label_of(spec): spec for spec in here.navigators}
     entries = {str(e["label"]): e["says"] for e in suite.get("navigators", ())}
@@ -148,12 +147,14 @@ def _members(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
         yield "other combinations of them"
 
 
-def _fits(spec: Any, says: Mapping[str, Any]) -> bool:
-    """Whether a navigator has what the suite's file gives it; defaults are not known here."""
+def _fits(spec: Any, config: Mapping[str, Any]) -> bool:
+    """Whether a navigator has the parameters in the suite file; defaults are not compared."""
     given = {"type": spec} if isinstance(spec, str) else dict(spec)
     given.pop("label", None)
     return all(
-        _fits(value, says[key]) if isinstance(says.get(key), Mapping) else says.get(key) == value
+        _fits(value, config[key])
+        if isinstance(config.get(key), Mapping)
+        else config.get(key) == value
         for key, value in given.items()
     )
 
@@ -163,7 +164,7 @@ def _bare(identity: str) -> str:
 
 
 def _named(name: str) -> str:
-    """A scenario without its version, with its parameters."""
+    """Return the name of a scenario without its version, with its parameters."""
     base, _, parameters = name.partition(":")
     return base.partition("@")[0] + (f":{parameters}" if parameters else "")
 

@@ -26,11 +26,11 @@ class Cell:
     split: str
     track: str
     entry: Entry
-    also: tuple[str, ...] = ()  # tracks for which it stands too: no map changes anything
+    also: tuple[str, ...] = ()  # other tracks with the same episodes, as no map is used
 
     @property
     def assignment(self) -> Assignment:
-        """Who runs where."""
+        """The navigator, the scenario and the track."""
         scenario, entry = self.scenario, self.entry
         return Assignment(
             scenario.identity, scenario.hash, self.split, self.track, entry.label, entry.spec,
@@ -42,13 +42,13 @@ class Cell:
 
     @property
     def places(self) -> tuple[str, ...]:
-        """Places, module:attribute, of the classes of all navigators in it, and of their parts."""
+        """The places, module:attribute, of the classes of all its navigators and their parts."""
         others = (place for spec in self.scenario.driver_specs for place in places_of(_full(spec)))
         return (*self.entry.places, *others)
 
     @property
     def once(self) -> bool:
-        """True where the same episodes stand for every track that the scenario has."""
+        """Whether all tracks of the scenario have the same episodes."""
         return not self.entry.uses_map and self.track in self.scenario.granted_tracks
 
     @property
@@ -58,17 +58,17 @@ class Cell:
 
     @property
     def key(self) -> str:
-        """Name of its folder: readable, and with a hash of all that makes it what it is."""
+        """The name of its folder: readable, with a hash of its scenario, track and navigator."""
         a = self.assignment
-        said = json.dumps(
+        text = json.dumps(
             [a.scenario, a.scenario_hash, a.split, a.track, a.label, dict(self.entry.spec)]
         )
         parts = (_slug(a.scenario), a.track, _slug(a.label))
-        return ".".join(parts) + "." + hashlib.sha256(said.encode()).hexdigest()[:10]
+        return ".".join(parts) + "." + hashlib.sha256(text.encode()).hexdigest()[:10]
 
     @property
     def reason(self) -> str:
-        """Why it is n/a; "" where it can be run."""
+        """The reason why it is n/a; "" if it can run."""
         if self.entry.lacks:
             return self.entry.lacks
         if self.track not in self.scenario.granted_tracks:
@@ -81,14 +81,14 @@ class Cell:
         return f"its leaders' {led.label} {why}" if why else ""
 
     def _unfit(self, entry: Entry) -> str:
-        """Why a navigator cannot work with what the track and the sensors give."""
+        """Return why a navigator cannot use the map and the sensors; "" if it can."""
         if Need.MAP in entry.required and self.track == "unknown":
             return "needs a map"
         return entry.unfit.get(sensing_of(self.scenario), "")
 
     @property
     def effort(self) -> float:
-        """How long its episodes are likely to take, to begin the longest first."""
+        """The expected relative duration of an episode; the longest tasks start first."""
         agents = sum(support(team.count)[1] for team in self.scenario.teams)
         planning = 4.0 if Need.MAP in self.entry.required else 1.0
         effort = agents * self.scenario.clock.steps * planning
@@ -99,7 +99,7 @@ class Cell:
 
     @property
     def _led(self) -> float:
-        """How many agents rehearse, at most: leaders, or one of a team without a leader."""
+        """The largest number of rehearsing agents: leaders, or one of a team without a leader."""
         counts: dict[str, list[float]] = {}
         for team in self.scenario.teams:
             most = support(team.count)[1]

@@ -1,4 +1,4 @@
-"""The labels of navigators that are listed without one."""
+"""The labels of navigators for which the user gave none."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -13,9 +13,9 @@ LONGEST = 60  # characters of a label that lists parameters
 def labelled(specs: Sequence[Spec]) -> tuple[Spec, ...]:
     """Return the specs with a label for each that shares its name with another.
 
-    The label tells what differs: ``orca(time_horizon=3)``, or counts, ``orca#2``, where that
-    would be long. Labels that the user gave and names that occur once stay as they are. Specs
-    that are the same get the same label.
+    The label lists the parameters that differ, as in ``orca(time_horizon=3)``, or is a number, as
+    in ``orca#2``, if the list would be long. Labels of the user and names that occur once do not
+    change. Equal specs get the same label.
     """
     found = list(specs)
     for name in dict.fromkeys(map(label_of, specs)):

@@ -1,4 +1,4 @@
-"""What a navigator may take before its worker is stopped."""
+"""The limits of a navigator, beyond which its worker is stopped."""
 
 import math
 from collections.abc import Mapping
@@ -10,13 +10,13 @@ LARGEST = 1e6  # [GB]
 
 @dataclass(frozen=True)
 class Limits:
-    """Beyond them an episode fails: they have a say in results, and stand in the manifest.
+    """An episode fails if it exceeds them. They affect results, so the manifest stores them.
 
-    Raises ValueError where a limit is not positive and finite.
+    Raises ValueError if a limit is not positive and finite.
     """
 
     timeout: float = 300.0  # [s] of wall clock that one call of a navigator may last
-    memory: float = 4.0  # [GB] that a worker and what it started may hold in RAM
+    memory: float = 4.0  # [GB] that a worker and its child processes may hold in RAM
 
     def __post_init__(self) -> None:
         for name, most in (("timeout", LONGEST), ("memory", LARGEST)):
@@ -24,16 +24,17 @@ class Limits:
             if not (math.isfinite(value) and 0.0 < value <= most):
                 raise ValueError(f"{name} must be above 0 and at most {most:g}; got {value:g}")
 
-    def said(self) -> dict[str, float]:
-        """For the manifest."""
+    def fields(self) -> dict[str, float]:
+        """Return the fields of the manifest."""
         return {"timeout_seconds": self.timeout, "memory_gigabytes": self.memory}
 
     @classmethod
-    def of(cls, said: Mapping[str, float]) -> "Limits":
-        """What a manifest says; runs of before there were limits say nothing."""
+    def of(cls, fields: Mapping[str, float]) -> "Limits":
+        """Return the limits in a manifest; older runs have none, and get the defaults."""
         usual = cls()
         return cls(
-            said.get("timeout_seconds", usual.timeout), said.get("memory_gigabytes", usual.memory)
+            fields.get("timeout_seconds", usual.timeout),
+            fields.get("memory_gigabytes", usual.memory),
         )
 
     def __str__(self) -> str:
@@ -41,7 +42,7 @@ class Limits:
 
 
 def patience(timeout: float | None) -> float:
-    """[s] for a call of a navigator that is asked who it is, before the limits are checked."""
+    """Return the time limit [s] for a navigator that reports its properties."""
     try:
         return Limits().timeout if timeout is None else Limits(timeout=timeout).timeout
     except ValueError:

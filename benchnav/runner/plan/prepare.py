@@ -1,4 +1,4 @@
-"""What a run begins with: its manifest, in a folder that is new or was begun alike."""
+"""The start of a run: its manifest, in a new folder or in one of an equal run."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -20,7 +20,7 @@ from benchnav.store.runs.spans import spans
 
 
 def refuse_limits(workers: int | None, timeout: float | None, memory: float | None) -> None:
-    """Raise UsageError where they cannot be kept on this machine."""
+    """Raise UsageError if a limit cannot be enforced on this machine."""
     if workers == 0 and (timeout, memory) != (None, None):
         raise UsageError(
             "A limit must have a worker process to hold in. Got --workers 0, which has none."
@@ -34,13 +34,13 @@ def refuse_limits(workers: int | None, timeout: float | None, memory: float | No
 def planned(
     suite: Suite, cells: list[Cell], wanted: Mapping[str, set[int]], shard: Shard | None
 ) -> Manifest:
-    """The manifest of a new run of the seeds ``wanted`` of each cell, still without limits."""
-    said: list[dict[str, Any]] = [_said(cell) for cell in cells]
+    """Return the manifest of a new run of the seeds ``wanted`` of each cell, without limits."""
+    stored_cells: list[dict[str, Any]] = [_cell_fields(cell) for cell in cells]
     if shard is not None:
-        for cell in said:
+        for cell in stored_cells:
             cell["seeds"] = spans(wanted.get(cell["key"], ()))
     return Manifest(
-        suite.resolved(), tuple(said), suite.salt or draw_salt(), shard=str(shard or ""),
+        suite.resolved(), tuple(stored_cells), suite.salt or draw_salt(), shard=str(shard or ""),
         sources=sources_of(suite.entries), provenance=provenance(),
     )  # fmt: skip
 
@@ -48,18 +48,19 @@ def planned(
 def start(
     suite: Suite, out: Path, manifest: Manifest, timeout: float | None, memory: float | None
 ) -> tuple[RunFolder, Limits]:
-    """The run folder, new or found, and the limits that hold in it.
+    """Return the run folder, which is new or found, and its limits.
 
-    Raises UsageError for a limit that is none, and for a new shard without a salt;
-    RunConflictError where ``out`` was begun otherwise; StoreError where the disk refuses.
+    Raises UsageError for an invalid limit, and for a new shard without a salt; RunConflictError if
+    ``out`` holds a run with another shard, salt or limits; StoreError if the disk cannot be
+    written.
     """
     if manifest.shard and not suite.salt and not (out / MANIFEST).exists():
         raise UsageError(
             "A shard must have the salt of the others. Got none: give all the same --salt, of up"
-            " to 64 bytes in hexadecimal digits that nobody can guess (openssl rand -hex 16)."
+            " to 64 bytes in hexadecimal digits that cannot be guessed (openssl rand -hex 16)."
         )
-    asked = _limits(Limits(), timeout, memory)
-    folder = RunFolder.start(out, replace(manifest, limits=asked.said()))
+    wanted = _limits(Limits(), timeout, memory)
+    folder = RunFolder.start(out, replace(manifest, limits=wanted.fields()))
     if folder.manifest.shard != manifest.shard:
         raise RunConflictError(
             f"{out} must hold {_share(manifest)}. It holds {_share(folder.manifest)}."
@@ -95,7 +96,7 @@ def _limits(otherwise: Limits, timeout: float | None, memory: float | None) -> L
         raise UsageError(f"The limit {error}.") from None
 
 
-def _said(cell: Cell) -> dict[str, Any]:
+def _cell_fields(cell: Cell) -> dict[str, Any]:
     return {
         "key": cell.key,
         "scenario": cell.scenario.identity,

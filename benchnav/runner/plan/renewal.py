@@ -1,4 +1,4 @@
-"""Episodes that older code made: found, kept, and replaced once all of them were run again."""
+"""The episodes of older code, which are kept until all of their navigator have run again."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -10,34 +10,34 @@ from benchnav.store.runs.run_folder import RunFolder
 
 @dataclass(frozen=True)
 class Renewal:
-    """What is to be replaced in a run.
+    """The episodes to be replaced in a run.
 
-    The new episodes stand in folders of their own, which no reader sees before `finish`
-    has the manifest name them. So a run that is stopped on the way holds the old ones, whole.
+    New episodes are written to separate folders, which no reader sees before `finish` names
+    them in the manifest. A run that is stopped before keeps all old episodes.
     """
 
-    asked: Manifest  # of the suite with the code that is installed now
-    older: Mapping[str, int]  # label → stored episodes that other code made
+    planned: Manifest  # of the suite with the code that is installed now
+    older: Mapping[str, int]  # label → number of stored episodes of other code
 
     @classmethod
-    def of(cls, folder: RunFolder, asked: Manifest) -> "Renewal":
-        """Return what ``asked`` finds in ``folder`` that was made by other code."""
+    def of(cls, folder: RunFolder, planned: Manifest) -> "Renewal":
+        """Return the episodes in ``folder`` of code other than that in ``planned``."""
         held, older = folder.manifest, {}
-        for label in asked.sources:
-            same = held.source_of(label) == asked.source_of(label)
-            if not same or held.files_of(label) != asked.files_of(label):
+        for label in planned.sources:
+            same = held.source_of(label) == planned.source_of(label)
+            if not same or held.files_of(label) != planned.files_of(label):
                 older[label] = sum(
                     len(folder.done(c["key"])) for c in held.cells if c["navigator"] == label
                 )
-        return cls(asked, older)
+        return cls(planned, older)
 
     @property
     def episodes(self) -> int:
-        """How many stored episodes other code made."""
+        """The number of stored episodes of other code."""
         return sum(self.older.values())
 
     def refuse(self, folder: RunFolder) -> None:
-        """Raise RunConflictError where there are episodes of other code."""
+        """Raise RunConflictError if there are episodes of other code."""
         if not self.episodes:
             return
         labels = [label for label, count in self.older.items() if count]
@@ -52,24 +52,24 @@ class Renewal:
         )
 
     def target(self, folder: RunFolder) -> RunFolder:
-        """Return the folder as it is to be when `finish` is done; nothing is written."""
-        renewed = folder.manifest.with_sources_of(self.asked, self.older)
+        """Return the folder as it will be after `finish`; nothing is written."""
+        renewed = folder.manifest.with_sources_of(self.planned, self.older)
         return RunFolder(folder.path, renewed if self.older else folder.manifest)
 
     def begin(self, folder: RunFolder) -> RunFolder:
-        """Take over the code of labels that have no episodes; return the folder that holds now."""
+        """Store the new sources of labels without episodes. Return the resulting folder."""
         fresh = [label for label, count in self.older.items() if not count]
         if not fresh:
             return folder
-        return RunFolder(folder.path, folder.manifest.with_sources_of(self.asked, fresh)).kept()
+        return RunFolder(folder.path, folder.manifest.with_sources_of(self.planned, fresh)).kept()
 
     def finish(self, folder: RunFolder) -> dict[str, int]:
-        """Replace the episodes of every label that was run again whole: label → how many."""
+        """Replace the episodes of each label with no missing new ones. Return label → count."""
         target = self.target(folder)
-        lacking = {label for key, _ in target.missing() for label in [target.label_of(key)]}
-        done = {label: n for label, n in self.older.items() if n and label not in lacking}
+        incomplete = {target.label_of(key) for key, _ in target.missing()}
+        done = {label: n for label, n in self.older.items() if n and label not in incomplete}
         if done:
-            manifest = folder.manifest.with_sources_of(self.asked, done)
+            manifest = folder.manifest.with_sources_of(self.planned, done)
             folder = RunFolder(folder.path, manifest).kept()
             folder.drop_others(target)
         return done

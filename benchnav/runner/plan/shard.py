@@ -1,4 +1,4 @@
-"""One of n shares of a plan, the same whoever computes it: n runs that merge into one."""
+"""One of n shares of a plan: n runs that can be merged into one. The shares are deterministic."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -21,7 +21,7 @@ class Shard:
 
     @classmethod
     def parse(cls, text: str) -> "Shard":
-        """``"2/4"``. Raises ValueError with the rule, and what came instead."""
+        """Return the shard of ``"2/4"``. Raises ValueError with the rule and the text."""
         found = _FORM.fullmatch(text)
         shard = cls(int(found[1]), int(found[2])) if found else cls(0, 0)
         if not 1 <= shard.index <= shard.count <= MOST:
@@ -32,9 +32,10 @@ class Shard:
         return f"{self.index}/{self.count}"
 
     def seeds(self, cells: Iterable[Cell], seeds: Sequence[int]) -> dict[str, set[int]]:
-        """What it runs of each cell, by key: whole tasks, the longest given first to who has least.
+        """Return the seeds of this share for each cell, by key.
 
-        Cells that are n/a are nobody's work.
+        Whole tasks are assigned, the longest first, to the share with the least work. Cells that
+        are n/a are left out.
         """
         tasks = [
             (cell.effort * (stop - first), cell.key, first, stop)

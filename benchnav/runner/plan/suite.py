@@ -27,19 +27,19 @@ from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.terms import TRACKS
 from benchnav.store.runs.scenario_files import sha256_of
 
-FIRST_LOOK = "quick"  # the suite that lends its navigators, tracks and seeds to a scenario alone
+FIRST_LOOK = "quick"  # the suite whose navigators, tracks and seeds a single scenario gets
 
 
 @dataclass(frozen=True)
 class Selection:
-    """What is run instead of the suite's own; an empty value means the suite's own."""
+    """Replacements for parts of the suite; an empty value keeps the suite's own."""
 
     scenarios: tuple[str, ...] = ()
     tracks: tuple[str, ...] = ()
     navigators: tuple[Spec, ...] = ()  # labels of the suite's own, or specs, also as YAML text
     seeds: str = ""
     salt: str = ""  # in hexadecimal digits; empty: the run draws one
-    isolate: bool = False  # every evaluated navigator in a process of its own
+    isolate: bool = False  # whether each evaluated navigator runs in its own process
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Block:
 
 @dataclass(frozen=True)
 class Suite:
-    """What to run."""
+    """Scenarios, tracks, navigators and seeds to run."""
 
     name: str
     version: int
@@ -70,12 +70,12 @@ class Suite:
     tracks: tuple[str, ...]
     entries: tuple[Entry, ...]
     salt: str = ""  # of navigators' randomness; empty: each new run draws its own
-    blocks: tuple[Block, ...] = ()  # parts of the product that are run; none: all of it
+    blocks: tuple[Block, ...] = ()  # the parts of the product to run; empty: all of it
 
     def cells(self) -> Iterator[Cell]:
-        """Every cell, n/a ones included: by scenario, track, navigator.
+        """Yield all cells, also n/a ones, by scenario, track and navigator.
 
-        Who uses no map runs once, in the last of a scenario's tracks, for all of them.
+        A navigator that uses no map runs once for all tracks, in the last track of a scenario.
         """
         whole = [
             cell
@@ -84,12 +84,12 @@ class Suite:
             for entry in self.entries
             if (cell := Cell(scenario, self.split, track, entry)) in self
         ]
-        stands: dict[tuple[str, str], list[str]] = {}
+        shared: dict[tuple[str, str], list[str]] = {}  # tracks with the same episodes
         for cell in whole:
             if cell.once:
-                stands.setdefault(cell.contest, []).append(cell.track)
+                shared.setdefault(cell.contest, []).append(cell.track)
         for cell in whole:
-            tracks = stands[cell.contest] if cell.once else [cell.track]
+            tracks = shared[cell.contest] if cell.once else [cell.track]
             if cell.track == tracks[-1]:
                 yield replace(cell, also=tuple(tracks[:-1]))
 
@@ -97,7 +97,7 @@ class Suite:
         return not self.blocks or any(cell in block for block in self.blocks)
 
     def resolved(self) -> dict[str, Any]:
-        """Everything but the salt that has a say in the results, as plain data for the manifest."""
+        """Return all that affects results except the salt, as plain data for the manifest."""
         return {
             "name": self.name,
             "version": self.version,
@@ -124,8 +124,8 @@ def load_suite(
     """Return the suite of this name, file or content, with the selection applied.
 
     The name or file of a scenario gives a suite of that scenario: its navigators, tracks and
-    seeds are those of the suite `FIRST_LOOK` where nothing is selected. Navigators are asked
-    who they are in processes of their own, in which a call may last ``timeout`` [s].
+    seeds are those of the suite `FIRST_LOOK` unless others are selected. Navigators report their
+    properties in separate processes, in which a call may last ``timeout`` [s].
 
     Raises:
         UsageError: no such suite, track, seeds or salt; a label or scenario twice.
@@ -145,13 +145,13 @@ def load_suite(
 def _selected(
     document: Document, folder: Path, selection: Selection, timeout: float | None
 ) -> Suite:
-    """The suite that ``document`` describes, whose scenarios lie in ``folder``."""
-    said = validate(SuiteFile, document)
-    wanted = _wanted_navigators(said, selection.navigators)
+    """Return the suite that ``document`` describes; paths of scenarios start at ``folder``."""
+    file = validate(SuiteFile, document)
+    wanted = _wanted_navigators(file, selection.navigators)
     if selection.scenarios:
         scenarios = tuple(find(name) for name in selection.scenarios)
     else:
-        scenarios = tuple(find(name, folder) for name in said.scenarios)
+        scenarios = tuple(find(name, folder) for name in file.scenarios)
     check_drivers(*scenarios, timeout=patience(timeout))
     meeting = Meeting(
         tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate, patience(timeout)
@@ -162,7 +162,7 @@ def _selected(
             for i, spec in wanted
         ]
     )
-    tracks = tuple(selection.tracks or said.tracks)
+    tracks = tuple(selection.tracks or file.tracks)
     _refuse_unknown_tracks(tracks)
     for key, names, selected in (
         ("scenarios", [s.identity for s in scenarios], selection.scenarios),
@@ -170,14 +170,14 @@ def _selected(
         ("navigators", [e.label for e in entries], selection.navigators),
     ):
         _refuse_twice(key, names, selected, document)
-    seeds = _seeds(selection.seeds or str(said.seeds))
+    seeds = _seeds(selection.seeds or str(file.seeds))
     salt = _salt(selection.salt)
-    suite = Suite(said.name, said.version, said.split, seeds, scenarios, tracks, entries, salt)
-    return replace(suite, blocks=_blocks(said, suite, document, folder)) if said.blocks else suite
+    suite = Suite(file.name, file.version, file.split, seeds, scenarios, tracks, entries, salt)
+    return replace(suite, blocks=_blocks(file, suite, document, folder)) if file.blocks else suite
 
 
 def _suite_of_one(name: str, selection: Selection, timeout: float | None) -> Suite:
-    """Return a suite of the scenario called ``name``, and of those that are selected with it."""
+    """Return a suite of the scenario ``name`` and of the scenarios of the selection."""
     chosen = replace(selection, scenarios=(name, *selection.scenarios))
     suite = load_suite(FIRST_LOOK, chosen, timeout=timeout)
     scenario = suite.scenarios[0]
@@ -185,20 +185,20 @@ def _suite_of_one(name: str, selection: Selection, timeout: float | None) -> Sui
     return replace(suite, name=called or "scenario", version=scenario.version, blocks=())
 
 
-def _blocks(said: SuiteFile, suite: Suite, document: Document, folder: Path) -> tuple[Block, ...]:
-    """The file's blocks; what was selected and is not in the file belongs to each of them."""
-    identities = {name: find(name, folder).identity for name in said.scenarios}
-    labels = tuple(map(label_of, labelled(said.navigators)))
+def _blocks(file: SuiteFile, suite: Suite, document: Document, folder: Path) -> tuple[Block, ...]:
+    """Return the blocks of the file; selected names that the file does not have join each one."""
+    identities = {name: find(name, folder).identity for name in file.scenarios}
+    labels = tuple(map(label_of, labelled(file.navigators)))
     added = (
         tuple(s.identity for s in suite.scenarios if s.identity not in identities.values()),
-        tuple(track for track in suite.tracks if track not in said.tracks),
+        tuple(track for track in suite.tracks if track not in file.tracks),
         tuple(entry.label for entry in suite.entries if entry.label not in labels),
     )
     blocks = []
-    for i, block in enumerate(said.blocks):
+    for i, block in enumerate(file.blocks):
         at = f"{document.name}: blocks[{i}]"
-        scenarios = _known(block.scenarios, said.scenarios, f"{at}.scenarios")
-        tracks = _known(block.tracks, said.tracks, f"{at}.tracks")
+        scenarios = _known(block.scenarios, file.scenarios, f"{at}.scenarios")
+        tracks = _known(block.tracks, file.tracks, f"{at}.tracks")
         navigators = _known(block.navigators, labels, f"{at}.navigators")
         blocks.append(
             Block(
@@ -211,7 +211,7 @@ def _blocks(said: SuiteFile, suite: Suite, document: Document, folder: Path) -> 
 
 
 def _known(chosen: tuple[str, ...] | None, own: tuple[str, ...], where: str) -> tuple[str, ...]:
-    """What a block takes of the suite's own. Raises ScenarioError where that has it not."""
+    """Return the part of the suite that a block uses. Raises ScenarioError for unknown names."""
     for name in chosen or ():
         if name not in own:
             raise ScenarioError(
@@ -221,9 +221,9 @@ def _known(chosen: tuple[str, ...] | None, own: tuple[str, ...], where: str) -> 
     return own if chosen is None else chosen
 
 
-def _wanted_navigators(said: SuiteFile, selected: Sequence[Spec]) -> list[tuple[int | None, Spec]]:
-    """(place in the file or None, spec): labels select from the file, other specs are added."""
-    every = labelled(said.navigators)
+def _wanted_navigators(file: SuiteFile, selected: Sequence[Spec]) -> list[tuple[int | None, Spec]]:
+    """Return (index in the file or None, spec); labels select from the file, specs are added."""
+    every = labelled(file.navigators)
     own = {label_of(spec): (i, spec) for i, spec in enumerate(every)}
     if not selected:
         return list(enumerate(every))
@@ -236,7 +236,7 @@ def _wanted_navigators(said: SuiteFile, selected: Sequence[Spec]) -> list[tuple[
 
 
 def _parsed(text: str) -> Spec:
-    """A name, or ``{type: name, …}`` as it would stand in a file."""
+    """Return the spec that ``text`` describes: a name, or ``{type: name, …}`` as in a file."""
     if not text.lstrip().startswith("{"):
         return text
     data: Spec = read_yaml_text(text, "--navigator").data
@@ -271,7 +271,7 @@ def _refuse_unknown_tracks(tracks: Sequence[str]) -> None:
 def _refuse_twice(
     key: str, names: Sequence[str], selected: Sequence[Spec], document: Document
 ) -> None:
-    """Raise UsageError for a name that stands twice in the file, or among options if selected."""
+    """Raise UsageError for a name that occurs twice, in the file or among selected options."""
     for k, name in enumerate(names):
         first = names.index(name)
         if first == k:

@@ -1,4 +1,4 @@
-"""The suite file: what a YAML file that asks for a run may say."""
+"""The suite file: the YAML file that describes a run."""
 
 import re
 from pathlib import Path
@@ -23,16 +23,16 @@ Name = Annotated[str, Field(min_length=1, max_length=200)]
 
 
 class BlockFile(BaseModel):
-    """A part of the product; of what it does not name it takes all."""
+    """A part of the product; a key that is absent includes all of the suite."""
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     scenarios: tuple[Name, ...] | None = Field(
-        None, min_length=1, description="Of the suite's scenarios, as they are written there."
+        None, min_length=1, description="Some of the suite's scenarios, written as in the suite."
     )
-    tracks: tuple[Track, ...] | None = Field(None, min_length=1, description="Of its tracks.")
+    tracks: tuple[Track, ...] | None = Field(None, min_length=1, description="Some of its tracks.")
     navigators: tuple[Name, ...] | None = Field(
-        None, min_length=1, description="Of its navigators, by name or label."
+        None, min_length=1, description="Some of its navigators, by name or label."
     )
 
 
@@ -42,10 +42,12 @@ class SuiteFile(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=60)] = Field(
-        description="Of the suite: small letters, digits and hyphens."
+        description="Name of the suite: small letters, digits and hyphens."
     )
-    version: int = Field(1, ge=1, description="Rises when the suite's results change meaning.")
-    description: str = Field("", description="What the suite is for.")
+    version: int = Field(
+        1, ge=1, description="Increases when the meaning of the suite's results changes."
+    )
+    description: str = Field("", description="The purpose of the suite.")
     scenarios: tuple[Name, ...] = Field(
         min_length=1, description="Names of scenarios, or paths from this file's folder."
     )
@@ -54,14 +56,14 @@ class SuiteFile(BaseModel):
     )
     navigators: tuple[Name | dict[str, Any], ...] = Field(
         min_length=1,
-        description="Names, or {type: name, label: what tables call it, …its parameters}.",
+        description="Names, or {type: name, label: its name in tables, …its parameters}.",
     )
     blocks: tuple[BlockFile, ...] = Field(
-        (), description="Where given, only these parts of the product are run."
+        (), description="If given, only these parts of the product run."
     )
     seeds: int | str = Field(20, description="N for seeds 0 … N-1, or 'a:b' for seeds a … b-1.")
     split: Literal["train", "validation", "test"] = Field(
-        "test", description="Stream that worlds are drawn from."
+        "test", description="The random stream of the worlds."
     )
 
     @field_validator("seeds")
@@ -72,9 +74,9 @@ class SuiteFile(BaseModel):
 
 
 def parse_seeds(text: str) -> range:
-    """``"20"`` → 0 … 19; ``"100:120"`` → 100 … 119.
+    """Return the seeds of a text: ``"20"`` → 0 … 19; ``"100:120"`` → 100 … 119.
 
-    Raises ValueError, with the rule and what came instead.
+    Raises ValueError with the rule and the text.
     """
     rule = (
         f"must be N (seeds 0 … N-1) or A:B (seeds A … B-1), with 1 to {MAX_SEEDS} seeds and at"
@@ -95,9 +97,9 @@ def suite_names() -> list[str]:
 
 
 def suite_path(name: str) -> Path:
-    """Return the file of an installed suite, or the path itself where ``name`` is one.
+    """Return the file of an installed suite, or the path itself if ``name`` is a path.
 
-    Raises UsageError where it is neither, PluginConflictError where two packages hold the suite.
+    Raises UsageError if it is neither, PluginConflictError if two packages contain the suite.
     """
     if _is_file_name(name):
         return Path(name)
@@ -112,9 +114,9 @@ def suite_path(name: str) -> Path:
 
 
 def is_scenario(name: str) -> bool:
-    """Whether ``name`` stands for one scenario, by name or file, and not for a suite.
+    """Whether ``name`` is the name or file of a scenario, and not of a suite.
 
-    Raises ScenarioError where a file cannot be read.
+    Raises ScenarioError if a file cannot be read.
     """
     base, _ = split_parameters(name)
     if _is_file_name(base):
@@ -133,6 +135,6 @@ def _is_file_name(name: str) -> bool:
 
 
 def json_schema() -> dict[str, Any]:
-    """JSON Schema (2020-12) of a suite file."""
+    """Return the JSON Schema (2020-12) of a suite file."""
     schema = SuiteFile.model_json_schema()
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}

@@ -26,8 +26,8 @@ from benchnav.store.parts.part_writer import EpisodeFiles, seal
 from benchnav.store.parts.staged import check_rehearsals, staged_episodes
 
 Tick = Callable[[int], None]
-CHUNK = 64  # seeds of a task: enough for lockstep to pay, few enough to lose to an interruption
-EFFORT = 4_000_000  # agent-decisions of a task, as far as a cell can tell beforehand
+CHUNK = 64  # seeds of a task: many for a fast lockstep, few because an interruption loses them
+EFFORT = 4_000_000  # agent-decisions of a task, as estimated by `Cell.effort`
 
 
 @dataclass(frozen=True)
@@ -40,47 +40,47 @@ class Task:
     stop: int
     forced_failure: str = ""  # a reason for which every episode fails without running
     salt: str = ""  # of the run
-    probe: int = -1  # seed in whose world latency is taken; one for each cell
-    new_process: bool = False  # whether it must have a process of its own
-    exclusive: bool = False  # whether it must run while no other does
+    probe: int = -1  # the seed of the world in which latency is measured; one for each cell
+    new_process: bool = False  # whether it needs a new process
+    exclusive: bool = False  # whether no other task may run at the same time
 
     @property
     def assignment(self) -> Assignment:
-        """Who runs where, in this run."""
+        """The navigator, the scenario and the track, with the salt of the run."""
         return replace(self.cell.assignment, salt=self.salt)
 
     @property
     def seeds(self) -> range:
-        """What it runs."""
+        """The seeds of the task."""
         return range(self.first, self.stop)
 
     @property
     def process_key(self) -> str:
-        """Who may share a process: the code of one entry, and of those that drive beside it."""
+        """A key that is equal for tasks of the same navigators, which may share a process."""
         entry = self.cell.entry
         return repr((entry.label, entry.hash, entry.source_hash, self.cell.scenario.driver_specs))
 
     @property
     def load(self) -> Load:
-        """For the estimate of the time that is left."""
+        """Its load, for the estimate of the remaining time."""
         return Load(self.cell.entry.label, self.cell.effort * len(self.seeds))
 
     @property
     def max_calls(self) -> int:
-        """How often navigators may be called for it, whoever fails, and worlds be built."""
+        """The largest possible number of calls of navigators and of built worlds."""
         cell, seeds = self.cell, len(self.seeds)
         drivers = 1 + len(cell.scenario.driver_specs)
         passes = (1 + cell.entry.rehearsal) * seeds * (seeds.bit_length() + 2) + 1
         return drivers * passes * (cell.scenario.clock.steps + 10) + 10 * seeds + 100
 
     def one_by_one(self) -> list["Task"]:
-        """The same, seed by seed."""
+        """Return one task for each seed."""
         return [replace(self, first=seed, stop=seed + 1) for seed in self.seeds]
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What there is to say about a finished task."""
+    """The outcome of a finished task."""
 
     episodes: int
     redraws: int  # draws of worlds that were thrown away as unsolvable
@@ -88,14 +88,14 @@ class Outcome:
     unled: tuple[tuple[int, str], ...] = field(
         default=()
     )  # (seed, team): its leader never succeeded
-    remarks: tuple[tuple[int, str], ...] = field(default=())  # (seed, what the navigator tells)
-    missing: tuple[tuple[str, str], ...] = field(default=())  # (metric, how it failed), by value
-    lacks: str = ""  # what is not installed, and how to: then nothing was stored
-    tracebacks: Mapping[str, str] = field(default_factory=dict)  # by kind of reason, of one each
+    remarks: tuple[tuple[int, str], ...] = field(default=())  # (seed, remark of the navigator)
+    missing: tuple[tuple[str, str], ...] = field(default=())  # (metric, reason), for each value
+    lacks: str = ""  # the missing extra, and its installation; if given, nothing was stored
+    tracebacks: Mapping[str, str] = field(default_factory=dict)  # one for each kind of reason
 
 
 def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
-    """Ranges (first, stop) that cover ``seeds``, each of which costs ``effort``."""
+    """Yield ranges (first, stop) that cover ``seeds``; ``effort`` is that of one seed."""
     size = max(1, min(CHUNK, int(EFFORT / max(effort, 1.0))))
     run: list[int] = []
     for seed in sorted(seeds):
@@ -109,7 +109,7 @@ def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
 
 @dataclass(frozen=True)
 class Played:
-    """What a worker says of the episodes that it wrote; all else stands in them."""
+    """The facts about written episodes that the episodes do not contain."""
 
     unled: tuple[tuple[int, str], ...] = ()
     lacks: str = ""
@@ -120,23 +120,23 @@ class Measuring:
     """How the episodes of a task are measured."""
 
     plugins: tuple[str, ...] = ()  # names of metrics that are not part of benchnav
-    registrations: tuple[Registration, ...] = ()  # among which some of them may be
-    main: Mapping[str, str] = field(default_factory=dict)  # the script that registered them
-    timeout: float = 300.0  # [s] that one value of theirs may take
+    registrations: tuple[Registration, ...] = ()  # which may include some of these metrics
+    main: Mapping[str, str] = field(default_factory=dict)  # the script that registered metrics
+    timeout: float = 300.0  # [s] that one value of such a metric may take
 
 
 def work(task: Task, tick: Tick = lambda _: None) -> Outcome:
-    """Play and measure a task in this process, where nothing is guarded.
+    """Run and measure a task in this process, without limits and protection against crashes.
 
-    Its part is on disk when this returns, unless an extra lacks.
+    Its part is on disk when this returns, unless an extra is missing.
 
     Args:
-        task: what to run.
-        tick: called with the number of episodes that were just finished.
+        task: the task to run.
+        tick: is called with the number of newly finished episodes.
 
     Raises:
         UnsolvableError: the scenario cannot be drawn.
-        StoreError: the disk refuses.
+        StoreError: the disk cannot be written.
     """
     played = play(task)
     if played.lacks:
@@ -145,7 +145,7 @@ def work(task: Task, tick: Tick = lambda _: None) -> Outcome:
 
 
 def play(task: Task) -> Played:
-    """Run the episodes of a task, and leave them for `measure_part`; raises as `work`."""
+    """Run the episodes of a task, and write them for `measure_part`. Raises as `work`."""
     try:
         return _play(task)
     except MissingExtraError as error:
@@ -155,7 +155,7 @@ def play(task: Task) -> Played:
 def _play(task: Task) -> Played:
     cell = task.cell
     if task.assignment.isolated:
-        sandbox.hide_memory()  # before there is anything to hide
+        sandbox.hide_memory()  # before the memory holds salt and seeds
     worlds = [(seed, _built(cell, seed)) for seed in task.seeds]
     unled: list[tuple[int, str]] = []
     with EpisodeFiles(Part(task.folder, task.first, task.stop)) as files:
@@ -176,10 +176,10 @@ def _built(cell: Cell, seed: int) -> World:
 def measure_part(
     task: Task, played: Played, measure: Callable[[Iterator[Episode]], pa.Table]
 ) -> Outcome:
-    """Measure what a worker left, and seal it.
+    """Measure the episodes that a worker wrote, and seal their part.
 
-    Raises CorruptPartError where this is not what the task asked for, StoreError where the
-    disk refuses.
+    Raises CorruptPartError if they are not the episodes of the task, StoreError if the disk cannot
+    be written.
     """
     part = Part(task.folder, task.first, task.stop)
     expected = [task.assignment.identity(seed) for seed in task.seeds]
@@ -200,7 +200,7 @@ def measure_part(
 
 @dataclass(frozen=True)
 class Seen:
-    """What a summary tells of an episode."""
+    """The facts about an episode that the outcome needs."""
 
     seed: int
     redraws: int
@@ -220,14 +220,14 @@ def _measured_here(episodes: Iterator[Episode], tick: Tick) -> pa.Table:
 
 
 def _timed(task: Task, batch: list[Performance]) -> list[Episode]:
-    """The episodes with peak memory, and with latency where it is to be taken."""
+    """Return the episodes with peak memory, and with latency in the world of the probe seed."""
     timed = []
     for performance in batch:
         episode, grant = performance.episode, tuple(performance.rehearsed.grant)
         seeded: Seeded = (episode.identity.seed, episode.world)
         wanted = seeded[0] == task.probe and not episode.failure
-        alone = latency(task.assignment, seeded, grant) if wanted else None
-        timings = replace(episode.timings, latency=alone, memory=peak_memory())
+        seconds = latency(task.assignment, seeded, grant) if wanted else None
+        timings = replace(episode.timings, latency=seconds, memory=peak_memory())
         timed.append(replace(episode, timings=timings))
     return timed
 

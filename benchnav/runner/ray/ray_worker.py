@@ -71,13 +71,13 @@ class RayWorker:
         self._pool.close()
         self._home.remove()
 
-    def _delivery(self, asked: Task, piece: Task, outcome: Outcome) -> Delivery:
+    def _delivery(self, original: Task, piece: Task, outcome: Outcome) -> Delivery:
         part, files = Part(piece.folder, piece.first, piece.stop), {}
         for path in [part.path(suffix) for suffix in (*FILES, SEAL)]:
             if path.exists():
                 files[path.name.removeprefix(part.stem)] = path.read_bytes()
                 path.unlink()
-        done = replace(piece, folder=asked.folder, cell=asked.cell)
+        done = replace(piece, folder=original.folder, cell=original.cell)
         return Delivery(done, outcome, files)
 
     def _staged(self, task: Task, files: Mapping[str, bytes]) -> Task:

@@ -1,4 +1,4 @@
-"""What a machine needs for one world at a time: seconds per call, and memory."""
+"""The cost of a navigator: seconds per call in a single world, and peak memory."""
 
 import sys
 
@@ -10,16 +10,16 @@ from benchnav.runner.rollouts.recorder import Recorder
 from benchnav.runner.rollouts.rollout import Assignment, Seeded, drive, drivers_of
 from benchnav.world.simulation import Simulation
 
-DECISIONS = 50  # of a latency pass: enough for a percentile, few enough to cost nothing
+DECISIONS = 50  # of a latency measurement: enough for a percentile, at little cost
 
 
 def latency(
     assignment: Assignment, seeded: Seeded, rehearsals: tuple[Rehearsal, ...] = ()
 ) -> FloatArray | None:
-    """(K ≤ `DECISIONS`,) [s] of the navigator's calls when it serves one world alone.
+    """Return the durations (K ≤ `DECISIONS`,) [s] of the navigator's calls in a single world.
 
-    A pass of its own, with a navigator made for it, and thrown away: nothing that is
-    scored knows of it. None where the navigator fails in it.
+    They come from a separate run with a new navigator, which affects no score. None if the
+    navigator fails in this run.
     """
     simulation = Simulation([seeded[1]])
     recorder = Recorder(simulation)
@@ -32,9 +32,9 @@ def latency(
 
 
 def peak_memory() -> int | None:
-    """[bytes] the most that this process ever held in RAM, and the largest navigator's beside it.
+    """Return the peak memory [bytes] of this process plus that of its largest child process.
 
-    None where the system does not tell.
+    None if the system cannot measure it.
     """
     try:
         import resource

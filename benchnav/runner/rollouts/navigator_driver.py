@@ -1,4 +1,4 @@
-"""One navigator at work in a batch: what it is told, what it sees, what it answers."""
+"""One navigator in a batch: its briefings, its observations and its commands."""
 
 from collections.abc import Callable, Sequence
 from time import perf_counter
@@ -10,7 +10,7 @@ from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.errors import MissingExtraError
 from benchnav.navigation.briefing import Briefing, brief
-from benchnav.navigation.command_check import CallFailed, checked, remarks_of, said
+from benchnav.navigation.command_check import CallFailed, checked, exception_text, remarks_of
 from benchnav.navigation.held_maps import HeldMaps
 from benchnav.navigation.navigator import CommandKind, Navigator, Need
 from benchnav.navigation.observation import Observation
@@ -21,7 +21,7 @@ from benchnav.runner.execute.call_timer import Call, calling
 from benchnav.runner.rollouts.tamper_guard import Guard
 from benchnav.world.simulation import Simulation
 
-PROPERTIES: dict[str, Callable[[Any], Any]] = {  # of a navigator that a run asks for, checked
+PROPERTIES: dict[str, Callable[[Any], Any]] = {  # name of a property → its validation
     "required": lambda value: frozenset(map(Need, value)),
     "command": lambda value: _one_of(value, get_args(CommandKind)),
     "reproducible": bool,
@@ -31,7 +31,7 @@ PROPERTIES: dict[str, Callable[[Any], Any]] = {  # of a navigator that a run ask
 class Driver:
     """A navigator and the agents that it drives in each world of a batch.
 
-    Everything that it hands to the navigator is a copy or read-only.
+    All arrays that the navigator receives are copies or read-only.
     """
 
     def __init__(
@@ -48,21 +48,21 @@ class Driver:
         self.simulation = simulation
         self.which = which
         self.track = track
-        self._blame = blame  # what its reasons start with
-        self._guard = guard  # of the code that runs it, where it shares the process
+        self._blame = blame  # the start of its failure reasons
+        self._guard = guard  # of the code of benchnav, if both share a process
         worlds = simulation.worlds
         self._rehearsals = rehearsals or [()] * len(worlds)
         self.chosen = _chosen(worlds, which)  # (B, An) agent index, -1: padding
         with calling("__init__"):
-            asked = [_asked(navigator, name, blame) for name in PROPERTIES]
-        needs, self._command, self.reproducible = asked
+            properties = [_property_of(navigator, name, blame) for name in PROPERTIES]
+        needs, self._command, self.reproducible = properties
         self._needs = frozenset(needs)
         self._maps = HeldMaps(simulation, track)
 
     def reset(self, generators: Sequence[np.random.Generator]) -> float:
-        """Brief the navigator for all worlds. Returns the seconds that it took.
+        """Brief the navigator for all worlds. Return the duration of its call [s].
 
-        Raises CallFailed where it raises.
+        Raises CallFailed if the call raises.
         """
         worlds = self.simulation.worlds
         briefings = [
@@ -78,7 +78,7 @@ class Driver:
             reason = f"{self._blame}{failed.reason}"
             raise CallFailed(reason, failed.suspects, failed.traceback) from None
         except MissingExtraError:
-            raise  # what is not installed is no failure of the navigator
+            raise  # a missing package is no failure of the navigator
         except (Exception, SystemExit) as error:
             reason, traceback = _raised("reset", error)
             raise CallFailed(self._blame + reason, traceback=traceback) from error
@@ -87,44 +87,45 @@ class Driver:
         return seconds
 
     def mark_twists(self, twist: BoolArray) -> None:
-        """Set ``twist`` (B, A) for its agents where it answers twists."""
+        """Set ``twist`` (B, A) for its agents if it returns twists."""
         world, agent = np.nonzero(self.chosen >= 0)
         twist[world, self.chosen[world, agent]] = self._command == "twist"
 
     def act(self, command: FloatArray, time: float) -> float:
-        """Put its answers for all running worlds into ``command`` (B, A, 2).
+        """Write its commands for all running worlds into ``command`` (B, A, 2).
 
         Args:
             command: receives the commands of the agents that it drives.
-            time: [s] now, the same in every running world.
+            time: [s] the current time, equal in all running worlds.
 
-        Returns the seconds that its call took. Raises CallFailed where the call raises
-        or answers what is not a command.
+        Returns the duration of its call [s]. Raises CallFailed if the call raises or returns
+        invalid commands.
         """
         observation = self._observe()
-        active, rows = observation.active.copy(), observation.rows.copy()  # a plugin gets its own
+        # Copies, because a plugin may change its observation.
+        active, rows = observation.active.copy(), observation.rows.copy()
         began = perf_counter()
         try:
             with calling("act", time):
                 answer = self.navigator.act(observation)
                 seconds = perf_counter() - began
-                told = checked(answer, active)
+                commands = checked(answer, active)
             self._require_intact()
         except CallFailed as failed:
-            who = None if failed.suspects is None else rows[failed.suspects]
-            raise CallFailed(self._at(failed.reason, time), who, failed.traceback) from None
+            suspects = None if failed.suspects is None else rows[failed.suspects]
+            raise CallFailed(self._at(failed.reason, time), suspects, failed.traceback) from None
         except MissingExtraError:
-            raise  # what is not installed is no failure of the navigator
+            raise  # a missing package is no failure of the navigator
         except (Exception, SystemExit) as error:
             reason, traceback = _raised("act", error, time)
             raise CallFailed(self._at(reason, time), traceback=traceback) from error
         world, agent = np.nonzero(active)
         row = rows[world]
-        command[row, self.chosen[row, agent]] = told[world, agent]
+        command[row, self.chosen[row, agent]] = commands[world, agent]
         return seconds
 
     def remarks(self, row: int) -> tuple[str, ...]:
-        """What it has to tell of the world in ``row``; what it cannot tell is lost."""
+        """Return the remarks on the world in ``row``, or the exception if the call raises."""
         try:
             with calling("remarks"):
                 return tuple(remarks_of(self.navigator.remarks(row)))
@@ -163,20 +164,22 @@ def _one_of(value: Any, choices: Sequence[str]) -> str:
     return str(value)
 
 
-def _asked(navigator: Navigator, name: str, blame: str) -> Any:
-    """A property of it. Raises CallFailed where it raises, or is not what it must be."""
+def _property_of(navigator: Navigator, name: str, blame: str) -> Any:
+    """Return a property of the navigator. Raises CallFailed if it raises or is invalid."""
     try:
         return PROPERTIES[name](getattr(navigator, name))
     except MissingExtraError:
         raise
     except (Exception, SystemExit) as error:
-        raise CallFailed(f"{blame}{name} raised {said(error)}", traceback=trace(error)) from error
+        raise CallFailed(
+            f"{blame}{name} raised {exception_text(error)}", traceback=trace(error)
+        ) from error
 
 
 def _raised(call: Call, error: BaseException, time: float = 0.0) -> tuple[str, str]:
-    """(reason, traceback) of what a call raised; to read it calls the plugin's code too."""
+    """Return (reason, traceback) of an exception; its text may run code of the plugin."""
     with calling(call, time):
-        return f"{call} raised {said(error)}", trace(error)
+        return f"{call} raised {exception_text(error)}", trace(error)
 
 
 def _chosen(worlds: Sequence[World], which: int) -> IntArray:

@@ -1,4 +1,4 @@
-"""Records a batch while it runs, and cuts it into episodes afterwards."""
+"""The recording of a batch of worlds, which is split into episodes at the end."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,7 +14,7 @@ _STATE = ("position", "heading", "status", "body_position")
 
 
 class Recorder:
-    """States at every decision time, and the commands in between."""
+    """Records states at every decision time, and the commands between them."""
 
     def __init__(self, simulation: Simulation) -> None:
         self.simulation = simulation
@@ -26,26 +26,26 @@ class Recorder:
 
     @property
     def seconds(self) -> FloatArray:
-        """(T,) [s] per world of every decision so far."""
+        """(T,) [s] duration per world of every decision."""
         return np.array(self._seconds)
 
     def record_state(self) -> None:
-        """Keep the state of now."""
+        """Record the current state."""
         for name, kept in self._state.items():
             kept.append(getattr(self.simulation, name).copy())
 
     def record_kinds(self, twist: BoolArray) -> None:
-        """Keep whose commands are twists (B, A)."""
+        """Record the agents whose commands are twists (B, A)."""
         self._twist = twist.copy()
 
     def record_commands(self, requested: FloatArray, executed: FloatArray, seconds: float) -> None:
-        """Keep what was asked and done in one decision, and its seconds per world."""
+        """Record the requested and executed commands of a decision, and its seconds per world."""
         self._requested.append(requested)
         self._executed.append(executed)
         self._seconds.append(seconds)
 
     def restate(self) -> None:
-        """Replace the last state: something was decided about the agents, and no time passed."""
+        """Replace the last state, after a change of the agents without a time step."""
         for name, kept in self._state.items():
             kept[-1] = getattr(self.simulation, name).copy()
 
@@ -57,14 +57,14 @@ class Recorder:
         reproducible: bool,
         remarks: Sequence[tuple[str, ...]],
     ) -> list[Episode]:
-        """One episode per world, in its order.
+        """Return one episode per world, in the order of the worlds.
 
         Args:
             identities: (B,) of the worlds.
-            planning: [s] of all resets together; each world gets its share.
-            failure: why the navigator failed, "" if it did not (then B is 1).
-            reproducible: whether no clock decided anything.
-            remarks: (B,) what the navigator has to tell of each world.
+            planning: [s] of all resets together, which is divided equally among the worlds.
+            failure: why the navigator failed (then B is 1); "" if it did not.
+            reproducible: whether no command depends on a clock.
+            remarks: (B,) of the navigator on each world.
         """
         state = {name: np.stack(kept) for name, kept in self._state.items()}
         shape = (0, *self.simulation.position.shape)

@@ -1,8 +1,8 @@
-"""Rehearsals: the leaders alone in the same world, before the episode that is scored.
+"""Rehearsals: runs of only the leaders in the same world, before the scored episode.
 
-A navigator that declares the grant never simulates the world itself. The runner drives
-the leaders by the navigator that the entry names, with the knowledge of its track, keeps
-every rehearsal as an episode, hands over the trajectories and charges what they cost.
+A navigator that asks for rehearsals never simulates the world itself. The runner drives the
+leaders with the navigator that the entry names and with the map of the track. It stores every
+rehearsal as an episode, gives the trajectories to the navigator and adds the cost to its own.
 """
 
 from collections.abc import Iterator, Sequence
@@ -23,35 +23,35 @@ from benchnav.runner.rollouts.seeding import phases
 
 @dataclass
 class Rehearsed:
-    """What was rehearsed for one world."""
+    """The rehearsals of one world."""
 
     episodes: list[Episode] = field(default_factory=list)
-    grant: list[Rehearsal] = field(default_factory=list)  # what the navigator is handed
-    failure: str = ""  # why the navigator that led failed; "" if it did not
-    traceback: str = ""  # of that
+    grant: list[Rehearsal] = field(default_factory=list)  # the trajectories for the navigator
+    failure: str = ""  # why the leaders' navigator failed; "" if it did not
+    traceback: str = ""  # of the failure
 
     @property
     def seconds(self) -> float:
-        """[s] of the calls of the navigator that led."""
+        """The duration [s] of all calls of the leaders' navigator."""
         timings = [episode.timings for episode in self.episodes]
         return float(sum(t.planning + t.decision.sum() for t in timings))
 
     @property
     def decisions(self) -> int:
-        """Of agents that led, in all rehearsals."""
+        """The number of decisions of leaders in all rehearsals."""
         return sum(int(_deciding(episode).sum()) for episode in self.episodes)
 
 
 @dataclass(frozen=True)
 class Performance:
-    """A scored episode, and what was rehearsed for it."""
+    """A scored episode and its rehearsals."""
 
     episode: Episode
     rehearsed: Rehearsed
 
     @property
     def unled(self) -> tuple[str, ...]:
-        """Teams of which a leader arrived in no rehearsal without a collision, sorted."""
+        """Teams with a leader that succeeded in no rehearsal, sorted."""
         grant = self.rehearsed.grant
         if not grant or self.rehearsed.failure:
             return ()
@@ -64,10 +64,9 @@ class Performance:
 def perform(
     assignment: Assignment, worlds: Sequence[Seeded], charge: str = ""
 ) -> Iterator[list[Performance]]:
-    """As `rollout`, with the rehearsals that the entry asks for before it.
+    """Run rehearsals and episodes, and yield performances batch by batch, as `rollout` does.
 
-    An entry whose leaders' navigator fails in a rehearsal loses that world's episode, with
-    the reason.
+    If the leaders' navigator fails in a rehearsal, the episode of that world fails with its reason.
     """
     made = {seed: Rehearsed(failure=charge) for seed, _ in worlds}
     for k in range(1, assignment.rehearsals + 1):
@@ -82,7 +81,7 @@ def perform(
 def _rehearse(
     assignment: Assignment, worlds: Sequence[Seeded], k: int, made: dict[int, Rehearsed]
 ) -> None:
-    """Make the k-th rehearsal of every world; no batching changes anything of it."""
+    """Run the k-th rehearsal of every world. The batching does not affect it."""
     leading = assignment.leader
     if leading is None:
         raise ValueError("A navigator that rehearses must name the navigator that leads.")
@@ -99,7 +98,7 @@ def _rehearse(
             seed = episode.identity.seed
             done = made[seed]
             done.episodes.append(episode)
-            place = np.cumsum(scored[seed].agents.evaluated) - 1  # as the briefing numbers them
+            place = np.cumsum(scored[seed].agents.evaluated) - 1  # index in the briefing
             done.grant.append(granted(episode, place[index[seed]]))
             if episode.failure:
                 name = split(NAVIGATORS, leading)[0]
@@ -108,9 +107,9 @@ def _rehearse(
 
 
 def granted(episode: Episode, place: IntArray) -> Rehearsal:
-    """What a navigator is told of the rehearsal ``episode``.
+    """Return the information about the rehearsal ``episode`` that a navigator receives.
 
-    ``place`` (A,) says which agent of the briefing each agent of the rehearsal is.
+    ``place`` (A,) is the index in the briefing of each agent of the rehearsal.
     """
     led = np.flatnonzero(episode.world.agents.evaluated)
     return Rehearsal(
@@ -124,7 +123,7 @@ def granted(episode: Episode, place: IntArray) -> Rehearsal:
 
 
 def _deciding(episode: Episode) -> np.ndarray:
-    """(T, A) True where an evaluated agent decided."""
+    """Return whether each evaluated agent decided at each time (T, A)."""
     active = episode.status[:-1] == int(Status.ACTIVE)
     return np.asarray(active & episode.world.agents.evaluated)
 

@@ -13,7 +13,7 @@ from benchnav.episode.episode import Episode, Identity
 from benchnav.errors import BrokenPluginError, MissingExtraError, NavigatorError
 from benchnav.isolation.isolated import Isolated
 from benchnav.isolation.subprocess_host import PROCESS
-from benchnav.navigation.command_check import CallFailed, said
+from benchnav.navigation.command_check import CallFailed, exception_text
 from benchnav.navigation.navigator import Navigator
 from benchnav.navigation.plugin.configure import Spec, make, split
 from benchnav.navigation.plugin.trace import notes, trace
@@ -26,14 +26,14 @@ from benchnav.runner.rollouts.seeding import generator, place
 from benchnav.runner.rollouts.tamper_guard import Guard
 from benchnav.world.simulation import Simulation
 
-MAX_WORLDS = 64  # of a batch: more gains little speed and holds more in memory
+MAX_WORLDS = 64  # of a batch: larger batches are hardly faster and need more memory
 MAX_BYTES = 256 << 20  # of recorded states of a batch that runs to its horizon
 _BYTES = 72  # recorded per agent and decision
 
 
 @dataclass(frozen=True)
 class Assignment:
-    """Who runs where, and with which knowledge."""
+    """The navigator, the scenario and the knowledge of a rollout."""
 
     scenario: str  # "leaders/dynamic@1"
     scenario_hash: str
@@ -42,22 +42,22 @@ class Assignment:
     label: str  # of the navigator in the suite
     navigator: Spec
     background: tuple[Spec, ...] = ()  # navigators of the scenario's other teams
-    salt: str = ""  # of the run; no navigator is handed it
+    salt: str = ""  # of the run; no navigator receives it
     navigator_hash: str = ""  # of its configuration, distributions and mode
     source_hash: str = ""  # of its code and data files
     rehearsals: int = 0  # that the navigator asks for
-    leader: Spec | None = None  # who drives the leaders in them
-    rehearsal: int = 0  # k: this is the k-th of them
-    isolated: bool = False  # whether the evaluated navigator is put into a process of its own
+    leader: Spec | None = None  # the navigator of the leaders in rehearsals
+    rehearsal: int = 0  # k: this is the k-th rehearsal; 0: the scored episode
+    isolated: bool = False  # whether the evaluated navigator runs in its own process
 
     @property
     def cell(self) -> tuple[str, ...]:
-        """What an isolated navigator's process may serve: one role in one cell."""
+        """The key of an isolated process, which serves one role in one cell."""
         role = "rehearsal" if self.rehearsal else "episode"
         return self.scenario, self.scenario_hash, self.split, self.track, self.label, role
 
     def identity(self, seed: int) -> Identity:
-        """Of the episode with this seed."""
+        """Return the identity of the episode with this seed."""
         return Identity(
             self.scenario, self.scenario_hash, self.split, seed, self.track, self.label,
             self.navigator_hash, self.rehearsal, self.source_hash,
@@ -74,20 +74,19 @@ def rollout(
     charge: str = "",
     grants: Grants = MappingProxyType({}),
 ) -> Iterator[list[Episode]]:
-    """Every world's episode, batch by batch; the batching changes no state and no command.
+    """Yield the episodes of all worlds, batch by batch; the batching does not affect them.
 
-    Rows are given in an order that tells nothing about the seeds.
+    The order of the rows does not depend on the order of the seeds.
 
-    A call that fails for a batch is tried again from the start of the episodes with
-    fewer worlds, so that no state of a navigator is touched twice, until the worlds
-    that fail alone are found: only they are charged.
+    If a call fails for a batch, its episodes start again in smaller batches with new navigators,
+    until the worlds that fail on their own are found: only these fail.
 
     Args:
-        assignment: who runs where.
+        assignment: the navigator, the scenario and the knowledge.
         worlds: (seed, world) pairs.
-        charge: a reason for which every world is charged without running (its
-            navigator killed the process, say); "" runs them.
-        grants: the rehearsals that the evaluated navigator is told of, by seed.
+        charge: a reason for which every episode fails without running (its navigator
+            killed the process, for example); "" runs them.
+        grants: the rehearsals that the evaluated navigator receives, by seed.
     """
     about = (assignment.salt, assignment.scenario_hash, assignment.split)
     pending = deque(batches(sorted(worlds, key=lambda world: place(*about, world[0]))))
@@ -100,7 +99,7 @@ def rollout(
 
 
 def batches(worlds: Sequence[Seeded]) -> Iterator[list[Seeded]]:
-    """Consecutive worlds that share their terms and fit into memory together when stepped."""
+    """Yield batches of consecutive worlds with equal terms that fit into memory together."""
     batch: list[Seeded] = []
     size = 0
     for seed, world in worlds:
@@ -120,22 +119,22 @@ def _terms(world: World) -> tuple[Clock, Rules, Sensing]:
 
 
 def _split(batch: list[Seeded], failed: CallFailed) -> list[list[Seeded]]:
-    """Smaller batches, in one of which the failure shows again.
+    """Return smaller batches, in one of which the failure occurs again.
 
-    Suspects run alone and all others in halves, so that a world starts again no more
-    than log2(B) + 1 times, also where every world fails at a time of its own.
+    Each suspect runs in its own batch and all others in halves, so a world restarts at most
+    log2(B) + 1 times, even if every world fails at a different time.
     """
-    guilty = set() if failed.suspects is None else set(failed.suspects.tolist())
-    alone = [[world] for b, world in enumerate(batch) if b in guilty]
-    others = [world for b, world in enumerate(batch) if b not in guilty]
+    suspects = set() if failed.suspects is None else set(failed.suspects.tolist())
+    singles = [[world] for b, world in enumerate(batch) if b in suspects]
+    others = [world for b, world in enumerate(batch) if b not in suspects]
     half = len(others) // 2
-    return [part for part in (others[:half], others[half:], *alone) if part]
+    return [part for part in (others[:half], others[half:], *singles) if part]
 
 
 def _lockstep(
     assignment: Assignment, batch: list[Seeded], charge: str, grants: Grants, traceback: str = ""
 ) -> list[Episode]:
-    """The episodes of a batch; with a ``charge``, which has a ``traceback``, nothing is run."""
+    """Return the episodes of a batch; with a ``charge`` they fail without running."""
     simulation = Simulation([world for _, world in batch])
     recorder = Recorder(simulation)
     recorder.record_state()
@@ -143,11 +142,11 @@ def _lockstep(
     if charge:
         _charge(simulation, recorder)
     else:
-        told = [grants.get(seed, ()) for seed, _ in batch]
+        granted_rehearsals = [grants.get(seed, ()) for seed, _ in batch]
         try:
-            drivers = drivers_of(assignment, simulation, told)
+            drivers = drivers_of(assignment, simulation, granted_rehearsals)
             planning = drive(assignment, drivers, recorder, [seed for seed, _ in batch])
-        except NavigatorError as error:  # its process does not start, in whatever world
+        except NavigatorError as error:  # its process cannot start, so every world fails
             return _lockstep(assignment, batch, str(error), grants, notes(error))
         except CallFailed as failed:
             if len(batch) > 1:
@@ -168,10 +167,10 @@ def drive(
     seeds: Sequence[int],
     decisions: int | None = None,
 ) -> float:
-    """Run fresh drivers until no world runs, or for so many decisions.
+    """Run new drivers until no world runs, or for ``decisions`` decisions.
 
-    Returns the seconds of the evaluated navigator's reset. Raises CallFailed where a
-    navigator fails.
+    Returns the duration [s] of the evaluated navigator's reset. Raises CallFailed if a navigator
+    fails.
     """
     planning = _reset(assignment, drivers, seeds)
     _run(recorder.simulation, drivers, recorder, decisions)
@@ -189,13 +188,13 @@ def drivers_of(
     simulation: Simulation,
     rehearsals: Sequence[tuple[Rehearsal, ...]] = (),
 ) -> list[Driver]:
-    """The evaluated navigator, then the background ones, which know the scenario's map.
+    """Return drivers of the evaluated navigator, then of the background ones, on the known track.
 
-    ``rehearsals`` (B,) are what the first is told of, none where there are none. Raises
-    CallFailed where one cannot be made.
+    ``rehearsals`` (B,) of each world are given to the evaluated navigator. Raises CallFailed if a
+    navigator cannot be made.
     """
     cell = assignment.cell if assignment.isolated else ()
-    guard = None if cell else Guard()  # before anything of it is imported
+    guard = None if cell else Guard()  # before code of the navigator is imported
     chosen, track = _made(assignment.navigator, "", cell), assignment.track
     drivers = [Driver(chosen, simulation, 0, track, rehearsals=rehearsals, guard=guard)]
     for which, spec in enumerate(assignment.background, start=1):
@@ -205,12 +204,12 @@ def drivers_of(
 
 
 def _made(spec: Spec, blame: str, cell: tuple[str, ...] = ()) -> Navigator:
-    """The navigator; one that is isolated is hosted by the process of ``cell``."""
+    """Return a navigator; with ``cell`` it runs in the process of that key."""
     apart = cell and split(NAVIGATORS, spec)[0] != PROCESS
     try:
         with calling("__init__"):
             navigator: Navigator = Isolated(spec, cell) if apart else make(NAVIGATORS, spec)
-            for name in PROPERTIES:  # for which a process of its own is started
+            for name in PROPERTIES:  # the first access starts an isolated process
                 getattr(navigator, name)
     except BrokenPluginError as error:
         raise CallFailed(f"{blame}{error}", traceback=notes(error) or trace(error)) from error
@@ -218,13 +217,13 @@ def _made(spec: Spec, blame: str, cell: tuple[str, ...] = ()) -> Navigator:
         raise
     except (Exception, SystemExit) as error:
         with calling("__init__"):
-            reason = f"{blame}__init__ raised {said(error)}"
+            reason = f"{blame}__init__ raised {exception_text(error)}"
         raise CallFailed(reason, traceback=trace(error)) from error
     return navigator
 
 
 def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) -> float:
-    """Brief everybody. Returns the seconds that the evaluated navigator took."""
+    """Brief all navigators. Return the duration [s] of the evaluated navigator's reset."""
     about = (assignment.salt, assignment.scenario_hash, assignment.split)
     which = assignment.rehearsal
     seconds = [
@@ -236,14 +235,14 @@ def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) 
 def _run(
     simulation: Simulation, drivers: list[Driver], recorder: Recorder, decisions: int | None
 ) -> None:
-    """Sense, act, step and record until no world runs, or for so many decisions."""
+    """Sense, act, step and record until no world runs, or for ``decisions`` decisions."""
     twist = np.zeros(simulation.present.shape, np.bool_)
     for driver in drivers:
         driver.mark_twists(twist)
     recorder.record_kinds(twist)
     clock = simulation.world(0).clock
     dt, last = clock.dt, clock.steps if decisions is None else min(decisions, clock.steps)
-    for step in range(last):  # also where somebody replaced what ends an episode
+    for step in range(last):  # a limit even if a navigator replaced the code that ends an episode
         if not simulation.running.any():
             break
         served = int(simulation.running.sum())

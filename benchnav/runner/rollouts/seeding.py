@@ -1,10 +1,10 @@
-"""The generator that a navigator is briefed with, and the order in which it meets worlds.
+"""The random generator of a navigator, and the order of its worlds.
 
-Both follow from a salt that is drawn for each run, stands in the run's manifest and is
-handed to no navigator. Who knows the public rules alone can therefore not try scenarios,
-splits and seeds until one fits what it was handed. This guards against what is handed
-over, and no more: code that reads the run folder or the memory of its process learns the
-salt, and the same world is recognised by its starts and goals whenever it is met again.
+Both follow from a salt, which is drawn for each run, stored in its manifest and given to no
+navigator. Code that knows only the public rules therefore cannot find scenario, split and seed by
+trying which of them gives the same generator. This protects only the generator: code that reads
+the run folder or the memory of its process learns the salt, and a world that occurs again is
+recognised by its starts and goals.
 """
 
 import hashlib
@@ -20,12 +20,12 @@ _SALT = re.compile(r"(?:[0-9a-f]{2}){1,64}")  # the key of blake2b has at most 6
 
 
 def draw_salt() -> str:
-    """A new salt: 128 bits of the system's randomness, in hexadecimal digits."""
+    """Return a new salt: 128 random bits of the system, in hexadecimal digits."""
     return secrets.token_hex(16)
 
 
 def check_salt(salt: str) -> None:
-    """Raise ValueError, with the rule and what came instead, where ``salt`` is none."""
+    """Raise ValueError with the rule and the text if ``salt`` is invalid."""
     if not _SALT.fullmatch(salt):
         raise ValueError(f"must be 1 to 64 bytes in digits 0-9 a-f; got {salt[:140]!r}")
 
@@ -33,11 +33,10 @@ def check_salt(salt: str) -> None:
 def generator(
     salt: str, scenario_hash: str, split: str, seed: int, driver: int, rehearsal: int = 0
 ) -> np.random.Generator:
-    """The one source of randomness of a navigator in one world.
+    """Return the random generator of a navigator in one world.
 
-    Within a run it is the same for every navigator and track (they are compared on the
-    same luck), every batch and number of workers. It shares no stream with the draw of
-    the world.
+    Within a run it is the same for every navigator and track (common random numbers), every batch
+    and every number of workers. It is independent of the draw of the world.
 
     Args:
         salt: of the run.
@@ -54,12 +53,12 @@ def generator(
 def phases(
     salt: str, scenario_hash: str, split: str, seed: int, rehearsal: int
 ) -> np.random.Generator:
-    """What the movers' phases in the k-th rehearsal are drawn from: alike for every entry."""
+    """Return the generator of the movers' phases in the k-th rehearsal, equal for all entries."""
     return hashed_generator(_hashed(salt, "phases", scenario_hash, split, seed, rehearsal))
 
 
 def place(salt: str, scenario_hash: str, split: str, seed: int) -> bytes:
-    """Worlds sorted by this stand in an order that tells nothing about their seeds."""
+    """Return a key: the order of worlds by this key does not depend on the order of their seeds."""
     return _hashed(salt, "place", scenario_hash, split, seed)
 
 

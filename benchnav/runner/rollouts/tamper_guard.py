@@ -1,8 +1,7 @@
-"""Notices what a navigator replaces of the code that runs it, before that code runs again.
+"""Detects functions of benchnav that a navigator replaced, before they run again.
 
-Within one process nothing can forbid this, and who first takes the guard away goes
-unnoticed: it is for what is done by a line or two. `--isolate` keeps a navigator's code
-out of the process altogether.
+One process cannot prevent this, and a navigator that first disables the guard is not detected:
+the guard is for simple replacements. `--isolate` keeps the code of a navigator out of the process.
 """
 
 import builtins
@@ -20,13 +19,13 @@ _WATCHED = (
     "arena", "episode", "generation", "kernels", "navigation", "runner", "sensors", "threads",
     "world",
 )  # fmt: skip
-_ELSEWHERE = ("benchnav.", "pydantic")  # what is not there while an episode runs
+_ELSEWHERE = ("benchnav.", "pydantic")  # prefixes of modules that no running episode needs
 _code = attrgetter("__code__")
-_Space = tuple[Any, Mapping[str, Any], str]  # a module or class, what it holds, its name
+_Space = tuple[Any, Mapping[str, Any], str]  # a module or class, its attributes, its name
 
 
 class Guard:
-    """The modules and classes that run episodes, and the code of their functions, as now."""
+    """A snapshot of the modules and classes that run episodes, and of the code of functions."""
 
     def __init__(self) -> None:
         self._spaces = [*_spaces()]
@@ -36,12 +35,12 @@ class Guard:
         self._code = [*map(_code, self._functions)]
 
     def replaced(self) -> str:
-        """The name of what is no longer as it was; all is put back. "" where nothing changed."""
+        """Return the name of a replaced object, or ""; all replaced objects are restored."""
         changed: list[str] = []
         if not _same(self._values, self._now()):
-            for (owner, held, whose), before in zip(self._spaces, self._held, strict=True):
-                changed += _restored(owner, held, whose, before)
-            self._keep()  # with what Python itself adds to a class when it is asked
+            for (owner, held, owner_name), before in zip(self._spaces, self._held, strict=True):
+                changed += _restored(owner, held, owner_name, before)
+            self._keep()  # Python itself adds attributes to classes on access
         if not _same(self._code, [*map(_code, self._functions)]):
             for function, code in zip(self._functions, self._code, strict=True):
                 if function.__code__ is not code:
@@ -58,30 +57,30 @@ class Guard:
 
 
 def _same(before: list[Any], now: list[Any]) -> bool:
-    """The same objects. Lists look at identity first, and faster than anything else does."""
+    """Whether the objects are the same. Comparison of lists tests identity first, and is fast."""
     try:
         return before == now
-    except Exception:  # of what cannot be compared with what it replaced
+    except Exception:  # an object may not be comparable with its replacement
         return False
 
 
 def _restored(
-    owner: Any, held: Mapping[str, Any], whose: str, before: dict[str, Any]
+    owner: Any, held: Mapping[str, Any], owner_name: str, before: dict[str, Any]
 ) -> Iterator[str]:
-    """Put back what was replaced, take away what can be called and is new; yields their names."""
+    """Restore replaced attributes and delete added functions; yield their names."""
     for name, value in before.items():
         if held.get(name, before) is not value:
             setattr(owner, name, value)
-            yield f"{whose}.{name}"
+            yield f"{owner_name}.{name}"
     for name in [name for name in held if name not in before]:
         shadows = isinstance(owner, type) or name in vars(builtins)
         if shadows and isinstance(held[name], FunctionType):
             delattr(owner, name)
-            yield f"{whose}.{name}"
+            yield f"{owner_name}.{name}"
 
 
 def _spaces() -> Iterator[_Space]:
-    """The watched modules, and what they know of: their classes, and those of libraries."""
+    """Yield the watched modules, their classes, and the library classes that they use."""
     modules = [module for name, module in sys.modules.items() if _is_watched(name)]
     for module in (*modules, builtins, np):
         yield module, vars(module), module.__name__
@@ -97,7 +96,7 @@ def _is_watched(module: str) -> bool:
 
 
 def _functions(value: Any) -> Iterator[FunctionType]:
-    """What is called where ``value`` is: itself, or what a property or class method calls."""
+    """Yield the function that ``value`` calls: itself, or that of a property or class method."""
     if isinstance(value, property):
         value = value.fget
     elif isinstance(value, cached_property):
