@@ -282,7 +282,7 @@ class View {
       c.strokeStyle = TEAMS[team % TEAMS.length];
       c.lineWidth = 1.3 * pixel;
       c.globalAlpha = this.count > CROWD ? 0.3 : 0.9;
-      c.setLineDash([4 * pixel, 3 * pixel]);
+      if (this.count <= CROWD) c.setLineDash([4 * pixel, 3 * pixel]); // dashes are slow
       c.stroke();
       c.setLineDash([]);
       c.globalAlpha = 1;
