@@ -11,9 +11,10 @@ from typing import Any
 
 from benchnav.api.text_table import written
 from benchnav.episode.episode import Episode as Record
-from benchnav.errors import UsageError
+from benchnav.errors import UsageError, did_you_mean
 
-SUFFIX = ".html"
+PAGE, GIF, FILM = ".html", ".gif", ".mp4"
+SUFFIXES = (PAGE, GIF, FILM, ".png", ".svg", ".pdf")
 
 
 class Replay:
@@ -43,15 +44,37 @@ class Replay:
 
         return replay_page(self.scenes)
 
-    def save(self, path: "str | PathLike[str]") -> Path:
-        """Write the page to a file that ends in .html, and return its path.
+    def save(self, path: "str | PathLike[str]", times: Sequence[float] = ()) -> Path:
+        """Write the replay to a file, in the format of its ending, and return its path.
 
-        Raises UsageError for another ending, StoreError if the file cannot be written.
+        Args:
+            path: ends in .html (a page), .gif or .mp4 (a moving picture), or .png, .svg or .pdf
+                (a figure).
+            times: [s] of a figure with snapshots in a row; none: one picture with trails.
+
+        Raises UsageError for another ending or a wrong time, StoreError if the file cannot be
+        written, MissingExtraError if a picture is wanted and matplotlib is not installed.
         """
         target = Path(path)
-        if target.suffix.lower() != SUFFIX:
-            raise UsageError(f"The file of a replay must end in {SUFFIX}. Got {target} instead.")
-        written(self.html, target)
+        suffix = target.suffix.lower()
+        if suffix not in SUFFIXES:
+            raise UsageError(
+                f"The file of a replay must end in {', '.join(SUFFIXES)}."
+                f" Got {target} instead.{did_you_mean(suffix, SUFFIXES)}"
+            )
+        if times and suffix in (PAGE, GIF, FILM):
+            raise UsageError(f"Times are for a figure: .png, .svg or .pdf. Got {target} instead.")
+        if suffix == PAGE:
+            written(self.html, target)
+        elif suffix in (GIF, FILM):
+            from benchnav.viewer.animation import save_gif, save_mp4
+
+            (save_gif if suffix == GIF else save_mp4)(self._records, target)
+        else:
+            from benchnav.viewer.picture import save
+            from benchnav.viewer.scene_figure import episode_figure
+
+            save(episode_figure(self._records, times), target)
         return target
 
     def __repr__(self) -> str:
@@ -69,7 +92,7 @@ class Replay:
 def page_name(*words: str) -> str:
     """Return a file name made of ``words``, in letters that every system allows."""
     text = "-".join(words)
-    return "".join(c if c.isalnum() or c in "-_." else "-" for c in text)[:120] + SUFFIX
+    return "".join(c if c.isalnum() or c in "-_." else "-" for c in text)[:120] + PAGE
 
 
 def open_in_browser(path: Path) -> bool:

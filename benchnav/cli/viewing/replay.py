@@ -47,11 +47,19 @@ def replay(
         bool, typer.Option("--list", help="List the episodes, and write nothing.")
     ] = False,
     out: Annotated[
-        Path | None, typer.Option(help="The page. [default: replay-….html in this folder]")
+        Path | None,
+        typer.Option(
+            help="A page (.html), a moving picture (.gif, .mp4) or a figure (.png, .svg, .pdf)."
+            " [default: replay-….html in this folder]"
+        ),
     ] = None,
-    show: Annotated[bool, typer.Option("--open", help="Open the page in a browser.")] = False,
+    time: Annotated[
+        list[float] | None,
+        typer.Option(help="[s] A figure shows this time. Repeatable. [default: trails]"),
+    ] = None,
+    show: Annotated[bool, typer.Option("--open", help="Open the file.")] = False,
 ) -> None:
-    """Write a page that plays stored episodes. It opens from disk without a network.
+    """Show stored episodes: write a page that plays them, and opens from disk without a network.
 
     Without options it shows the first episode that failed, or the first one if none did.
     """
@@ -71,7 +79,7 @@ def replay(
             any_order = not (failed or worst or seed is not None)
             chosen = _first(opened, found, navigators, failed_first=any_order)
         page = Replay([episode.record for episode in chosen], agent)
-        path = page.save(out or Path(_file_name(chosen.places)))
+        path = page.save(out or Path(_file_name(chosen.places)), time or ())
     say(f"{page!r}")
     put(str(path))
     if show and not open_in_browser(path):

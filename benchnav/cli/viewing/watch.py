@@ -22,7 +22,11 @@ def watch(
     seed: Annotated[int, typer.Option(help="Of the world.")] = 0,
     track: Annotated[str, typer.Option(help="known, stale, partial or unknown.")] = "known",
     out: Annotated[
-        Path | None, typer.Option(help="The page. [default: watch-….html in this folder]")
+        Path | None,
+        typer.Option(
+            help="A page (.html), a moving picture (.gif, .mp4) or a figure (.png, .svg, .pdf)."
+            " [default: watch-….html in this folder]"
+        ),
     ] = None,
     show: Annotated[
         bool, typer.Option("--open/--no-open", help="Open the page if there is a display.")
