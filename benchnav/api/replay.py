@@ -9,12 +9,17 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from benchnav.api.text_table import written
+from benchnav.arrays import IntArray
 from benchnav.episode.episode import Episode as Record
 from benchnav.errors import UsageError, did_you_mean
 
 PAGE, GIF, FILM = ".html", ".gif", ".mp4"
-SUFFIXES = (PAGE, GIF, FILM, ".png", ".svg", ".pdf")
+MCAP, RERUN = ".mcap", ".rrd"
+FIGURES = (".png", ".svg", ".pdf")
+SUFFIXES = (PAGE, *FIGURES, GIF, FILM, RERUN, MCAP)
 
 
 class Replay:
@@ -28,14 +33,9 @@ class Replay:
     @cached_property
     def scenes(self) -> list[dict[str, Any]]:
         """The content of the page, one entry an episode."""
-        import numpy as np
-
         from benchnav.viewer.replay.scene import scene
 
-        for record in self._records:
-            _require_agents(self._agents, len(record.world.agents))
-        chosen = None if self._agents is None else np.array(self._agents, np.int64)
-        return [scene(record, chosen) for record in self._records]
+        return [scene(record, self._chosen_agents(record)) for record in self._records]
 
     @cached_property
     def html(self) -> str:
@@ -48,8 +48,8 @@ class Replay:
         """Write the replay to a file, in the format of its ending, and return its path.
 
         Args:
-            path: ends in .html (a page), .gif or .mp4 (a moving picture), or .png, .svg or .pdf
-                (a figure).
+            path: ends in .html (a page), .gif or .mp4 (a moving picture), .png, .svg or .pdf (a
+                figure), .rrd (for the Rerun viewer) or .mcap (for Foxglove).
             times: [s] of a figure with snapshots in a row; none: one picture with trails.
 
         Raises UsageError for another ending or a wrong time, StoreError if the file cannot be
@@ -62,7 +62,7 @@ class Replay:
                 f"The file of a replay must end in {', '.join(SUFFIXES)}."
                 f" Got {target} instead.{did_you_mean(suffix, SUFFIXES)}"
             )
-        if times and suffix in (PAGE, GIF, FILM):
+        if times and suffix not in FIGURES:
             raise UsageError(f"Times are for a figure: .png, .svg or .pdf. Got {target} instead.")
         if suffix == PAGE:
             written(self.html, target)
@@ -70,12 +70,34 @@ class Replay:
             from benchnav.viewer.animation import save_gif, save_mp4
 
             (save_gif if suffix == GIF else save_mp4)(self._records, target)
+        elif suffix in (MCAP, RERUN):
+            self._save_recording(target, suffix)
         else:
             from benchnav.viewer.picture import save
             from benchnav.viewer.scene_figure import episode_figure
 
             save(episode_figure(self._records, times), target)
         return target
+
+    def _save_recording(self, path: Path, suffix: str) -> None:
+        """Write one episode for a 3-D viewer."""
+        from benchnav.viewer.recordings.mcap_log import save_mcap
+        from benchnav.viewer.recordings.rerun_log import save_rerun
+
+        if len(self._records) > 1:
+            raise UsageError(
+                f"A {suffix} file holds one episode. Got {len(self._records)}: name one navigator."
+            )
+        (record,) = self._records
+        save = save_mcap if suffix == MCAP else save_rerun
+        save(record, self._chosen_agents(record), path)
+
+    def _chosen_agents(self, record: Record) -> IntArray:
+        """Return the agents (n,) whose senses are shown."""
+        from benchnav.viewer.replay.scene import interesting
+
+        _require_agents(self._agents, len(record.world.agents))
+        return interesting(record) if self._agents is None else np.array(self._agents, np.int64)
 
     def __repr__(self) -> str:
         names = ", ".join(record.identity.navigator for record in self._records)

@@ -40,7 +40,7 @@ def test_packed_arrays_come_back(array):
 
 
 def test_a_scene_holds_the_stored_motion(episode):
-    content = json.loads(json.dumps(scene(episode), allow_nan=False))
+    content = json.loads(json.dumps(scene(episode, interesting(episode)), allow_nan=False))
     for name in ("position", "body_position"):
         stored = getattr(episode, name)
         assert np.allclose(unpacked(content[name]), stored, atol=0.0005 + 1e-9)
@@ -115,19 +115,19 @@ def test_events_tell_every_contact_once(episode):
 
 
 def test_an_old_episode_without_kinds_of_commands_is_shown_without_senses(episode):
-    assert scene(replace(episode, twist=None))["senses"] is None
+    assert scene(replace(episode, twist=None), interesting(episode))["senses"] is None
 
 
 def test_text_of_strangers_is_escaped(episode):
     name = "</script><script>alert(1)</script>"
     odd = replace(episode, identity=replace(episode.identity, navigator=name), failure="<b>")
-    page = replay_page([scene(odd)])
+    page = replay_page([scene(odd, interesting(odd))])
     assert "<script>alert" not in page
     assert "<b>" not in page
 
 
 def test_a_page_asks_for_nothing_and_is_small(episode):
-    page = replay_page([scene(episode)])
+    page = replay_page([scene(episode, interesting(episode))])
     assert "http://" not in page
     assert "https://" not in page
     assert len(page) <= 150_000

@@ -7,7 +7,7 @@ import pytest
 
 import benchnav
 from benchnav.viewer.replay.page import replay_page
-from benchnav.viewer.replay.scene import scene
+from benchnav.viewer.replay.scene import interesting, scene
 from tests.viewer.browser import DESKTOP, PHONE, in_browser, needs_chromium
 from tests.worlds import agents, world
 
@@ -20,7 +20,7 @@ def page():
     """Two navigators side by side."""
     drawn = benchnav.load_scenario("leaders/dynamic").world(seed=7)
     both = [benchnav.simulate(drawn, name, track="known") for name in ("orca", "straight-line")]
-    return replay_page([scene(episode.record) for episode in both])
+    return replay_page([scene(episode.record, interesting(episode.record)) for episode in both])
 
 
 def test_it_plays_is_scrubbed_and_jumps(page, tmp_path):
@@ -74,7 +74,7 @@ def test_nothing_sticks_out(page, tmp_path, size):
 def test_positions_are_those_of_the_episode(tmp_path):
     drawn = benchnav.load_scenario("trap/u").world(seed=0)
     record = benchnav.simulate(drawn, "straight-line").record
-    result = in_browser(replay_page([scene(record)]), READY + """
+    result = in_browser(replay_page([scene(record, interesting(record))]), READY + """
       const view = replay.views[0];
       return [0, 1, 2, 3].map((a) => view.at(a, 5).concat(view.value(view.scene.heading, a, 5)));
     """, tmp_path)  # fmt: skip

@@ -37,6 +37,8 @@ _EXTRAS = {
     },
     "view": {"matplotlib": "matplotlib"},
     "video": {"imageio_ffmpeg": "imageio-ffmpeg"},
+    "mcap": {"mcap": "mcap"},
+    "rerun": {"rerun": "rerun-sdk"},
     "ray": {"ray": "ray"},
 }  # extra → package → module
 Line = tuple[str, str, str]  # verdict, subject, detail

@@ -49,7 +49,8 @@ def replay(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="A page (.html), a moving picture (.gif, .mp4) or a figure (.png, .svg, .pdf)."
+            help="A page (.html), a moving picture (.gif, .mp4), a figure (.png, .svg, .pdf), or a"
+            " recording for Rerun (.rrd) or Foxglove (.mcap)."
             " [default: replay-….html in this folder]"
         ),
     ] = None,

@@ -24,7 +24,8 @@ def watch(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="A page (.html), a moving picture (.gif, .mp4) or a figure (.png, .svg, .pdf)."
+            help="A page (.html), a moving picture (.gif, .mp4), a figure (.png, .svg, .pdf), or a"
+            " recording for Rerun (.rrd) or Foxglove (.mcap)."
             " [default: watch-….html in this folder]"
         ),
     ] = None,

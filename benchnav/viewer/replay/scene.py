@@ -14,21 +14,17 @@ from benchnav.viewer.replay.clearance import clearance
 from benchnav.viewer.replay.packing import packed
 from benchnav.viewer.replay.senses import Senses, sensed
 
-SENSED = 4  # agents whose readings a replay holds at most, unless it is asked for others
+SENSED = 4  # agents whose readings a replay holds, unless it is asked for others
 MILLIMETRE = 0.001
 FAR = 100.0  # [m] a larger clearance is shown as this
 
 
-def scene(episode: Episode, agents: IntArray | None = None) -> dict[str, Any]:
+def scene(episode: Episode, agents: IntArray) -> dict[str, Any]:
     """Return the content of the replay of one episode.
 
-    Args:
-        episode: the episode.
-        agents: (n,) indices of the agents whose sensor readings and charts are held; None: up to
-            four agents of the evaluated navigator, first those that did not succeed.
+    ``agents`` (n,) are the indices of the agents whose sensor readings and charts are held.
     """
     world, identity = episode.world, episode.identity
-    chosen = interesting(episode) if agents is None else agents
     return {
         "navigator": identity.navigator, "scenario": identity.scenario, "track": identity.track,
         "seed": identity.seed, "failure": episode.failure, "dt": world.clock.dt,
@@ -42,8 +38,8 @@ def scene(episode: Episode, agents: IntArray | None = None) -> dict[str, Any]:
         "status": packed(episode.status),
         "body_position": packed(episode.body_position, MILLIMETRE),
         "events": events(episode),
-        "charts": _charts(episode, chosen),
-        "senses": _senses(sensed(episode, chosen), len(chosen)),
+        "charts": _charts(episode, agents),
+        "senses": _senses(sensed(episode, agents), len(agents)),
     }  # fmt: skip
 
 
