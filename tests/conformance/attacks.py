@@ -211,7 +211,7 @@ def _noticed(run: Path, again: bool) -> list[str] | None:
                     report.add(examine(task))
             if again and suite and report.clean:
                 checks = [task.check for task in tasks]
-                rerun(folder, suite.cells, checks, Path(root) / "rerun", report, workers=0)
+                rerun(folder, suite.jobs, checks, Path(root) / "rerun", report, workers=0)
         except BenchnavError:
             return None
     lines = [*report.checked, *report.unchecked, *report.sources, *report.versions]
