@@ -51,7 +51,8 @@ def measure(suite: str, seeds: int) -> list[Cost]:
                     seconds.append((process_time() - began) / summary.stored)
                     sizes.append(size(Path(folder, "run", "parts")) / summary.stored)
         costs.append(Cost(contestant.label, statistics.mean(seconds), statistics.mean(sizes)))
-        print(f"{contestant.label}: {costs[-1].seconds:.4f} s, {costs[-1].bytes:.0f} bytes", flush=True)
+        cost = costs[-1]
+        print(f"{cost.navigator}: {cost.seconds:.4f} s, {cost.bytes:.0f} bytes", flush=True)
     return costs
 
 

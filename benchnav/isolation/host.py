@@ -59,7 +59,7 @@ class Host:
             }
 
     def _hello(self, fields: dict[str, Any]) -> Answer:
-        config = json.loads(fields["says"])
+        config = json.loads(fields["text"])
         sys.path += [entry for entry in config.get("path", ()) if entry not in sys.path]
         search_in(config.get("folder", ""))
         spec = config.get("navigator") or {"type": self.name, **config["config"]}
@@ -73,7 +73,7 @@ class Host:
                 "error": MissingExtraError.__name__,
                 "reason": capabilities.missing_extra,
             }
-        return "ready", {"says": capabilities.model_dump_json(exclude_defaults=True)}
+        return "ready", {"text": capabilities.model_dump_json(exclude_defaults=True)}
 
     def _reset(self, fields: dict[str, Any]) -> Answer:
         briefings = decode_briefings(fields)
@@ -90,7 +90,7 @@ class Host:
 
     def _remarks(self, fields: dict[str, Any]) -> Answer:
         texts = remarks_of(self._hosted.remarks(int(fields["row"])))
-        return "remarks", {"says": json.dumps(texts)}
+        return "remarks", {"text": json.dumps(texts)}
 
     @property
     def _hosted(self) -> Navigator:

@@ -25,7 +25,7 @@ from benchnav.navigation.plugin.capabilities import Capabilities
 from benchnav.navigation.plugin.configure import Spec
 from benchnav.navigation.plugin.trace import bounded, plain
 
-PROTOCOL = 1  # version of the messages
+PROTOCOL = 2  # version of the messages
 STARTING = 120.0  # [s] until a process must have answered `hello`
 _ANSWERS = {"hello": "ready", "reset": "done", "act": "command", "remarks": "remarks"}
 _NO_MAP_YET: Any = object()
@@ -112,7 +112,7 @@ class Remote(Navigator):
     def remarks(self, row: int) -> Sequence[str]:
         if not self.process.alive or not self.capabilities.remarks:
             return ()
-        return [str(text) for text in json.loads(self._request("remarks", {"row": row})["says"])]
+        return [str(text) for text in json.loads(self._request("remarks", {"row": row})["text"])]
 
     def _request(self, kind: str, fields: Mapping[str, Any]) -> dict[str, Any]:
         try:
@@ -129,7 +129,7 @@ def handshake(process: Process, hello: Mapping[str, Any]) -> Capabilities:
     to be created.
     """
     message = json.dumps({"protocol": PROTOCOL, **hello})
-    answer = request(process, "hello", {"says": message}, STARTING)["says"]
+    answer = request(process, "hello", {"text": message}, STARTING)["text"]
     try:
         return Capabilities.model_validate_json(answer)
     except ValidationError as error:
@@ -160,7 +160,7 @@ def request(
             raise _with_note(NavigatorError(reason), traceback)
         raise CallFailed(reason, answer.get("suspects"), traceback)
     wanted = _ANSWERS[kind]
-    field = {"ready": "says", "command": "command", "remarks": "says"}.get(wanted)
+    field = {"ready": "text", "command": "command", "remarks": "text"}.get(wanted)
     if got != wanted or (field is not None and field not in answer):
         process.stop()
         detail = f" without {field!r}" if got == wanted else ""

@@ -99,7 +99,7 @@ def _scenario(
     identity = str(fields["scenario"])
     try:
         _, chosen = split_parameters(identity)
-        scenario = Scenario.model_validate(fields["says"])
+        scenario = Scenario.model_validate(fields["config"])
         scenario = scenario.placed_in(stage_files(run.path, fields["files"], root), chosen)
         named = {n for n in scenario.named_files() if n not in fields["files"]}
         if named:
@@ -124,7 +124,7 @@ def _contestant(fields: Mapping[str, Any], source: Mapping[str, Any] = {}) -> Co
     leader = _contestant(fields["leader"]) if "leader" in fields else None
     training = Training(**fields["training"]) if "training" in fields else None
     return Contestant(
-        str(fields["label"]), dict(fields["says"]), str(fields["source"]), frozenset(),
+        str(fields["label"]), dict(fields["config"]), str(fields["source"]), frozenset(),
         training=training, fingerprint=str(fields.get("fingerprint", "")),
         rehearsal=int(fields.get("rehearsal", 0)), leader=leader,
         uses_map=bool(fields.get("uses_map", True)),

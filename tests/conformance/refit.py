@@ -12,6 +12,7 @@ from benchnav.errors import BenchnavError
 from benchnav.runner.plan.job import Job
 from benchnav.store.parts.part import FILES, SEAL
 from benchnav.store.runs import checked_json
+from benchnav.store.runs.config_key import old_form
 from benchnav.store.runs.manifest import MANIFEST
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.verify.finding import Report
@@ -61,7 +62,7 @@ def refit_manifest(run: Path, content: dict, attacked: str) -> None:
 def write_manifest(run: Path, content: dict) -> None:
     """Write a manifest with checksums that fit."""
     content.pop("sha256", None)
-    text = json.dumps(content.get("suite"), sort_keys=True, separators=(",", ":"))
+    text = json.dumps(old_form(content.get("suite")), sort_keys=True, separators=(",", ":"))
     content["suite_hash"] = hashlib.sha256(text.encode()).hexdigest()
     (run / MANIFEST).write_text(checked_json.dump(content))
 

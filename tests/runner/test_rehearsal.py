@@ -332,7 +332,7 @@ def test_the_manifest_says_who_led_and_the_hash_depends_on_it(suite, tmp_path):
     run_suite(suite(told(), seeds="1"), tmp_path / "r", workers=0)
     (entry,) = load_manifest(tmp_path / "r").suite["navigators"]
     assert (entry["rehearsal"], entry["leader"]["label"]) == (2, "orca")
-    assert entry["leader"]["says"]["time_horizon"] == 5.0
+    assert entry["leader"]["config"]["time_horizon"] == 5.0
     hashes = {
         suite(told(f", leader: {name}")).contestants[0].hash for name in ("orca", "straight-line")
     }

@@ -184,7 +184,7 @@ def sources_of(contestants: Iterable[Contestant]) -> dict[str, dict[str, Any]]:
 def resolved(contestant: Contestant) -> dict[str, Any]:
     """Return all properties of a contestant, for the manifest."""
     fields: dict[str, Any] = {
-        "label": contestant.label, "says": dict(contestant.spec), "source": contestant.source,
+        "label": contestant.label, "config": dict(contestant.spec), "source": contestant.source,
     }  # fmt: skip
     if contestant.mode != IN_PROCESS:
         fields["mode"] = contestant.mode

@@ -107,7 +107,7 @@ class Suite:
                 {
                     "scenario": s.identity,
                     "hash": s.hash,
-                    "says": s.model_dump(mode="json"),
+                    "config": s.model_dump(mode="json"),
                     "files": {name: sha256_of(path) for name, path in s.named_files().items()},
                 }
                 for s in self.scenarios
