@@ -69,7 +69,7 @@ def test_a_new_manifest_with_the_old_key_is_refused(tmp_path):
 
 def test_both_keys_are_refused(tmp_path):
     both = [{**SUITE["navigators"][0], "config": {}}]
-    with pytest.raises(CorruptPartError, match="says"):
+    with pytest.raises(CorruptPartError, match="is damaged"):
         parse_manifest(stored(navigators=both), tmp_path)
 
 
