@@ -220,14 +220,34 @@ class Run:
         scenario: str | None = None,
         track: str | None = None,
         seed: int | None = None,
+        *,
+        failed: bool = False,
+        worst: str | None = None,
     ) -> "Episodes":
         """Return the stored episodes, or those of one navigator, scenario, track or seed.
 
         A scenario may be named with or without version and parameters.
+
+        Args:
+            navigator: its label.
+            scenario: its name.
+            track: the knowledge track.
+            seed: of the world.
+            failed: only those in which an evaluated agent did not succeed.
+            worst: a metric: they come in its order, worst first.
         """
         from benchnav.api.episodes import stored_episodes
 
-        return stored_episodes(self.folder, navigator, scenario, track, seed, owner=self)
+        found = stored_episodes(self.folder, navigator, scenario, track, seed, owner=self)
+        if failed:
+            from benchnav.api.episode_choice import failed_episodes
+
+            found = failed_episodes(self.folder, found.places, owner=self)
+        if worst is not None:
+            from benchnav.api.episode_choice import worst_episodes
+
+            found = worst_episodes(self.folder, found.places, worst, owner=self)
+        return found
 
     def pack(self, out: "str | PathLike[str] | None" = None, *, quiet: bool = False) -> Path:
         """Write the run into one file, with everything that verifying it needs.

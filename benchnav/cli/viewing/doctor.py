@@ -35,7 +35,8 @@ _EXTRAS = {
         "pettingzoo": "pettingzoo",
         "tensorboard": "tensorboard",
     },
-    "view": {"matplotlib": "matplotlib", "plotly": "plotly"},
+    "view": {"matplotlib": "matplotlib"},
+    "video": {"imageio_ffmpeg": "imageio-ffmpeg"},
     "ray": {"ray": "ray"},
 }  # extra → package → module
 Line = tuple[str, str, str]  # verdict, subject, detail
