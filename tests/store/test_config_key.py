@@ -53,6 +53,12 @@ def test_an_old_manifest_is_written_again_as_it_was(tmp_path):
     assert json.loads(parse_manifest(text, tmp_path).dump())["suite"] == SUITE
 
 
+def test_an_old_run_is_resumed(tmp_path):
+    (tmp_path / "manifest.json").write_text(stored())
+    suite = parse_manifest(stored(), tmp_path).suite
+    assert RunFolder.start(tmp_path, Manifest(suite, (), salt="5a")).manifest.schema == 5
+
+
 def test_a_new_manifest_has_the_new_key_alone(tmp_path):
     new = Manifest(parse_manifest(stored(), tmp_path).suite, (), salt="5a")
     RunFolder(tmp_path, new).kept()
