@@ -55,7 +55,7 @@ def merge(
     say = silent if quiet else message
     say(f"{counted(merged.copied, 'episode')} copied{again}")
     run = open_run(out)
-    run.tell_missing(say)
+    run.report_missing(say)
     return run
 
 
@@ -266,7 +266,7 @@ class Run:
             message(f"{size:.1f} MB, content {content_digest(self.folder)}")
         return target
 
-    def tell_missing(self, notify: Any = message) -> None:
+    def report_missing(self, notify: Any = message) -> None:
         """Print which episodes are missing; nothing for a complete run."""
         from benchnav.store.runs.completeness import missing_episodes
 
@@ -282,7 +282,7 @@ class Run:
             )
             every = [self, *others]
             for run in every:
-                run.tell_missing()
+                run.report_missing()
             yield [run.folder for run in every]
 
     def _facts(self) -> list[tuple[str, str]]:

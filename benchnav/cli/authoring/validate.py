@@ -34,10 +34,10 @@ def _suite(file: Path) -> None:
     from benchnav.runner.plan.suite import load_suite
 
     suite = load_suite(str(file))
-    cells = list(suite.cells())
-    missing = sum(bool(cell.reason) for cell in cells)
+    jobs = list(suite.jobs())
+    missing = sum(bool(job.reason) for job in jobs)
     put(
-        f"{file} is a suite, {suite.name}@{suite.version}: {counted(len(cells), 'cell')},"
+        f"{file} is a suite, {suite.name}@{suite.version}: {counted(len(jobs), 'cell')},"
         f" {missing} of them n/a, × {counted(len(suite.seeds), 'seed')}"
     )
 
