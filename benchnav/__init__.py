@@ -15,39 +15,43 @@ from benchnav.plugins import (
 )
 
 if TYPE_CHECKING:
-    from benchnav.api.catalogue import available
-    from benchnav.api.comparison import Comparison
-    from benchnav.api.curve import Curve
-    from benchnav.api.env import make_env
-    from benchnav.api.episode import Episode
-    from benchnav.api.episodes import Episodes
-    from benchnav.api.execution import run
-    from benchnav.api.leaderboard import Leaderboard
-    from benchnav.api.run import Run, merge, open_run
-    from benchnav.api.scenario import Scenario, load_scenario
-    from benchnav.api.simulate import simulate
-    from benchnav.api.verification import Verification
-    from benchnav.api.world import World
+    from benchnav.api.components.catalogue import available
+    from benchnav.api.execution.env import make_env
+    from benchnav.api.execution.run import run
+    from benchnav.api.execution.simulate import simulate
+    from benchnav.api.execution.train import train
+    from benchnav.api.records.comparison import Comparison
+    from benchnav.api.records.curve import Curve
+    from benchnav.api.records.episode import Episode
+    from benchnav.api.records.episodes import Episodes
+    from benchnav.api.records.leaderboard import Leaderboard
+    from benchnav.api.records.run import Run, merge, open_run
+    from benchnav.api.records.scenario import Scenario, load_scenario
+    from benchnav.api.records.training import Training
+    from benchnav.api.records.verification import Verification
+    from benchnav.api.records.world import World
 else:
     __getattr__ = lazy_names(
         __name__,
         {
-            "Comparison": "benchnav.api.comparison",
-            "Curve": "benchnav.api.curve",
-            "Episode": "benchnav.api.episode",
-            "Episodes": "benchnav.api.episodes",
-            "Leaderboard": "benchnav.api.leaderboard",
-            "Run": "benchnav.api.run",
-            "Scenario": "benchnav.api.scenario",
-            "Verification": "benchnav.api.verification",
-            "World": "benchnav.api.world",
-            "available": "benchnav.api.catalogue",
-            "load_scenario": "benchnav.api.scenario",
-            "make_env": "benchnav.api.env",
-            "merge": "benchnav.api.run",
-            "open_run": "benchnav.api.run",
-            "run": "benchnav.api.execution",
-            "simulate": "benchnav.api.simulate",
+            "Comparison": "benchnav.api.records.comparison",
+            "Curve": "benchnav.api.records.curve",
+            "Episode": "benchnav.api.records.episode",
+            "Episodes": "benchnav.api.records.episodes",
+            "Leaderboard": "benchnav.api.records.leaderboard",
+            "Run": "benchnav.api.records.run",
+            "Scenario": "benchnav.api.records.scenario",
+            "Training": "benchnav.api.records.training",
+            "Verification": "benchnav.api.records.verification",
+            "World": "benchnav.api.records.world",
+            "available": "benchnav.api.components.catalogue",
+            "load_scenario": "benchnav.api.records.scenario",
+            "make_env": "benchnav.api.execution.env",
+            "merge": "benchnav.api.records.run",
+            "open_run": "benchnav.api.records.run",
+            "run": "benchnav.api.execution.run",
+            "simulate": "benchnav.api.execution.simulate",
+            "train": "benchnav.api.execution.train",
         },
     )
 
@@ -62,6 +66,7 @@ __all__ = [
     "Leaderboard",
     "Run",
     "Scenario",
+    "Training",
     "Verification",
     "World",
     "available",
@@ -75,6 +80,7 @@ __all__ = [
     "register_planner",
     "run",
     "simulate",
+    "train",
 ]
 
 

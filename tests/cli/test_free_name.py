@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchnav.cli.authoring.free_name import name_taken
+from benchnav.api.authoring.free_name import name_taken
 
 TAKEN = (
     "json", "random", "numpy", "torch", "benchnav", "benchnav-baselines", "benchnav-scenarios",

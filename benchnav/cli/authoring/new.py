@@ -6,8 +6,8 @@ from typing import Annotated
 
 import typer
 
-from benchnav.cli.authoring.free_name import free_name, name_taken
-from benchnav.cli.authoring.navigator_template import navigator_package
+from benchnav.api.authoring.free_name import free_name, name_taken
+from benchnav.api.authoring.navigator_template import navigator_package
 from benchnav.cli.console import put, say
 from benchnav.cli.stopping import stoppable
 from benchnav.errors import StoreError, UsageError

@@ -5,8 +5,8 @@ from typing import Annotated
 
 import typer
 
+from benchnav.api.components.scenario_page import worlds_text
 from benchnav.cli.console import put
-from benchnav.cli.viewing.scenario_page import worlds_text
 from benchnav.text.plural import counted
 
 

@@ -102,7 +102,7 @@ def _folder(name: str, place: Path, reason: str) -> Line:
 
 
 def _plugins() -> Iterator[Line]:
-    from benchnav.cli.viewing.inspection import MADE, inspect_plugins
+    from benchnav.api.components.inspection import MADE, inspect_plugins
 
     for registry in (NAVIGATORS, PLANNERS, CONTROLLERS, METRICS, TRAINERS):
         answers = inspect_plugins(registry, registry.names(), MADE)

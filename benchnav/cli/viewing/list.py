@@ -76,7 +76,7 @@ def _rows(kind: Kind) -> Iterator[Row]:
 
 
 def _plugins(registry: Registry) -> Iterator[Row]:
-    from benchnav.cli.viewing.inspection import SENTENCE, inspect_plugins
+    from benchnav.api.components.inspection import SENTENCE, inspect_plugins
 
     for name, text in inspect_plugins(registry, registry.names(), SENTENCE).items():
         if isinstance(text, BenchnavError):

@@ -5,9 +5,9 @@ from typing import Annotated
 
 import typer
 
+from benchnav.api.components.scenario_page import scenario_page
 from benchnav.cli.console import put
 from benchnav.cli.viewing.list import REGISTRIES, Kind
-from benchnav.cli.viewing.scenario_page import scenario_page
 from benchnav.errors import BenchnavError, UsageError, did_you_mean
 from benchnav.navigation.hierarchy.composition import is_pair
 from benchnav.plugins import NAVIGATORS, TRAINERS
@@ -23,7 +23,7 @@ def show(
 
     Purpose, parameters with units and defaults, and source.
     """
-    from benchnav.cli.viewing.inspection import PAGE, inspect_plugins
+    from benchnav.api.components.inspection import PAGE, inspect_plugins
 
     blocks = [
         _shown(inspect_plugins(registry, [name], PAGE)[name])
@@ -49,7 +49,7 @@ def _shown(page: "str | BenchnavError") -> str:
 
 def _pair(name: str) -> Iterator[str]:
     """Yield the page of a navigator that is named by its parts."""
-    from benchnav.cli.viewing.inspection import PAIR, inspect_plugins
+    from benchnav.api.components.inspection import PAIR, inspect_plugins
 
     if is_pair(name):
         yield _shown(inspect_plugins(NAVIGATORS, [name], PAIR)[name])

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, overload
 
-from benchnav.api.episode import Episode
-from benchnav.api.text_table import table_html
+from benchnav.api.output.text_table import table_html
+from benchnav.api.records.episode import Episode
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.from_runs import matching_scenarios
 from benchnav.store.parts.part import Part

@@ -8,12 +8,10 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-import yaml
-
-from benchnav.api.messages import message, silent
-from benchnav.api.navigators import Navigators, navigator_specs
-from benchnav.api.run import Run, open_run
-from benchnav.api.scenario import Scenario
+from benchnav.api.execution.navigators import Navigators, navigator_specs
+from benchnav.api.output.messages import message, silent
+from benchnav.api.records.run import Run, open_run
+from benchnav.api.records.scenario import Scenario
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.processes.fork_server import fork_server
 from benchnav.processes.main_module import stop_import_of_main
@@ -139,7 +137,7 @@ def seeds_text(seeds: int | str | range | None) -> str:
 
 
 def _suite(suite: SuiteLike) -> "str | Document":
-    from benchnav.config.yaml_reader import read_yaml_text
+    from benchnav.config.yaml_reader import document_of
 
     if not isinstance(suite, Mapping):
         return scenario_name(suite)
@@ -148,7 +146,7 @@ def _suite(suite: SuiteLike) -> "str | Document":
         content["navigators"] = list(navigator_specs(content["navigators"]))
     if "scenarios" in content:
         content["scenarios"] = list(map(scenario_name, _several(content["scenarios"])))
-    return read_yaml_text(yaml.safe_dump(content, sort_keys=False), "suite")
+    return document_of(content, "suite")
 
 
 def _several(values: Any) -> list[Any]:

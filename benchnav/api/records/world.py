@@ -6,7 +6,7 @@ from benchnav.arena.world import World as Record
 from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
-    from benchnav.api.scenario import Scenario
+    from benchnav.api.records.scenario import Scenario
 
 
 class World:

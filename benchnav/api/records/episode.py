@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchnav.api.text_table import key_value_html
+from benchnav.api.output.text_table import key_value_html
 from benchnav.arena.agents import Role
 from benchnav.arrays import BoolArray
 from benchnav.episode.episode import Episode as Record
