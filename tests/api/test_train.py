@@ -69,7 +69,7 @@ def test_a_file_is_a_recipe_and_quiet_prints_nothing(tmp_path, capfd, monkeypatc
          " with one of these names: .*count"),
         ({**RECIPE, "trainer": "cuont"}, "recipe:1: trainer must be one of .*Did you mean 'count'"),
         ({**RECIPE, "decisions": "x"}, "recipe:2: decisions must be a whole number; got 'x'"),
-        ({**RECIPE, "decisions": {1, 2}}, "recipe: every value must be"),
+        ({**RECIPE, "decisions": 1j}, "recipe: every value must be"),
     ],
 )  # fmt: skip
 def test_a_wrong_recipe_is_named_with_the_cure(recipe, text, tmp_path):

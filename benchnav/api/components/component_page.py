@@ -9,9 +9,9 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+from benchnav.api.components.kind import REGISTRIES, Kind
 from benchnav.api.components.parameter_text import answers, needs, parameters
 from benchnav.api.components.plugin_page import sentence
-from benchnav.cli.viewing.list import REGISTRIES, Kind
 from benchnav.plugins import Registry
 
 KINDS = (Kind.NAVIGATORS, Kind.PLANNERS, Kind.CONTROLLERS)

@@ -18,7 +18,7 @@ class Training:
 
     @property
     def weights(self) -> Path:
-        """The file of the weights, which a learned navigator takes as its parameter `weights`."""
+        """The file of the weights, which the learned navigator takes as a parameter."""
         return self.path / WEIGHTS
 
     def __repr__(self) -> str:
