@@ -222,7 +222,7 @@ def test_options_that_cannot_be_followed_are_refused(call):
     assert call(TINY, "--resume")[0] == 2
     code, said = call(TINY, "--device", "abacus")
     assert code == 2
-    assert "--device must be one of" in said
+    assert "The device must be one of" in said
     assert status(["train", "dynamik"]) == 2
 
 

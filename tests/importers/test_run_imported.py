@@ -117,7 +117,7 @@ def test_a_map_that_cannot_be_imported_is_refused_in_one_sentence(tmp_path, caps
     stdout, stderr = capsys.readouterr()
     assert stdout == ""
     assert stderr.endswith(
-        "none is free, 2 are blocked and 1798 are unknown. --unknown-is-free opens unknown cells"
+        "none is free, 2 are blocked and 1798 are unknown. The option 'unknown-is-free' opens unknown cells"
         " to agents.\n"
     )
     open_to_all = ["import", "ros-map", str(path), "--out", str(tmp_path / "s.yaml")]
