@@ -15,39 +15,59 @@ from benchnav.plugins import (
 )
 
 if TYPE_CHECKING:
-    from benchnav.api.catalogue import available
-    from benchnav.api.comparison import Comparison
-    from benchnav.api.curve import Curve
-    from benchnav.api.env import make_env
-    from benchnav.api.episode import Episode
-    from benchnav.api.episodes import Episodes
-    from benchnav.api.execution import run
-    from benchnav.api.leaderboard import Leaderboard
-    from benchnav.api.run import Run, merge, open_run
-    from benchnav.api.scenario import Scenario, load_scenario
-    from benchnav.api.simulate import simulate
-    from benchnav.api.verification import Verification
-    from benchnav.api.world import World
+    from benchnav.api.authoring.import_map import import_map
+    from benchnav.api.authoring.new_navigator import new_navigator
+    from benchnav.api.authoring.schema import schema
+    from benchnav.api.authoring.validate import Validation, validate
+    from benchnav.api.components.catalogue import Catalogue, available
+    from benchnav.api.components.diagnosis import Diagnosis, doctor
+    from benchnav.api.components.page import Page, show
+    from benchnav.api.execution.env import make_env
+    from benchnav.api.execution.run import run
+    from benchnav.api.execution.simulate import simulate
+    from benchnav.api.execution.train import train
+    from benchnav.api.records.comparison import Comparison
+    from benchnav.api.records.curve import Curve
+    from benchnav.api.records.episode import Episode
+    from benchnav.api.records.episodes import Episodes
+    from benchnav.api.records.leaderboard import Leaderboard
+    from benchnav.api.records.run import Run, merge, open_run
+    from benchnav.api.records.scenario import Scenario, load_scenario
+    from benchnav.api.records.training import Training
+    from benchnav.api.records.verification import Verification
+    from benchnav.api.records.world import World
 else:
     __getattr__ = lazy_names(
         __name__,
         {
-            "Comparison": "benchnav.api.comparison",
-            "Curve": "benchnav.api.curve",
-            "Episode": "benchnav.api.episode",
-            "Episodes": "benchnav.api.episodes",
-            "Leaderboard": "benchnav.api.leaderboard",
-            "Run": "benchnav.api.run",
-            "Scenario": "benchnav.api.scenario",
-            "Verification": "benchnav.api.verification",
-            "World": "benchnav.api.world",
-            "available": "benchnav.api.catalogue",
-            "load_scenario": "benchnav.api.scenario",
-            "make_env": "benchnav.api.env",
-            "merge": "benchnav.api.run",
-            "open_run": "benchnav.api.run",
-            "run": "benchnav.api.execution",
-            "simulate": "benchnav.api.simulate",
+            "Catalogue": "benchnav.api.components.catalogue",
+            "Comparison": "benchnav.api.records.comparison",
+            "Curve": "benchnav.api.records.curve",
+            "Diagnosis": "benchnav.api.components.diagnosis",
+            "Episode": "benchnav.api.records.episode",
+            "Episodes": "benchnav.api.records.episodes",
+            "Leaderboard": "benchnav.api.records.leaderboard",
+            "Page": "benchnav.api.components.page",
+            "Run": "benchnav.api.records.run",
+            "Scenario": "benchnav.api.records.scenario",
+            "Training": "benchnav.api.records.training",
+            "Validation": "benchnav.api.authoring.validate",
+            "Verification": "benchnav.api.records.verification",
+            "World": "benchnav.api.records.world",
+            "available": "benchnav.api.components.catalogue",
+            "doctor": "benchnav.api.components.diagnosis",
+            "import_map": "benchnav.api.authoring.import_map",
+            "load_scenario": "benchnav.api.records.scenario",
+            "make_env": "benchnav.api.execution.env",
+            "merge": "benchnav.api.records.run",
+            "new_navigator": "benchnav.api.authoring.new_navigator",
+            "open_run": "benchnav.api.records.run",
+            "run": "benchnav.api.execution.run",
+            "schema": "benchnav.api.authoring.schema",
+            "show": "benchnav.api.components.page",
+            "simulate": "benchnav.api.execution.simulate",
+            "train": "benchnav.api.execution.train",
+            "validate": "benchnav.api.authoring.validate",
         },
     )
 
@@ -55,26 +75,38 @@ __version__ = "0.2.0"
 
 __all__ = [
     "BenchnavError",
+    "Catalogue",
     "Comparison",
     "Curve",
+    "Diagnosis",
     "Episode",
     "Episodes",
     "Leaderboard",
+    "Page",
     "Run",
     "Scenario",
+    "Training",
+    "Validation",
     "Verification",
     "World",
     "available",
+    "doctor",
+    "import_map",
     "load_scenario",
     "make_env",
     "merge",
+    "new_navigator",
     "open_run",
     "register_controller",
     "register_metric",
     "register_navigator",
     "register_planner",
     "run",
+    "schema",
+    "show",
     "simulate",
+    "train",
+    "validate",
 ]
 
 

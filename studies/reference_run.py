@@ -22,7 +22,7 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
-from benchnav.api.messages import message
+from benchnav.api.output.messages import message
 from benchnav.leaderboard.from_runs import stored_values
 from benchnav.runner.execute.progress import progress
 from benchnav.runner.plan.suite import Selection, load_suite

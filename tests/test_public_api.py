@@ -19,7 +19,8 @@ AUTHORS = {"Navigator", "AgentNavigator", "Controller", "Planner", "Briefing", "
 
 def test_public_names():
     assert set(benchnav.__all__) >= {
-        "run", "open_run", "simulate", "load_scenario", "make_env", "merge", "available",
+        "run", "open_run", "simulate", "load_scenario", "make_env", "merge", "available", "train",
+        "show", "validate", "schema", "import_map", "new_navigator", "doctor",
         "Run", "Leaderboard", "Scenario", "World", "Episode", "BenchnavError",
         "register_controller", "register_metric", "register_navigator", "register_planner",
     }  # fmt: skip

@@ -5,8 +5,8 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TypeVar
 
-from benchnav.api.messages import message as say
-from benchnav.api.text_table import written
+from benchnav.api.output.messages import message as say
+from benchnav.api.output.text_table import written
 from benchnav.errors import StoreError, UsageError, did_you_mean
 from benchnav.system.streams import drop
 from benchnav.text.visible import visible_lines

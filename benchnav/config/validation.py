@@ -10,32 +10,13 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
 from benchnav.config.document import Document, PathKey, shown
+from benchnav.config.model_errors import requirement
 from benchnav.errors import ScenarioError, did_you_mean
 
 MAX_ERRORS = 10
 M = TypeVar("M", bound=BaseModel)
 Schema = dict[str, Any]
 
-_MUST_BE = {
-    "missing": "must be given", "union_tag_not_found": "must have the key `type`",
-    "float_type": "must be a number", "int_type": "must be a whole number",
-    "int_from_float": "must be a whole number", "bool_type": "must be true or false",
-    "string_type": "must be text", "finite_number": "must be finite",
-    "dict_type": "must be a mapping", "model_type": "must be a mapping",
-    "model_attributes_type": "must be a mapping", "list_type": "must be a list",
-    "tuple_type": "must be a list", "path_type": "must be a path",
-}  # fmt: skip
-_BOUND = {
-    "greater_than": "must be > {gt}", "greater_than_equal": "must be ≥ {ge}",
-    "less_than": "must be < {lt}", "less_than_equal": "must be ≤ {le}",
-    "literal_error": "must be {expected}", "enum": "must be {expected}",
-    "too_short": "must have at least {min_length} entries",
-    "too_long": "must have at most {max_length} entries",
-    "string_too_short": "must have at least {min_length} characters",
-    "string_too_long": "must have at most {max_length} characters",
-    "string_pattern_mismatch": "must match {pattern}",
-    "union_tag_invalid": "must have one of the types {expected_tags}",
-}  # fmt: skip
 _OF_TYPE = {  # the value has the wrong type
     "float_type", "int_type", "bool_type", "string_type", "dict_type", "model_type", "list_type",
     "tuple_type", "path_type", "model_attributes_type", "literal_error", "enum", "sampler",
@@ -146,7 +127,7 @@ def _error(model: type[BaseModel], document: Document, detail: ErrorDetails) -> 
         return _Error(at, path, "must be given.")
     if own is not None:
         return _Error(at, path, f"{own}{'' if str(own).endswith(('.', '?')) else '.'}")
-    must = _must_be(kind, context, detail["msg"])
+    must = requirement(detail)
     hint, of_type = "", kind in _OF_TYPE
     if kind in {"literal_error", "union_tag_invalid", "enum"} and got is not _ABSENT:
         expected = str(context.get("expected", context.get("expected_tags", "")))
@@ -154,15 +135,6 @@ def _error(model: type[BaseModel], document: Document, detail: ErrorDetails) -> 
         hint = did_you_mean(str(tag)[:100], [e for e in expected.split("'") if e.strip(", or")])
         got = tag
     return _Error(at, path, must=must, got=_described(got), hint=hint, of_type=of_type)
-
-
-def _must_be(kind: str, context: dict[str, Any], message: str) -> str:
-    if kind in _MUST_BE:
-        return _MUST_BE[kind]
-    if kind in _BOUND:
-        short = {k: f"{v:g}" if isinstance(v, float) else v for k, v in context.items()}
-        return _BOUND[kind].format(**short)
-    return message[:1].lower() + message[1:].rstrip(".")
 
 
 _ABSENT = object()

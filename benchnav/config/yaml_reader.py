@@ -7,7 +7,7 @@ Keys are always text.
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +35,9 @@ _WORDS: dict[str, Any] = {
     "+.inf": float("inf"), "-.inf": float("-inf"), "-.Inf": float("-inf"),
 }  # fmt: skip
 
-__all__ = ["MAX_BYTES", "MAX_DEPTH", "MAX_NODES", "read_yaml", "read_yaml_text", "validate"]
+__all__ = [
+    "MAX_BYTES", "MAX_DEPTH", "MAX_NODES", "document_of", "read_yaml", "read_yaml_text", "validate",
+]  # fmt: skip
 
 
 def read_yaml(path: Path | str) -> Document:
@@ -60,6 +62,22 @@ def read_yaml(path: Path | str) -> Document:
             f"{path}:{line}: the file must be UTF-8; byte {error.start} is {raw[error.start]:#04x}."
         ) from None
     return read_yaml_text(text, str(path))
+
+
+def document_of(content: Mapping[str, Any], name: str) -> Document:
+    """Return the content of a file, given as a mapping; messages use ``name`` as the file name.
+
+    Raises ScenarioError where a value is not plain data, or as `read_yaml_text`.
+    """
+    try:
+        text = yaml.safe_dump(dict(content), sort_keys=False, allow_unicode=True)
+    except yaml.representer.RepresenterError as error:
+        strange = shown(error.args[-1])
+        raise ScenarioError(
+            f"{name}: every value must be a mapping, a list, text, a number, true, false or None."
+            f" Got {strange} instead."
+        ) from None
+    return read_yaml_text(text, name)
 
 
 def read_yaml_text(text: str, name: str) -> Document:

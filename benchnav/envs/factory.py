@@ -5,10 +5,10 @@ from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
-from pydantic_core import ErrorDetails
 
 from benchnav.arena.world import World
 from benchnav.arrays import IntArray
+from benchnav.config.model_errors import parameter_errors
 from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.encoders.catalogue import encoder as encoder_called
 from benchnav.envs.reward import RewardWeights
@@ -54,7 +54,8 @@ def weights_of(reward: Reward) -> RewardWeights:
     try:
         return RewardWeights(**(reward or {}))
     except ValidationError as error:
-        raise ConfigError("\n".join(map(_mistake, error.errors()))) from None
+        lines = parameter_errors(error, RewardWeights, "reward", "weight")
+        raise ConfigError("\n".join(text for _, text in lines)) from None
 
 
 def make_batch(
@@ -108,11 +109,3 @@ def refuse_rendering(render_mode: str | None) -> None:
         raise NoRenderingError(
             f"The render_mode must be None: environments draw nothing. Got {render_mode!r} instead."
         )
-
-
-def _mistake(detail: ErrorDetails) -> str:
-    key = ".".join(map(str, detail["loc"]))
-    if detail["type"] == "extra_forbidden":
-        return f"The reward has no weight {key!r}.{did_you_mean(key, RewardWeights.model_fields)}"
-    rule = detail["msg"].removeprefix("Input should be ")
-    return f"The weight {key!r} of the reward must be {rule}. Got {detail['input']!r} instead."

@@ -12,6 +12,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from benchnav.arrays import FloatArray, IntArray
+from benchnav.config.model_errors import first_problem
 from benchnav.errors import BenchnavError, MissingExtraError, NavigatorError, named
 from benchnav.isolation.briefing_codec import encode_briefings
 from benchnav.isolation.navigator_process import Process
@@ -133,11 +134,11 @@ def handshake(process: Process, hello: Mapping[str, Any]) -> Capabilities:
     try:
         return Capabilities.model_validate_json(answer)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(map(str, first["loc"])) or "its answer"
+        problem = first_problem(error)
         raise NavigatorError(
-            f"its process must answer 'hello' with the fields in docs/isolation.md: {key}:"
-            f" {first['msg']}. Got {str(answer)[:200]!r} instead"
+            "its process must answer 'hello' with the fields in docs/isolation.md:"
+            f" {problem.key or 'its answer'} {problem.requirement}."
+            f" Got {str(answer)[:200]!r} instead"
         ) from None
 
 

@@ -51,5 +51,5 @@ def _require_one(tables: Mapping[str, pa.Table], column: str, difference: str) -
 
 _CURES = {
     "navigator_hash": "Leave one out",
-    "source_hash": "Run the older one again (benchnav run … --again)",
+    "source_hash": "Run the older one again (option 'again')",
 }

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal, NoReturn
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, StrictBool, ValidationError
 
+from benchnav.config.model_errors import first_problem
 from benchnav.errors import BenchnavError, PluginError
 from benchnav.metrics.measure import is_own, load_metric
 from benchnav.metrics.metric import Metric
@@ -73,9 +74,9 @@ def _metric(plugin: Plugin, answer: Any) -> Metric | BenchnavError:
     try:
         declared = _Declaration.model_validate(answer)
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(map(str, first["loc"])) or "declaration"
-        return plugin.broken(f"its {key} is invalid: {first['msg']}")
+        problem = first_problem(error)
+        key = problem.key or "declaration"
+        return plugin.broken(f"its {key} {problem.requirement}; got {problem.got}")
     return Metric(name=plugin.name, function=_not_here, **declared.model_dump())
 
 

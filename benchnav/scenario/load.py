@@ -18,7 +18,7 @@ def load_scenario(path: Path | str, given: Given | None = None) -> Scenario:
         UsageError: an unknown parameter, or a number out of its bounds.
         ScenarioError: with ``file:line: key`` of each problem, up to ten.
     """
-    return _checked(read_yaml(path), Path(path).parent, given or {})
+    return scenario_of(read_yaml(path), Path(path).parent, given)
 
 
 def scenario_from_text(text: str, name: str, folder: Path | str = ".") -> Scenario:
@@ -27,11 +27,15 @@ def scenario_from_text(text: str, name: str, folder: Path | str = ".") -> Scenar
     Raises:
         ScenarioError: like `load_scenario`.
     """
-    return _checked(read_yaml_text(text, name), Path(folder), {})
+    return scenario_of(read_yaml_text(text, name), Path(folder))
 
 
-def _checked(document: Document, folder: Path, given: Given) -> Scenario:
-    document, chosen = resolve(document, given)
+def scenario_of(document: Document, folder: Path, given: Given | None = None) -> Scenario:
+    """Return the scenario that ``document`` describes; paths of its files start at ``folder``.
+
+    Raises what `load_scenario` raises.
+    """
+    document, chosen = resolve(document, given or {})
     scenario = validate(Scenario, document)
     scenario = scenario.placed_in(folder, chosen, _places_of_teams(document))
     for key, path in scenario.files():

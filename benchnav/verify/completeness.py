@@ -38,7 +38,7 @@ def covered(run: RunFolder, suite: RebuiltSuite, report: Report) -> Iterator[tup
     known = {run.cell(job.key) for job in suite.jobs}
     for path in sorted((run.path / "parts").glob("*")):
         if path not in known and run.key_of(path):
-            report.notes["cell of other source, which an unfinished --again left"] += 1
+            report.notes["cell of other source, which an unfinished repetition left"] += 1
         elif path not in known:
             report.find(
                 "coverage", str(run.shown / "parts" / path.name), "is not a cell of the suite"

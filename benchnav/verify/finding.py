@@ -118,9 +118,11 @@ class Report:
         if self.claims:
             lines.append(f"statements of the author about the run: {self.claims}")
         if not c["rerun"]:
-            lines.append("whether the navigators gave these commands (--rerun checks it)")
+            lines.append(
+                "whether the navigators gave these commands (the option 'rerun' checks it)"
+            )
         if c["n/a cells"] and not c["rerun n/a"]:
-            lines.append(f"why cells are n/a ({c['n/a cells']}), as navigators report it (--rerun)")
+            lines.append(f"why cells are n/a ({c['n/a cells']}), as navigators report it ('rerun')")
         if self.unmeasured:
             names = ", ".join(sorted(self.unmeasured))
             lines.append(f"metrics that are installed here and not measured in the run: {names}")

@@ -37,7 +37,7 @@ def report_text(run: str, report: Report, seconds: float) -> str:
         few = report.few(_SHOWN)
         lines += ["", columns([(f.kind, visible(f.where), visible(f.what)) for f in few])]
         if count > len(few):
-            lines.append(f"… and {count - len(few)} more (--json has all)")
+            lines.append(f"… and {count - len(few)} more (JSON has all)")
         lines.append("")
     lines += [f"  checked      {visible(text)}" for text in report.checked]
     lines += [f"  not checked  {visible(text)}" for text in report.unchecked]

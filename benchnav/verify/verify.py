@@ -200,7 +200,7 @@ def _collected(
     except BrokenProcessPool as error:
         raise BenchnavError(
             "Worker processes must stay alive; one was killed (see stderr for the cause; memory"
-            " may be short). Try --workers 1."
+            " may be short). Try 1 worker."
         ) from error
 
 

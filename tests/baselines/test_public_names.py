@@ -15,8 +15,9 @@ PACKAGES = (
 MODULES = ("benchnav.arrays", "benchnav.errors", "benchnav.kernels", "benchnav.threads")
 EXCEPTIONS = frozenset({
     # inner parts of benchnav that baselines share with it
-    "GuidedConfig", "MappingConfig", "PartSpec", "PathKey", "FieldError", "capsule_grid", "pop",
-    "push", "probability", "SIMPLIFY", "THIN", "section", "locked", "read_file", "granted",
+    "GuidedConfig", "MappingConfig", "PartSpec", "PathKey", "FieldError", "first_problem",
+    "capsule_grid", "pop", "push", "probability", "SIMPLIFY", "THIN", "section", "locked",
+    "read_file", "granted",
     # what trainers need of a scenario and of the simulator
     "RANGE", "RAYS", "Simulation", "Trainer", "TrainingReport", "build", "find", "ray_angles",
     "sense",

@@ -198,7 +198,9 @@ def call(capfd, tmp_path):
         ("encoder: ego", "encoder: eggo", "recipe.yaml:2: encoder must be one of paper"),
         ("encoder: ego", "encoder: eggo", "Did you mean 'ego'?"),
         ("trainer: recurrent-ppo", "trainer: ppo", "recipe.yaml:13: trainer must be one of"),
-        ("trainer: recurrent-ppo", "", "recipe.yaml:1: trainer must be one of"),
+        ("trainer: recurrent-ppo", "", "recipe.yaml:1: the key 'trainer' is missing"),
+        ("trainer: recurrent-ppo", "", "Add the line 'trainer: NAME' with one of these names: "),
+        ("trainer:", "trainr:", "Or rename the key 'trainr'."),
         ("name: tiny", "name: Big Name", "recipe.yaml:1: name must match"),
         ("worlds: 4", "world: 4", "recipe.yaml:3: courses[0].world is not a known key"),
         ("batch: 32, epochs: 1}\n  -", "batch: 8}\n  -", "recipe.yaml:9: stages[0].batch must be"),
@@ -220,7 +222,7 @@ def test_options_that_cannot_be_followed_are_refused(call):
     assert call(TINY, "--resume")[0] == 2
     code, said = call(TINY, "--device", "abacus")
     assert code == 2
-    assert "--device must be one of" in said
+    assert "The device must be one of" in said
     assert status(["train", "dynamik"]) == 2
 
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from benchnav.cli.viewing import inspection
+from benchnav.api.components import inspection
 from benchnav.metrics import declared
 from benchnav.metrics.measure import own_metrics
 from benchnav.navigation.plugin import plugin_process

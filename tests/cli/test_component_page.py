@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from benchnav.cli.viewing.component_page import INDEX, pages
+from benchnav.api.components.component_page import INDEX, pages
 from benchnav.plugins import CONTROLLERS, NAVIGATORS, PLANNERS
 
 KEPT = Path(__file__).parents[2] / "docs" / "components"
@@ -11,7 +11,7 @@ KEPT = Path(__file__).parents[2] / "docs" / "components"
 def test_the_kept_pages_are_up_to_date():
     made = pages()
     kept = {path.name: path.read_text("utf-8") for path in KEPT.glob("*.md")}
-    again = "python -m benchnav.cli.viewing.component_page docs/components"
+    again = "python -m benchnav.api.components.component_page docs/components"
     assert sorted(kept) == sorted(made), again
     assert [name for name in made if kept[name] != made[name]] == [], again
 

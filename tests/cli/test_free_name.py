@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchnav.cli.authoring.free_name import name_taken
+from benchnav.api.authoring.free_name import name_taken
 
 TAKEN = (
     "json", "random", "numpy", "torch", "benchnav", "benchnav-baselines", "benchnav-scenarios",
@@ -15,8 +15,8 @@ TAKEN = (
 def test_a_name_that_is_taken_is_refused_with_one_that_is_free(call, tmp_path, name):
     code, stdout, stderr = call("new", "navigator", name, "--out", tmp_path / "out")
     assert (code, stdout) == (2, "")
-    assert "NAME must be free. " in stderr
-    assert f"'my-{name}' would do" in stderr
+    assert "The name must be free. " in stderr
+    assert f"'my-{name}' is free." in stderr
     assert not (tmp_path / "out").exists()
     assert call("new", "navigator", f"my-{name}", "--out", tmp_path / "out")[0] == 0
 
@@ -25,7 +25,7 @@ def test_the_suggestion_is_free_too(call, tmp_path, monkeypatch):
     (tmp_path / "my_json.py").touch()
     (tmp_path / "my_json_2.py").touch()
     monkeypatch.syspath_prepend(tmp_path)
-    assert "'my-json-3' would do" in call("new", "navigator", "json")[2]
+    assert "'my-json-3' is free." in call("new", "navigator", "json")[2]
 
 
 @pytest.mark.parametrize("name", ["keep-away", "my-idea", "walker2"])

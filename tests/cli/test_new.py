@@ -2,7 +2,7 @@
 
 import tomllib
 
-from benchnav.cli.authoring.navigator_template import navigator_package
+from benchnav.api.authoring.navigator_template import navigator_package
 from benchnav.cli.main import status
 from tests.docs.blocks import NAMED, ROOT, blocks
 

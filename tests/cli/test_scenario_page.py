@@ -2,7 +2,7 @@
 
 import pytest
 
-from benchnav.cli.viewing.scenario_page import WIDTH
+from benchnav.api.components.scenario_page import WIDTH
 from tests.cli.conftest import TINY
 from tests.scenario.files import SHIPPED
 

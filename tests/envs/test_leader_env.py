@@ -149,7 +149,7 @@ def test_others_that_answer_garbage_are_named():
         ({"split": "test"}, "train or validation: .* Got 'test' instead"),
         ({"worlds": 0}, "at least 1 world. Got 0 instead"),
         ({"reward": {"gaol": 1}}, "no weight 'gaol'. Did you mean 'goal'"),
-        ({"reward": {"goal": -1}}, "'goal' of the reward must be greater.* Got -1 instead"),
+        ({"reward": {"goal": -1}}, "'goal' of the reward must be ≥ 0. Got -1 instead"),
         ({"others": "orka", "worlds": 1}, "Did you mean 'orca'"),
         ({"others": None}, "others must name the navigator of the other agents"),
         ({"render_mode": "human"}, "must be None: .* Got 'human' instead"),

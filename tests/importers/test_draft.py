@@ -116,7 +116,9 @@ def test_no_scenario_is_overwritten_unless_forced(tiny, tmp_path):
     mapping = import_movingai(tiny)
     write_scenario(mapping, out)
     before = out.read_text()
-    with pytest.raises(UsageError, match=r"tiny\.yaml must not exist yet; --force overwrites it"):
+    with pytest.raises(
+        UsageError, match=r"tiny\.yaml must not exist yet; the option 'force' overwrites it"
+    ):
         write_scenario({**mapping, "title": "other"}, out)
     assert out.read_text() == before
     write_scenario({**mapping, "title": "other"}, out, force=True)
@@ -259,7 +261,7 @@ def test_names_tell_maps_apart(tmp_path, tiny):
 def test_a_map_without_a_free_cell_tells_blocked_from_unknown(ros, tmp_path):
     image = ros.parent / "images" / "lab.pgm"
     image.write_bytes(b"P5\n40 20\n255\n" + bytes([205] * 790) + bytes(10))
-    says = r"none is free, 10 are blocked and 790 are unknown\. --unknown-is-free opens"
+    says = r"none is free, 10 are blocked and 790 are unknown\. The option 'unknown-is-free' opens"
     with pytest.raises(MapError, match=says):
         import_ros_map(ros)
     open_to_all = import_ros_map(ros, unknown_is_free=True)
@@ -282,7 +284,7 @@ def test_remarks_on_cells_and_journeys(ros, tiny):
     import_ros_map(ros, remark=remarks.append)
     assert remarks[:2] == [
         "40 × 20 cells of 0.5 m: 790 free, 5 blocked, 5 unknown.",
-        "Agents may not enter unknown cells; --unknown-is-free opens them.",
+        "Agents may not enter unknown cells; the option 'unknown-is-free' opens them.",
     ]
     ros.write_text(ros.read_text().replace("0.196", "0.25"))
     remarks.clear()

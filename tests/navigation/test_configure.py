@@ -96,13 +96,11 @@ def test_configure_constructs_nothing(registry):
         ({"type": "empty", "zz": 2}, "The thing 'empty' has no parameter 'zz'. It has none."),
         (
             {"type": "mild", "time_horizon": -3},
-            "The parameter 'time_horizon' of the thing 'mild' must be greater than 0."
-            " Got -3 instead.",
+            "The parameter 'time_horizon' of the thing 'mild' must be > 0. Got -3 instead.",
         ),
         (
             {"type": "mild", "time_horizon": float("nan")},
-            "The parameter 'time_horizon' of the thing 'mild' must be a finite number."
-            " Got nan instead.",
+            "The parameter 'time_horizon' of the thing 'mild' must be finite. Got nan instead.",
         ),
         (
             "strict",
@@ -114,8 +112,8 @@ def test_configure_constructs_nothing(registry):
         ),
         (
             {"type": "mild", "when": 7},
-            "The parameter 'when' of the thing 'mild' must be 'never' or 'always', or a valid"
-            " dictionary. Got 7 instead.",
+            "The parameter 'when' of the thing 'mild' must be 'never' or 'always', or a mapping."
+            " Got 7 instead.",
         ),
         (
             {"type": "mild", "when": {"evry": 1}},

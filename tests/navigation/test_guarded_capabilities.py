@@ -58,11 +58,11 @@ PLACES = {
     "required": "class C{k}(StraightLine):\n    @property\n    def required(self):\n{misdeed}\n",
 }
 LIES = {
-    "reproducible": ("'yes'", "its reproducible must be a valid boolean. Got 'yes' instead"),
+    "reproducible": ("'yes'", "its reproducible must be true or false. Got 'yes' instead"),
     "uses_map": ("1", "its uses_map must be"),
     "required": ("'rays'", "its required"),
     "command": ("'teleport'", "its command must be 'velocity' or 'twist'"),
-    "rehearsal": ("-1", "its rehearsal must be greater"),
+    "rehearsal": ("-1", "its rehearsal must be ≥ 0"),
     "leader": ("object()", "its leader"),
     "training": ("object()", "its training must be"),
     "fingerprint": ("5", "its fingerprint"),

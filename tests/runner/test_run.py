@@ -190,7 +190,7 @@ def test_seeds_with_a_gap_before_them_and_those_of_a_shard_do_not_extend(suite_f
         return load_suite(str(suite_file), Selection(seeds=seeds, salt=SALT))
 
     run_suite(suite("1"), tmp_path / "whole", workers=0)
-    with pytest.raises(RunConflictError, match=r"must touch .* 0:1\. Use --seeds 0:4"):
+    with pytest.raises(RunConflictError, match=r"must touch .* 0:1\. Use the seeds 0:4"):
         run_suite(suite("3:4"), tmp_path / "whole", workers=0)
     run_suite(suite("2"), tmp_path / "share", workers=0, shard=Shard(1, 2))
     with pytest.raises(RunConflictError, match=r"They differ in seeds\."):

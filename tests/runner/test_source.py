@@ -98,7 +98,7 @@ def test_edited_code_and_weights_are_refused_and_run_again(edit, suite_of, tmp_p
     old, other = digests(out), digests(out, "straight-line")
     assert run_suite(suite_of("drifts", "straight-line"), out, workers=0).found == 10
     edit(**how)
-    text = "source changed: 5 episodes were made by older code; --again runs them"
+    text = "source changed: 5 episodes were made by older code; the option 'again' repeats them"
     with pytest.raises(RunConflictError, match=text):
         run_suite(suite_of("drifts", "straight-line"), out, workers=0)
     assert digests(out) == old
@@ -168,7 +168,7 @@ def test_an_interrupted_again_keeps_the_old_whole_and_goes_on(
     assert digests(out) == old
     report = verify(RunFolder.open(out), Wanted(twin=0), workers=0)
     assert report.clean
-    assert report.notes["cell of other source, which an unfinished --again left"] == 1
+    assert report.notes["cell of other source, which an unfinished repetition left"] == 1
     assert "another source is installed here" in report.sources[0]
     with pytest.raises(RunConflictError, match="5 episodes were made by older code"):
         run_suite(suite_of("drifts"), out, workers=0)

@@ -126,7 +126,7 @@ def test_a_wrong_selection_is_asked_wrongly(write):
 @pytest.mark.parametrize(
     ("selection", "complaint"),
     [
-        (Selection(navigators=("orca", "orca")), "--navigator must name each of the navigators"),
+        (Selection(navigators=("orca", "orca")), "The navigators must be named once each"),
         (Selection(navigators=("orca", "{type: orca}")), "as 'orca' and as '{type: orca}'"),
         (Selection(tracks=("known", "known")), "--track must name each of the tracks once"),
         (Selection(scenarios=("trap/u", "trap/u@1")), "--scenario must name each of the scenarios"),
@@ -151,7 +151,7 @@ def test_a_navigator_can_be_written_out_where_it_is_selected(write):
     suite = load_suite(write(), Selection(navigators=("orca", written)))
     assert [contestant.label for contestant in suite.contestants] == ["orca", "far-sighted"]
     assert suite.contestants[1].spec["time_horizon"] == 9.0
-    with pytest.raises(ScenarioError, match="--navigator:1"):
+    with pytest.raises(ScenarioError, match="navigators:1"):
         load_suite(write(), Selection(navigators=("{type: orca",)))
 
 

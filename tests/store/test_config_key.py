@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from benchnav.api.run import open_run
+from benchnav.api.records.run import open_run
 from benchnav.errors import CorruptPartError
 from benchnav.store.runs import checked_json
 from benchnav.store.runs.manifest import SCHEMA, Manifest, load_manifest, parse_manifest

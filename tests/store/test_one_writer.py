@@ -57,7 +57,7 @@ def test_who_writes_a_new_run_made_its_manifest(attempt, tools, run):
     for error in found:
         if not isinstance(error, tuple):
             assert "must have one writer. The process" in str(error)
-            assert "choose another --out" in str(error)
+            assert "choose another folder" in str(error)
 
 
 def test_the_manifest_of_a_writer_is_that_of_now(tools, run):

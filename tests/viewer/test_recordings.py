@@ -97,7 +97,7 @@ def test_a_rerun_file_holds_the_scene(episode, tmp_path):
 @pytest.mark.parametrize("suffix", [".mcap", ".rrd"])
 def test_a_recording_holds_one_episode(episode, tmp_path, suffix):
     pytest.importorskip("mcap_protobuf" if suffix == ".mcap" else "rerun")
-    from benchnav.api.replay import Replay
+    from benchnav.api.records.replay import Replay
 
     with pytest.raises(UsageError, match="one episode"):
         Replay([episode.record] * 2).save(tmp_path / f"a{suffix}")

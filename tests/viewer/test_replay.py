@@ -142,7 +142,7 @@ def test_a_page_shows_one_to_nine(episode):
 
 
 def test_saving(episode, tmp_path):
-    from benchnav.api.episode import Episode
+    from benchnav.api.records.episode import Episode
 
     handle = Episode(episode).replay(agents=[0])
     assert handle.save(tmp_path / "a.html").read_text(encoding="utf-8") == handle.html

@@ -89,7 +89,7 @@ def test_a_crowd_of_a_thousand_is_small_and_plays(tmp_path):
     start = rng.uniform(1, 99, (1000, 2))
     crew = agents(start, 100.0 - start, radius=0.3, speed=1.4, team=rng.integers(0, 4, 1000))
     drawn = world(crew, side=100.0, steps=600)
-    from benchnav.api.episode import Episode
+    from benchnav.api.records.episode import Episode
     from tests.viewer.made_episode import straight_episode
 
     record = straight_episode(drawn, 600)

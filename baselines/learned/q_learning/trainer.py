@@ -35,11 +35,11 @@ class QLearningTrainer(Trainer[recipe.Recipe]):
     ) -> None:
         if resume:
             raise UsageError(
-                "q-learning keeps no checkpoints, so it cannot --resume. Leave the option out:"
+                "q-learning keeps no checkpoints, so it cannot resume. Leave the option out:"
                 " a whole training takes about a minute."
             )
         if device not in ("cpu", "auto"):
-            raise UsageError(f"--device must be cpu or auto for q-learning. Got {device!r}.")
+            raise UsageError(f"The device must be cpu or auto for q-learning. Got {device!r}.")
         if (out / WEIGHTS).exists():
             raise UsageError(f"{out} must be a new folder. It holds {WEIGHTS}.")
         out.mkdir(parents=True, exist_ok=True)

@@ -14,6 +14,7 @@ from typing import Annotated, Literal
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from benchnav.config.model_errors import first_problem
 from benchnav.errors import InputError
 from benchnav.system.plain_file import read_file
 
@@ -73,9 +74,8 @@ def read_paths(file: Path | str) -> tuple[GuidingPath, ...]:
     except OSError as error:
         raise InputError(f"{rule} It cannot be read: {error.strerror}.") from error
     except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(map(str, first["loc"]))
-        raise InputError(f"{rule} {place or 'It'}: {first['msg']}.") from None
+        problem = first_problem(error)
+        raise InputError(f"{rule} {problem.key or 'It'} {problem.requirement}.") from None
     return tuple(_path(k, path, rule) for k, path in enumerate(content.paths))
 
 

@@ -1,11 +1,11 @@
 """`benchnav import`: convert maps of other projects into scenario files."""
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
-from benchnav.cli.console import put, say
+from benchnav.cli.console import put
 from benchnav.cli.stopping import stoppable
 
 import_app = typer.Typer(help="Convert a published map into a scenario.", no_args_is_help=True)
@@ -51,19 +51,13 @@ def movingai(
     force: Force = False,
 ) -> None:
     """Convert a grid map of the MovingAI benchmarks."""
-    from benchnav.scenario.importers import default_name, import_movingai
+    from benchnav.api.authoring.import_map import import_map
 
-    scenario = import_movingai(
-        map,
-        scen,
-        agents=agents,
-        bucket=bucket,
-        cell=cell,
-        radius=radius,
-        name=name or default_name("movingai", map, out),
-        remark=say,
-    )
-    _write(scenario, out, force)
+    files = import_map(
+        map, out, format="movingai", scen=scen, agents=agents, bucket=bucket, cell=cell,
+        radius=radius, name=name, force=force,
+    )  # fmt: skip
+    put("\n".join(str(file) for file in files))
 
 
 @import_app.command("ros-map")
@@ -83,21 +77,10 @@ def ros_map(
     force: Force = False,
 ) -> None:
     """Convert an occupancy map of the ROS map_server."""
-    from benchnav.scenario.importers import default_name, import_ros_map
+    from benchnav.api.authoring.import_map import import_map
 
-    scenario = import_ros_map(
-        map,
-        agents=agents,
-        radius=radius,
-        unknown_is_free=unknown_is_free,
-        name=name or default_name("ros", map, out),
-        remark=say,
-    )
-    _write(scenario, out, force)
-
-
-def _write(scenario: dict[str, Any], out: Path, force: bool) -> None:
-    from benchnav.scenario.importers import write_scenario
-
-    for path in write_scenario(scenario, out, force):
-        put(str(path))
+    files = import_map(
+        map, out, format="ros-map", agents=agents, radius=radius,
+        unknown_is_free=unknown_is_free, name=name, force=force,
+    )  # fmt: skip
+    put("\n".join(str(file) for file in files))

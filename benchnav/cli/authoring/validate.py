@@ -6,8 +6,6 @@ from typing import Annotated
 import typer
 
 from benchnav.cli.console import put
-from benchnav.cli.viewing.scenario_page import worlds_text
-from benchnav.text.plural import counted
 
 
 def validate(
@@ -21,42 +19,10 @@ def validate(
 
     Each problem is reported as file:line: key.
     """
-    from benchnav.config.yaml_reader import read_yaml
-    from benchnav.runner.plan.suite_file import describes_scenario
+    from benchnav.api.authoring.validate import validate as check
 
-    if describes_scenario(read_yaml(file).data):
-        _scenario(file, draw)
-    else:
-        _suite(file)
-
-
-def _suite(file: Path) -> None:
-    from benchnav.runner.plan.suite import load_suite
-
-    suite = load_suite(str(file))
-    jobs = list(suite.jobs())
-    missing = sum(bool(job.reason) for job in jobs)
-    put(
-        f"{file} is a suite, {suite.name}@{suite.version}: {counted(len(jobs), 'cell')},"
-        f" {missing} of them n/a, × {counted(len(suite.seeds), 'seed')}"
-    )
-
-
-def _scenario(file: Path, draw: bool) -> None:
-    from benchnav.navigation.plugin.background_navigators import check_drivers
-    from benchnav.scenario.load import load_scenario
-
-    scenario = load_scenario(file)
-    check_drivers(scenario)
-    put(f"{file} is a scenario, {scenario.identity}, hash {scenario.hash}")
-    if not draw:
-        return
-    from benchnav.generation.build import build
-
-    world = build(scenario, "test", 0)
-    put(
-        f"its first test world has {counted(len(world.agents), 'agent')}; walls and static"
-        f" obstacles: {len(world.solids)}, moving ones: {len(world.bodies)}; draws before it that"
-        f" were not solvable: {world.redraws}"
-    )
-    put(f"its worlds {worlds_text(scenario)}")
+    found = check(file, draw=draw)
+    if found.facts:
+        put(found.facts)
+    if found.error is not None:
+        raise found.error

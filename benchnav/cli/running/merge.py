@@ -17,6 +17,6 @@ def merge(
     Prints the merged run on stdout, and says what it still lacks. Episodes that several
     runs hold must be the same.
     """
-    from benchnav.api.run import merge as merged
+    from benchnav.api.records.run import merge as merged
 
     put(str(merged(runs, out).path))

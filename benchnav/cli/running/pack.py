@@ -18,6 +18,6 @@ def pack(
 
     `benchnav verify` checks the file without the navigators. Prints the path of the file.
     """
-    from benchnav.api.run import open_run
+    from benchnav.api.records.run import open_run
 
     put(str(open_run(run).pack(out)))

@@ -28,7 +28,7 @@ def run(
     Scenarios × tracks × navigators × seeds. Prints the run folder on stdout;
     `benchnav leaderboard` makes the table from it.
     """
-    from benchnav.api.execution import run as execute
+    from benchnav.api.execution.run import run as execute
 
     found = execute(
         suite, navigators=navigator, scenarios=scenario, tracks=track, seeds=seeds, out=out,

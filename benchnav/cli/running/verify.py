@@ -35,7 +35,7 @@ def verify(
     Draws its worlds again, re-simulates its commands, measures its metrics, and names every
     stored number that does not agree. The exit status is 1 if there are any.
     """
-    from benchnav.api.run import open_run
+    from benchnav.api.records.run import open_run
 
     with open_run(run) as opened:
         found = opened.verify(twin=twin, referee=referee, rerun=rerun, workers=workers, quiet=quiet)

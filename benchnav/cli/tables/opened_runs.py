@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from benchnav.api.run import Run
+    from benchnav.api.records.run import Run
 
 
 @contextmanager
 def opened_runs(paths: Sequence[Path]) -> Iterator["list[Run]"]:
     """Open the runs; packs stay unpacked within the context."""
-    from benchnav.api.run import open_run
+    from benchnav.api.records.run import open_run
 
     with ExitStack() as stack:
         yield [stack.enter_context(open_run(path)) for path in paths]

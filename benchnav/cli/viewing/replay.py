@@ -5,13 +5,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from benchnav.api.replay import page_name
+from benchnav.api.records.replay import page_name
 from benchnav.cli.console import put, say
 from benchnav.errors import UsageError
 
 if TYPE_CHECKING:
-    from benchnav.api.episodes import Episodes, Place
-    from benchnav.api.run import Run
+    from benchnav.api.records.episodes import Episodes, Place
+    from benchnav.api.records.run import Run
 
 _LISTED = 200  # lines of --list at most
 _PARTS = ("navigator", "scenario", "track", "seed")
@@ -64,8 +64,8 @@ def replay(
 
     Without options it shows the first episode that failed, or the first one if none did.
     """
-    from benchnav.api.replay import Replay, open_in_browser
-    from benchnav.api.run import open_run
+    from benchnav.api.records.replay import Replay, open_in_browser
+    from benchnav.api.records.run import open_run
 
     navigators = navigator or []
     with open_run(run) as opened:
@@ -91,7 +91,7 @@ def _first(
     run: "Run", found: "Episodes", navigators: list[str], *, failed_first: bool
 ) -> "Episodes":
     """Return the first episode found, and those of the other navigators in the same world."""
-    from benchnav.api.episode_choice import failed_episodes, in_same_world
+    from benchnav.api.records.episode_choice import failed_episodes, in_same_world
 
     if not len(found):
         raise UsageError(
@@ -107,7 +107,7 @@ def _first(
 
 def _named(run: "Run", names: list[str]) -> "Episodes":
     """Return the episodes that are named as in the list."""
-    from benchnav.api.episodes import Episodes
+    from benchnav.api.records.episodes import Episodes
 
     places = []
     for name in names:

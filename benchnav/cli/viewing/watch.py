@@ -37,9 +37,9 @@ def watch(
 
     Nothing is stored beside the page.
     """
-    from benchnav.api.replay import Replay, open_in_browser, page_name
-    from benchnav.api.scenario import load_scenario
-    from benchnav.api.simulate import simulate
+    from benchnav.api.execution.simulate import simulate
+    from benchnav.api.records.replay import Replay, open_in_browser, page_name
+    from benchnav.api.records.scenario import load_scenario
 
     world = load_scenario(scenario).world(seed=seed)
     episodes = [simulate(world, navigator, track=track) for navigator in navigators]

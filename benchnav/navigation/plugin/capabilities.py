@@ -15,6 +15,7 @@ from pydantic import (
 )
 
 from benchnav.arena.sensing import Sensing
+from benchnav.config.model_errors import first_problem
 from benchnav.errors import BenchnavError, BrokenPluginError, MissingExtraError, PluginError
 from benchnav.navigation.command_check import exception_text, short
 from benchnav.navigation.navigator import CommandKind, Navigator, Need, Training
@@ -168,18 +169,10 @@ def _parts(value: Any) -> tuple[Source, ...]:
 
 def invalid_property(error: ValidationError) -> str:
     """Return a message on the first invalid property: its name, the rule and the value."""
-    first = error.errors()[0]
-    name = str(first["loc"][0]) if first["loc"] else "answer"
+    problem = first_problem(error)
+    name = problem.key.partition(".")[0] or "answer"
     key = {"needs": "required"}.get(name, name)
-    rule = first["msg"].removeprefix("Input should be ")
-    return f"its {key} must be {rule}. Got {short(_text(first['input']))} instead."
-
-
-def _text(value: object) -> str:
-    try:
-        return repr(value)
-    except (Exception, SystemExit):
-        return f"a {class_name(value)}"
+    return f"its {key} {problem.requirement}. Got {problem.got} instead."
 
 
 def unfit(navigator: Navigator, sensing: Sensing) -> str:

@@ -1,13 +1,11 @@
 """Make plugins from specs: a name or ``{type: name, …parameters}``, from a file or a caller."""
 
 from collections.abc import Callable, Iterable, Mapping
-from itertools import groupby
-from types import UnionType
-from typing import Any, Union, get_origin
+from typing import Any
 
 from pydantic import BaseModel, ValidationError
-from pydantic_core import ErrorDetails
 
+from benchnav.config.model_errors import parameter_errors
 from benchnav.errors import (
     BenchnavError,
     BrokenPluginError,
@@ -74,7 +72,7 @@ def configure(registry: Registry, spec: Spec, *, where: Where = "") -> tuple[Any
         return plugin, declared(**parameters)
     except ValidationError as error:
         written, _ = _written(registry, spec, where)
-        lines = _explanations(f"{registry.kind} {written!r}", declared, error.errors())
+        lines = parameter_errors(error, declared, f"{registry.kind} {written!r}")
         if isinstance(where, str):
             raise ConfigError(_at(where) + "\n".join(text for _, text in lines)) from None
         raise ConfigError("\n".join(_at(where, key) + text for key, text in lines)) from None
@@ -122,62 +120,6 @@ def _written(registry: Registry, spec: Spec, where: Where) -> tuple[str, dict[st
     if not isinstance(name, str):
         raise ConfigError(f"{rule} Got the type {_short(name)} instead.")
     return name, {key: value for key, value in spec.items() if key != "type"}
-
-
-def _explanations(
-    subject: str, declared: type[BaseModel], details: list[ErrorDetails]
-) -> list[tuple[str, str]]:
-    """Return (parameter, line) of each error; all failed branches of a union are one error."""
-    lines = []
-    for key, group in groupby(details, key=lambda detail: detail["loc"][:1]):
-        branches = list(group)
-        field = declared.model_fields.get(str(key[0])) if key else None
-        union = field is not None and get_origin(field.annotation) in (Union, UnionType)
-        if union and len({branch["loc"] for branch in branches}) > 1:
-            rule = ", or ".join(dict.fromkeys(_rule(branch) for branch in branches))
-            whole = next((b["input"] for b in branches if len(b["loc"]) == 2), None)
-            got = "" if whole is None else f" Got {_short(whole)} instead."
-            text = f"The parameter {key[0]!r} of the {subject} must be {rule}.{got}"
-            lines.append((str(key[0]), text))
-        else:
-            name = str(key[0]) if key else ""
-            lines += [(name, _explain(subject, declared, branch)) for branch in branches]
-    return lines
-
-
-def _rule(detail: ErrorDetails) -> str:
-    if detail["type"] in ("missing", "extra_forbidden"):
-        word = "with" if detail["type"] == "missing" else "without"
-        return f"a mapping {word} {detail['loc'][-1]!r}"
-    message = detail["msg"].removeprefix("Input should be ").removeprefix("Value error, ")
-    return message.partition(" or instance of ")[0]
-
-
-def _explain(subject: str, declared: type[BaseModel], detail: ErrorDetails) -> str:
-    place = detail["loc"]
-    key = ".".join(str(part) for part in place)
-    if detail["type"] == "extra_forbidden":
-        known = _known(declared, place[:-1])
-        near = did_you_mean(str(place[-1]), known)
-        has = f" There is {_listed(known)}." if known and not near else ""
-        none = " It has none." if len(place) == 1 and not known else ""
-        return f"The {subject} has no parameter {key!r}.{near}{has}{none}"
-    if detail["type"] == "missing":
-        return f"The {subject} must be given the parameter {key!r}. Got nothing instead."
-    named = f"The parameter {key!r} of the {subject}" if key else f"The {subject}"
-    return f"{named} must be {_rule(detail)}. Got {_short(detail['input'])} instead."
-
-
-def _known(declared: type[BaseModel], place: tuple[int | str, ...]) -> list[str]:
-    """Return the parameters at ``place``; empty if the place is not a nested Config."""
-    for part in place:
-        field = declared.model_fields.get(str(part))
-        if field is None or not isinstance(field.annotation, type):
-            return []
-        if not issubclass(field.annotation, BaseModel):
-            return []
-        declared = field.annotation
-    return list(declared.model_fields)
 
 
 def _at(where: Where, parameter: str = "") -> str:

@@ -22,12 +22,10 @@ from benchnav.store.runs.spans import spans
 def refuse_limits(workers: int | None, timeout: float | None, memory: float | None) -> None:
     """Raise UsageError if a limit cannot be enforced on this machine."""
     if workers == 0 and (timeout, memory) != (None, None):
-        raise UsageError(
-            "A limit must have a worker process to hold in. Got --workers 0, which has none."
-        )
+        raise UsageError("A limit must have a worker process to hold in. Got 0 workers.")
     if memory is not None and not memory_is_known():
         raise UsageError(
-            "--memory is not supported here: process memory cannot be read. Leave the option out."
+            "A memory limit is not supported here: process memory cannot be read. Leave it out."
         )
 
 
@@ -56,7 +54,7 @@ def start(
     """
     if manifest.shard and not suite.salt and not (out / MANIFEST).exists():
         raise UsageError(
-            "A shard must have the salt of the others. Got none: give all the same --salt, of up"
+            "A shard must have the salt of the others. Got none: give all the same salt, of up"
             " to 64 bytes in hexadecimal digits that cannot be guessed (openssl rand -hex 16)."
         )
     wanted = _limits(Limits(), timeout, memory)
@@ -64,20 +62,20 @@ def start(
     if folder.manifest.shard != manifest.shard:
         raise RunConflictError(
             f"{out} must hold {_share(manifest)}. It holds {_share(folder.manifest)}."
-            " Give another --out."
+            " Choose another folder."
         )
     held = folder.manifest.salt
     if suite.salt not in ("", held):
         raise RunConflictError(
             f"The salt must be that of the run in {folder.path}, {held}. Got {suite.salt} instead."
-            " Leave --salt out to go on there, or give another --out."
+            " Leave the salt out to continue there, or choose another folder."
         )
     limits = Limits.of(folder.manifest.limits)
     if _limits(limits, timeout, memory) != limits:
         raise RunConflictError(
             f"The limits must be those of the run in {folder.path}, {limits}. Got"
-            f" {_limits(limits, timeout, memory)} instead. Leave --timeout and --memory out to go"
-            " on there, or give another --out."
+            f" {_limits(limits, timeout, memory)} instead. Leave timeout and memory out to"
+            " continue there, or choose another folder."
         )
     return folder, limits
 

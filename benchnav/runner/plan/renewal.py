@@ -43,12 +43,12 @@ class Renewal:
         labels = [label for label, count in self.older.items() if count]
         unknown = [label for label in labels if not folder.manifest.source_of(label)]
         count = f"{self.episodes} episode{'s were' if self.episodes > 1 else ' was'}"
-        why = f"{count} made by older code; --again runs them"
+        why = f"{count} made by older code; the option 'again' repeats them"
         if unknown:
             why += f" (whose source was not recorded then: {', '.join(unknown)})"
         raise RunConflictError(
             f"source changed: {why}. They are of {', '.join(map(repr, labels))}, and stay in"
-            f" {folder.path} until then (in Python: again=True). Another --out keeps both."
+            f" {folder.path} until then. Another folder keeps both."
         )
 
     def target(self, folder: RunFolder) -> RunFolder:

@@ -158,7 +158,7 @@ def _selected(
     )
     contestants = factory.create_all(
         [
-            (spec, "--navigator" if i is None else document.where(("navigators", i)))
+            (spec, "navigators" if i is None else document.where(("navigators", i)))
             for i, spec in wanted
         ]
     )
@@ -241,7 +241,7 @@ def _parsed(text: str) -> Spec:
     """Return the spec that ``text`` describes: a name, or ``{type: name, …}`` as in a file."""
     if not text.lstrip().startswith("{"):
         return text
-    data: Spec = read_yaml_text(text, "--navigator").data
+    data: Spec = read_yaml_text(text, "navigators").data
     return data
 
 
@@ -282,7 +282,7 @@ def _refuse_twice(
             same = selected[first] == selected[k]
             written = "" if same else f", as {selected[first]!r} and as {selected[k]!r}"
             raise UsageError(
-                f"--{key[:-1]} must name each of the {key} once. It names {name!r} more than"
+                f"The {key} must be named once each. {name!r} is named more than"
                 f" once{written}. Leave one of them out."
             )
         raise UsageError(

@@ -85,7 +85,7 @@ class _RayJobs:
             if monotonic() - active > START_TIMEOUT:
                 raise BenchnavError(
                     f"No usable Ray worker appeared within {START_TIMEOUT:g} s. All stored episodes"
-                    " are kept; the same command with the same --out continues."
+                    " are kept; the same suite continues in the same folder."
                 )
             for result in ready:
                 yield from self._receive(result)

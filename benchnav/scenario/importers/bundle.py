@@ -34,7 +34,7 @@ def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> li
     try:
         contents = _contents(mapping, out)
         if out.exists() and not force:
-            raise UsageError(f"{out} must not exist yet; --force overwrites it.")
+            raise UsageError(f"{out} must not exist yet; the option 'force' overwrites it.")
         if out.is_file() and not _is_scenario(out):
             raise UsageError(f"{out} is not a scenario; give the new scenario another name.")
         out.parent.mkdir(parents=True, exist_ok=True)

@@ -116,7 +116,7 @@ def import_ros_map(
     _demand_sane(agents, radius, name)
     path = Path(path)
     occupancy = ros_map.read_map(path)
-    demand_free(f"{path}:1", occupancy, unknown_is_free, "--unknown-is-free")
+    demand_free(f"{path}:1", occupancy, unknown_is_free, "The option 'unknown-is-free'")
     _remark_cells(occupancy, unknown_is_free, remark)
     shape: Mapping = {"type": "occupancy", "file": str(path.resolve()), "format": "ros"}
     if unknown_is_free:
@@ -150,7 +150,7 @@ def _remark_cells(occupancy: Occupancy, unknown_is_free: bool, remark: Remark) -
     if unknown and unknown_is_free:
         remark("Agents may enter unknown cells.")
     elif unknown:
-        remark("Agents may not enter unknown cells; --unknown-is-free opens them.")
+        remark("Agents may not enter unknown cells; the option 'unknown-is-free' opens them.")
     if occupancy.doubtful:
         remark(
             f"{occupancy.doubtful} free cells have the grey {ros_map.UNKNOWN_GREY},"
@@ -204,11 +204,12 @@ def _room(path: Path, occupancy: Occupancy, unknown_is_free: bool, radii: Sequen
         if found is not None and found.capacity >= 2:
             return found
     if found is None:
+        cure = ", or the option 'unknown-is-free', which opens unknown cells"
         closed = occupancy.unknown.any() and not unknown_is_free
         raise MapError(
             f"{path}:1: the map must have a place for an agent; none has a radius of"
             f" {radii[-1]:g} m of free space. Try a smaller radius"
-            f"{', or --unknown-is-free to open unknown cells' if closed else ''}."
+            f"{cure if closed else ''}."
         )
     return found
 

@@ -177,7 +177,7 @@ class Part:
         run = self.folder.parent.parent
         return CorruptPartError(
             f"{path} is damaged. It {problem}."
-            f"{CURE}{self.path(SEAL)} and run the same suite again with --out {run}"
+            f"{CURE}{self.path(SEAL)} and run the same suite again into {run}"
             " to redo only this part."
         )
 

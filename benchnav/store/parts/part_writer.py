@@ -210,7 +210,7 @@ def not_writable(part: Part, error: OSError) -> StoreError:
         f"{part.folder} is not writable, or the disk is full:"
         f" {error.strerror or error}."
         " Every finished part is safe; free some space and run the same suite again"
-        f" with --out {run} to continue."
+        f" into {run} to continue."
     )
 
 

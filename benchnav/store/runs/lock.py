@@ -45,7 +45,7 @@ def claimed(path: Path) -> Iterator[None]:
         if not _is_ours(path, handle):
             raise RunConflictError(
                 f"{path} must have one writer. Another process writes it now."
-                " Wait for it, or choose another --out."
+                " Wait for it, or choose another folder."
             )
         try:
             yield
@@ -81,7 +81,7 @@ def _lock(folder: Path) -> Iterator[None]:
             fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             holder = os.pread(handle, 64, 0).decode(errors="replace").strip()
-            raise _in_use(folder, holder, "Wait for it, or choose another --out.") from None
+            raise _in_use(folder, holder, "Wait for it, or choose another folder.") from None
         os.truncate(handle, 0)
         os.pwrite(handle, str(os.getpid()).encode(), 0)
         yield
@@ -99,7 +99,7 @@ def _create_mark(folder: Path) -> Iterator[None]:
             file.write(str(os.getpid()))
     except FileExistsError:
         holder = mark.read_text(encoding="ascii", errors="replace")
-        advice = f"Wait for it, or choose another --out; delete {mark} if that process was killed."
+        advice = f"Wait for it, or choose another folder; delete {mark} if that process was killed."
         raise _in_use(folder, holder, advice) from None
     except OSError as error:
         raise _not_writable(folder, error) from error

@@ -86,7 +86,7 @@ def _refuse_other_source(one: RunFolder, other: RunFolder) -> None:
             raise RunConflictError(
                 f"Runs to merge must share the source of {label!r}. {one.path} has {here},"
                 f" {other.path} has {there}. Repeat one of them with the code of the other"
-                " (benchnav run … --again)."
+                " (option 'again')."
             )
 
 

@@ -72,7 +72,7 @@ class RunFolder:
             raise RunConflictError(
                 f"{path} must be empty or hold a run of {manifest.name}."
                 f" It holds a run of {held.name}, begun {held.created}."
-                f" They differ in {', '.join(differing)}. Choose another --out."
+                f" They differ in {', '.join(differing)}. Choose another folder."
             )
         return cls(path, held)
 
@@ -88,8 +88,8 @@ class RunFolder:
         if seeds.start > stop or seeds.stop < first:
             raise RunConflictError(
                 f"The seeds {seeds.start}:{seeds.stop} must touch those of the run in {self.path},"
-                f" {first}:{stop}. Use --seeds {min(first, seeds.start)}:"
-                f"{max(stop, seeds.stop)}, or choose another --out."
+                f" {first}:{stop}. Use the seeds {min(first, seeds.start)}:"
+                f"{max(stop, seeds.stop)}, or choose another folder."
             )
         both = [min(first, seeds.start), max(stop, seeds.stop)]
         if both != [first, stop]:
@@ -235,7 +235,7 @@ def _refuse_other_content(path: Path, manifest: Manifest) -> None:
     if path.exists() and (not path.is_dir() or not _is_free(path)):
         raise RunConflictError(
             f"{path} must be an empty folder or a run of {manifest.name}."
-            " It has other content. Choose another --out."
+            " It has other content. Choose another folder."
         )
 
 

@@ -31,7 +31,7 @@ _NAMES = {Kind.AGENT: "agents", Kind.DYNAMIC: "bodies", Kind.WALL: "solids", Kin
 def require_referee() -> None:
     """Raise MissingExtraError if the libraries are not installed."""
     if find_spec("fcl") is None or find_spec("trimesh") is None:
-        raise MissingExtraError("--referee fcl", "plan")
+        raise MissingExtraError("The referee fcl", "plan")
 
 
 def judge(pair: Pair, report: Report) -> None:

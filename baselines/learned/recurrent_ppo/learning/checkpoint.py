@@ -58,8 +58,8 @@ def load(folder: Path, learner: Learner, recipe: str, seed: int) -> Progress:
     if (progress.recipe, progress.seed) != (recipe, seed):
         raise UsageError(
             f"{folder} holds the training of recipe {progress.recipe} with seed {progress.seed}."
-            f" --resume needs the same; got recipe {recipe} with seed {seed}."
-            " Choose another --out, or use its recipe and seed."
+            f" Resuming needs the same; got recipe {recipe} with seed {seed}."
+            " Choose another folder, or use its recipe and seed."
         )
     policy = {k[7:]: v for k, v in tensors.items() if k.startswith("policy.")}
     learner.policy.load_state_dict(policy)

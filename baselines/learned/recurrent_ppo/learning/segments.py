@@ -83,10 +83,10 @@ class Training:
         if there and not resume:
             raise UsageError(
                 f"{self.folder} must be new or empty; it holds a training."
-                " Continue with --resume, or choose another --out."
+                " Continue it (option 'resume'), or choose another folder."
             )
         if resume and not there:
-            raise UsageError(f"{self.folder} must hold a checkpoint to --resume. It does not.")
+            raise UsageError(f"{self.folder} must hold a checkpoint to resume from. It does not.")
 
     def _report(self) -> None:
         """Write everything that is needed to repeat the training."""

@@ -35,7 +35,7 @@ class RecurrentPPOTrainer(Trainer[recipe.Recipe]):
     ) -> None:
         if device.partition(":")[0] not in DEVICES:
             raise UsageError(
-                f"--device must be one of {', '.join(DEVICES)}. Got {device!r} instead."
+                f"The device must be one of {', '.join(DEVICES)}. Got {device!r} instead."
             )
         try:
             from .segments import Training

@@ -9,8 +9,8 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from benchnav.api.messages import message, silent
-from benchnav.api.text_table import key_value_html
+from benchnav.api.output.messages import message, silent
+from benchnav.api.output.text_table import key_value_html
 from benchnav.errors import UsageError
 from benchnav.store.packs.unpack import opened
 from benchnav.store.runs.run_folder import RunFolder
@@ -18,11 +18,11 @@ from benchnav.store.runs.spans import count
 from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
-    from benchnav.api.comparison import Comparison
-    from benchnav.api.curve import Curve
-    from benchnav.api.episodes import Episodes
-    from benchnav.api.leaderboard import Leaderboard
-    from benchnav.api.verification import Verification
+    from benchnav.api.records.comparison import Comparison
+    from benchnav.api.records.curve import Curve
+    from benchnav.api.records.episodes import Episodes
+    from benchnav.api.records.leaderboard import Leaderboard
+    from benchnav.api.records.verification import Verification
     from benchnav.runner.run import Summary
 
 RunLike = "Run | str | PathLike[str]"
@@ -123,7 +123,7 @@ class Run:
             recompute: measure the stored episodes again, with every installed metric.
             verify: first verify the runs that were not verified on this machine.
         """
-        from benchnav.api.leaderboard import Leaderboard
+        from benchnav.api.records.leaderboard import Leaderboard
         from benchnav.leaderboard.from_runs import stored_values
         from benchnav.runner.execute.progress import progress
         from benchnav.verify.receipts import with_receipts
@@ -153,7 +153,7 @@ class Run:
             runs: other runs to join.
             recompute: measure the stored episodes again.
         """
-        from benchnav.api.comparison import Comparison
+        from benchnav.api.records.comparison import Comparison
         from benchnav.leaderboard.from_runs import comparison
 
         with self._with(runs) as folders:
@@ -172,7 +172,7 @@ class Run:
         recompute: bool = False,
     ) -> "Curve":
         """Return a metric against a parameter of scenarios, or success against "horizon"."""
-        from benchnav.api.curve import Curve
+        from benchnav.api.records.curve import Curve
         from benchnav.leaderboard.from_runs import curve
 
         with self._with(runs) as folders:
@@ -199,7 +199,7 @@ class Run:
             workers: processes; None: one per core; 0: this process.
             quiet: print no progress.
         """
-        from benchnav.api.verification import Verification
+        from benchnav.api.records.verification import Verification
         from benchnav.processes.main_module import stop_import_of_main
         from benchnav.runner.execute.progress import progress
         from benchnav.verify.receipts import write_receipt
@@ -236,15 +236,15 @@ class Run:
             failed: only those in which an evaluated agent did not succeed.
             worst: a metric: they come in its order, worst first.
         """
-        from benchnav.api.episodes import stored_episodes
+        from benchnav.api.records.episodes import stored_episodes
 
         found = stored_episodes(self.folder, navigator, scenario, track, seed, owner=self)
         if failed:
-            from benchnav.api.episode_choice import failed_episodes
+            from benchnav.api.records.episode_choice import failed_episodes
 
             found = failed_episodes(self.folder, found.places, owner=self)
         if worst is not None:
-            from benchnav.api.episode_choice import worst_episodes
+            from benchnav.api.records.episode_choice import worst_episodes
 
             found = worst_episodes(self.folder, found.places, worst, owner=self)
         return found

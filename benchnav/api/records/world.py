@@ -9,7 +9,7 @@ from benchnav.errors import UsageError
 from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
-    from benchnav.api.scenario import Scenario
+    from benchnav.api.records.scenario import Scenario
 
 
 class World:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 
-from benchnav.api.exports import Exports
+from benchnav.api.output.exports import Exports
 from benchnav.leaderboard.rendering.curve_table import render_curves
 from benchnav.leaderboard.statistics.curve import Point
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from time import monotonic
 
-from benchnav.cli.console import say
+from benchnav.api.output.messages import message
 from benchnav.envs.trainer import TrainingReport
 
 Report = Callable[[TrainingReport], None]
@@ -14,7 +14,7 @@ EVERY = 10.0  # [s] between lines
 
 @contextmanager
 def training_progress(quiet: bool) -> Iterator[Report]:
-    """The kind that fits where stderr goes."""
+    """Return the function that shows a report, as it fits where stderr goes."""
     if quiet:
         yield lambda _: None
     elif sys.stderr.isatty():
@@ -68,6 +68,6 @@ def _lines() -> Report:
             text += f", {(now.total - now.decisions) / rate / 60:.0f} min left"
         if now.success is not None:
             text += f", validation success {100 * now.success:.1f} %"
-        say(text)
+        message(text)
 
     return report

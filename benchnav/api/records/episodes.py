@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple, overload
 
-from benchnav.api.episode import Episode
-from benchnav.api.text_table import table_html
+from benchnav.api.output.text_table import table_html
+from benchnav.api.records.episode import Episode
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.from_runs import matching_scenarios
 from benchnav.store.parts.part import Part
@@ -15,7 +15,7 @@ from benchnav.text.plural import counted
 if TYPE_CHECKING:
     import pandas as pd
 
-    from benchnav.api.replay import Replay
+    from benchnav.api.records.replay import Replay
 
 _SHOWN = 20  # rows in a notebook
 
@@ -90,7 +90,7 @@ class Episodes(Sequence[Episode]):
         Args:
             agents: whose senses and charts it holds; None: up to four, failed ones first.
         """
-        from benchnav.api.replay import Replay
+        from benchnav.api.records.replay import Replay
 
         require_few(len(self))
         return Replay([episode.record for episode in self], agents)

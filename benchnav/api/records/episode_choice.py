@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 import pyarrow.compute as pc
 
-from benchnav.api.episodes import Episodes, Place, stored_episodes
+from benchnav.api.records.episodes import Episodes, Place, stored_episodes
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.store.runs.reading import results_of
 from benchnav.store.runs.run_folder import RunFolder

@@ -3,14 +3,14 @@
 from os import PathLike
 from typing import TYPE_CHECKING
 
-from benchnav.api.text_table import key_value_html
+from benchnav.api.output.text_table import key_value_html
 from benchnav.scenario.catalogue import find
 from benchnav.scenario.parameters import joined_parameters, split_parameters
 from benchnav.scenario.scenario import Scenario as Record
 from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
-    from benchnav.api.world import World
+    from benchnav.api.records.world import World
 
 
 def load_scenario(name: "str | PathLike[str]", **parameters: float) -> "Scenario":
@@ -66,7 +66,7 @@ class Scenario:
         Raises UnsolvableError where no solvable world is found, UsageError for a negative seed
         or an unknown split (train, validation, test).
         """
-        from benchnav.api.world import World
+        from benchnav.api.records.world import World
         from benchnav.generation.build import build
 
         return World(build(self.record, split, seed), self, split, seed)

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from functools import cached_property
 from os import PathLike
 
-from benchnav.api.exports import Exports
-from benchnav.api.text_table import written
+from benchnav.api.output.exports import Exports
+from benchnav.api.output.text_table import written
 from benchnav.leaderboard.from_runs import StoredValues
 from benchnav.leaderboard.record import Leaderboard as Board
 from benchnav.leaderboard.record import Record

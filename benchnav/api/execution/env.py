@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from benchnav.api.scenario import Scenario
+from benchnav.api.records.scenario import Scenario
 from benchnav.errors import MissingExtraError, UsageError, did_you_mean
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from benchnav.api.text_table import key_value_html
+from benchnav.api.output.text_table import key_value_html
 from benchnav.arena.agents import Role
 from benchnav.arrays import BoolArray
 from benchnav.episode.episode import Episode as Record
@@ -19,7 +19,7 @@ from benchnav.text.plural import counted
 if TYPE_CHECKING:
     import pandas as pd
 
-    from benchnav.api.replay import Replay
+    from benchnav.api.records.replay import Replay
 
 
 class Episode:
@@ -117,7 +117,7 @@ class Episode:
         Args:
             agents: whose senses and charts it holds; None: up to four, failed ones first.
         """
-        from benchnav.api.replay import Replay
+        from benchnav.api.records.replay import Replay
 
         return Replay([self.record], agents)
 

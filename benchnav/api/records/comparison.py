@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from os import PathLike
 
-from benchnav.api.exports import Exports
-from benchnav.api.text_table import table_html
+from benchnav.api.output.exports import Exports
+from benchnav.api.output.text_table import table_html
 from benchnav.leaderboard.rendering.prose import place, render_duel, sentence
 from benchnav.leaderboard.statistics.comparison import Comparison as Record
 from benchnav.leaderboard.statistics.head_to_head import Duel

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from typing import Any
 
-from benchnav.cli.viewing.plugin_page import pair_page, plugin_page, sentence
+from benchnav.api.components.plugin_page import pair_page, plugin_page, sentence
 from benchnav.errors import BenchnavError, PluginError
 from benchnav.metrics.measure import is_own
 from benchnav.navigation.command_check import short

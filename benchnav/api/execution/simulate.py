@@ -2,9 +2,9 @@
 
 from dataclasses import replace
 
-from benchnav.api.episode import Episode
-from benchnav.api.navigators import NavigatorLike, navigator_spec
-from benchnav.api.world import World
+from benchnav.api.execution.navigators import NavigatorLike, navigator_spec
+from benchnav.api.records.episode import Episode
+from benchnav.api.records.world import World
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.processes.main_module import stop_import_of_main
 from benchnav.runner.plan.contestant import ContestantFactory

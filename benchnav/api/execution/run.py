@@ -1,6 +1,6 @@
 """Run a suite into a run folder: what `benchnav.run` and the command do."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from datetime import datetime
 from functools import partial
 from os import PathLike
@@ -8,25 +8,21 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-import yaml
-
-from benchnav.api.messages import message, silent
-from benchnav.api.navigators import Navigators, navigator_specs
-from benchnav.api.run import Run, open_run
-from benchnav.api.scenario import Scenario
+from benchnav.api.execution.navigators import Navigators, navigator_specs
+from benchnav.api.execution.suite_source import SuiteLike, scenario_name, several, suite_source
+from benchnav.api.output.messages import message, silent
+from benchnav.api.records.run import Run, open_run
+from benchnav.api.records.scenario import Scenario
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.processes.fork_server import fork_server
 from benchnav.processes.main_module import stop_import_of_main
 from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
-    from benchnav.config.document import Document
     from benchnav.runner.plan.shard import Shard
     from benchnav.runner.plan.suite import Suite
     from benchnav.runner.run import Executor, Summary
 
-SuiteLike = str | PathLike[str] | Scenario | Mapping[str, Any]
-"""Name or file of a suite or scenario, a scenario, or the content of a suite file."""
 EXECUTORS = ("local", "ray")
 
 
@@ -82,11 +78,11 @@ def run(
     from benchnav.runner.plan.suite import Selection, load_suite
 
     selection = Selection(
-        tuple(map(scenario_name, _several(scenarios))), tuple(_several(tracks)),
+        tuple(map(scenario_name, several(scenarios))), tuple(several(tracks)),
         navigator_specs(navigators), seeds_text(seeds), salt or "", isolate,
     )  # fmt: skip
     running, share = _executor(executor, address, workers), _shard(shard)
-    found = load_suite(_suite(suite), selection, timeout=timeout)
+    found = load_suite(suite_source(suite), selection, timeout=timeout)
     folder = Path(out) if out is not None else _new_folder(found)
     say = silent if quiet else message
     say(_announcement(found, folder))
@@ -121,11 +117,6 @@ def _execute(
     return summary
 
 
-def scenario_name(scenario: "str | Scenario | PathLike[str]") -> str:
-    """Return the name or file of a scenario, as a suite file names it."""
-    return scenario.name if isinstance(scenario, Scenario) else str(scenario)
-
-
 def seeds_text(seeds: int | str | range | None) -> str:
     """Return seeds as the command line takes them; "" for None.
 
@@ -136,27 +127,6 @@ def seeds_text(seeds: int | str | range | None) -> str:
             raise UsageError(f"The seeds must be a range without a step. Got {seeds} instead.")
         return f"{seeds.start}:{seeds.stop}"
     return "" if seeds is None else str(seeds)
-
-
-def _suite(suite: SuiteLike) -> "str | Document":
-    from benchnav.config.yaml_reader import read_yaml_text
-
-    if not isinstance(suite, Mapping):
-        return scenario_name(suite)
-    content = dict(suite)
-    if "navigators" in content:
-        content["navigators"] = list(navigator_specs(content["navigators"]))
-    if "scenarios" in content:
-        content["scenarios"] = list(map(scenario_name, _several(content["scenarios"])))
-    return read_yaml_text(yaml.safe_dump(content, sort_keys=False), "suite")
-
-
-def _several(values: Any) -> list[Any]:
-    if values is None:
-        return []
-    if isinstance(values, str | PathLike | Scenario):
-        return [values]
-    return list(values)
 
 
 def _new_folder(suite: "Suite") -> Path:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.api.text_table import written
+from benchnav.api.output.text_table import written
 from benchnav.arrays import IntArray
 from benchnav.episode.episode import Episode as Record
 from benchnav.errors import UsageError, did_you_mean

@@ -6,7 +6,7 @@ from dataclasses import fields
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from benchnav.api.text_table import written
+from benchnav.api.output.text_table import written
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,6 +1,6 @@
 """The files of a new navigator package."""
 
-from benchnav.cli.authoring.free_name import class_name, module_name
+from benchnav.api.authoring.free_name import class_name, module_name
 
 _PROJECT = """\
 [build-system]

@@ -3,7 +3,7 @@
 import inspect
 from typing import Any
 
-from benchnav.cli.viewing.parameter_text import answers, needs, parameters
+from benchnav.api.components.parameter_text import answers, needs, parameters
 from benchnav.navigation.hierarchy.composition import MAPPING, NO_PLANNER
 from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS, Registry

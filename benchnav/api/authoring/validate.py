@@ -1,0 +1,121 @@
+"""Check a scenario or suite before it is run."""
+
+from collections.abc import Iterator, Mapping
+from html import escape
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from benchnav.api.components.scenario_page import worlds_text
+from benchnav.api.execution.suite_source import suite_source
+from benchnav.config.yaml_reader import document_of, read_yaml
+from benchnav.errors import BenchnavError
+from benchnav.processes.main_module import stop_import_of_main
+from benchnav.text.plural import counted
+
+if TYPE_CHECKING:
+    from benchnav.config.document import Document
+    from benchnav.scenario.scenario import Scenario
+
+Checkable = str | PathLike[str] | Mapping[str, Any]
+"""A YAML file, or its content."""
+
+
+class Validation:
+    """The result of checking a scenario or suite; true in a condition if it has no problems."""
+
+    def __init__(self, facts: str, error: BenchnavError | None) -> None:
+        self.facts = facts  # what was found, in sentences
+        self.error = error  # which running it would raise; None: it can be run
+
+    @property
+    def valid(self) -> bool:
+        """Whether it has no problems."""
+        return self.error is None
+
+    @property
+    def problems(self) -> list[str]:
+        """The problems, one a line: file:line: key, and what it must be."""
+        return [] if self.error is None else str(self.error).splitlines()
+
+    def text(self) -> str:
+        """Return the facts and the problems, as ``benchnav validate`` prints them."""
+        return "\n".join([*self.facts.splitlines(), *self.problems])
+
+    def __bool__(self) -> bool:
+        return self.valid
+
+    def __repr__(self) -> str:
+        return self.text()
+
+    def _repr_html_(self) -> str:
+        return f"<pre>{escape(self.text())}</pre>"
+
+
+def validate(content: Checkable, *, draw: bool = True) -> Validation:
+    """Check a scenario or suite, and return its problems.
+
+    Args:
+        content: a YAML file, or its content as a dict, as `benchnav.run` takes it. Files that a
+            dict names are relative to the working directory.
+        draw: also draw worlds of a scenario: are they solvable, do they differ?
+    """
+    stop_import_of_main()
+    facts: list[str] = []
+    try:
+        for fact in _facts(content, draw):
+            facts.append(fact)  # noqa: PERF402 - what came before an error counts
+    except BenchnavError as error:
+        return Validation("\n".join(facts), error)
+    return Validation("\n".join(facts), None)
+
+
+def _facts(content: Checkable, draw: bool) -> Iterator[str]:
+    from benchnav.runner.plan.suite_file import describes_scenario
+
+    if isinstance(content, Mapping):
+        if describes_scenario(dict(content)):
+            yield from _scenario(document_of(content, "scenario"), Path(), draw, "It")
+        else:
+            yield _suite(suite_source(content), "It")
+        return
+    document = read_yaml(Path(content))
+    if describes_scenario(document.data):
+        yield from _scenario(document, Path(content).parent, draw, str(content))
+    else:
+        yield _suite(str(content), str(content))
+
+
+def _suite(source: "str | Document", name: str) -> str:
+    from benchnav.runner.plan.suite import load_suite
+
+    suite = load_suite(source)
+    jobs = list(suite.jobs())
+    missing = sum(bool(job.reason) for job in jobs)
+    return (
+        f"{name} is a suite, {suite.name}@{suite.version}: {counted(len(jobs), 'cell')},"
+        f" {missing} of them n/a, × {counted(len(suite.seeds), 'seed')}"
+    )
+
+
+def _scenario(document: "Document", folder: Path, draw: bool, name: str) -> Iterator[str]:
+    from benchnav.navigation.plugin.background_navigators import check_drivers
+    from benchnav.scenario.load import scenario_of
+
+    scenario = scenario_of(document, folder)
+    check_drivers(scenario)
+    yield f"{name} is a scenario, {scenario.identity}, hash {scenario.hash}"
+    if draw:
+        yield from _worlds(scenario)
+
+
+def _worlds(scenario: "Scenario") -> Iterator[str]:
+    from benchnav.generation.build import build
+
+    world = build(scenario, "test", 0)
+    yield (
+        f"its first test world has {counted(len(world.agents), 'agent')}; walls and static"
+        f" obstacles: {len(world.solids)}, moving ones: {len(world.bodies)}; draws before it that"
+        f" were not solvable: {world.redraws}"
+    )
+    yield f"its worlds {worlds_text(scenario)}"

@@ -1,0 +1,1 @@
+"""The installed components: their names, their pages, and whether they can be used."""

@@ -1,0 +1,1 @@
+"""Functions that do the work: run a suite, simulate, train, make an environment."""

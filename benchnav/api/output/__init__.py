@@ -1,0 +1,1 @@
+"""Text, messages and progress that the Python API shows."""
