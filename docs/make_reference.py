@@ -36,10 +36,10 @@ Positions and velocities are in the world frame.
 
 A navigator drives many worlds at once. `reset(briefings, rows)` starts some of them and assigns a
 number to each, its **row**. A world keeps its row until its episode ends; then another world may
-start in the same row. `act(observation)` receives the worlds that still run, in any order: entry `b`
-of every array belongs to the world in row `observation.rows[b]`. Use the row, not `b`, as the key of
-memory. In an `AgentNavigator`, `view.row` is the row, `view.batch_index` is `b`, and benchnav stores
-`view.state` for each agent.
+start in the same row. `act(observation)` receives the worlds that still run, in any order: entry
+`b` of every array belongs to the world in row `observation.rows[b]`. Use the row, not `b`, as the
+key of memory. In an `AgentNavigator`, `view.row` is the row, `view.batch_index` is `b`, and
+benchnav stores `view.state` for each agent.
 
 `AgentNavigator.reset_agent(briefing, row, agent)` is called once for each agent of a world that
 starts. Its return value is `view.state` of this agent until the episode ends; by default an empty
