@@ -154,7 +154,8 @@ def test_code_is_written_in_plain_english() -> None:
     "text",
     [
         "The run is told.", "Nobody reads it.", "- Who arrives\n  ends.",
-        "It ends. What is left stays.", "The goal of who arrives.", "# Title\n\nA line,\n**Whoever** reads.",
+        "It ends. What is left stays.", "The goal of who arrives.",
+        "# Title\n\nA line,\n**Whoever** reads.",
         "It stops; who lacks values has no rank.",
     ],
 )  # fmt: skip
@@ -166,8 +167,8 @@ def test_a_violation_in_a_document_is_found(text: str) -> None:
     "text",
     [
         "**What happens to old results?**\nThey stay.", "Agents who arrive vanish.",
-        "## What it does", "| who | what |", "```text\nnobody\n```\nText.", "Run `told`.", "No *who*.",
-        "It shows what is missing.",
+        "## What it does", "| who | what |", "```text\nnobody\n```\nText.", "Run `told`.",
+        "No *who*.", "It shows what is missing.",
     ],
 )  # fmt: skip
 def test_a_document_in_plain_english_passes(text: str) -> None:
