@@ -128,12 +128,12 @@ def test_a_wrong_selection_is_asked_wrongly(write):
     [
         (Selection(navigators=("orca", "orca")), "The navigators must be named once each"),
         (Selection(navigators=("orca", "{type: orca}")), "as 'orca' and as '{type: orca}'"),
-        (Selection(tracks=("known", "known")), "--track must name each of the tracks once"),
-        (Selection(scenarios=("trap/u", "trap/u@1")), "--scenario must name each of the scenarios"),
-        (Selection(scenarios=("trap/u", "trap/u@1")), "'trap/u@1' more than once, as 'trap/u' and"),
+        (Selection(tracks=("known", "known")), "The tracks must be named once each"),
+        (Selection(scenarios=("trap/u", "trap/u@1")), "The scenarios must be named once each"),
+        (Selection(scenarios=("trap/u", "trap/u@1")), "named more than once, as 'trap/u' and as 'trap/u@1'"),
     ],
 )
-def test_what_is_selected_twice_is_blamed_on_the_option(write, selection, complaint):
+def test_a_name_that_is_selected_twice_is_not_blamed_on_the_file(write, selection, complaint):
     path = write()
     with pytest.raises(UsageError) as refused:
         load_suite(path, selection)

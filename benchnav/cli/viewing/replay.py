@@ -5,9 +5,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from benchnav.api.records.replay import page_name
 from benchnav.cli.console import put, say
 from benchnav.errors import UsageError
+from benchnav.text.file_name import file_name
 
 if TYPE_CHECKING:
     from benchnav.api.records.episodes import Episodes, Place
@@ -150,4 +150,5 @@ def _file_name(places: "tuple[Place, ...]") -> str:
     """Return the default name of the page."""
     first = places[0]
     names = dict.fromkeys(place.navigator for place in places)
-    return page_name("replay", *names, first.scenario.split("@")[0], first.track, str(first.seed))
+    scenario = first.scenario.split("@")[0]
+    return file_name("replay", *names, scenario, first.track, str(first.seed), suffix=".html")
