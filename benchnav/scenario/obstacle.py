@@ -27,7 +27,7 @@ class StaticGroup(Spec):
     moved: bool | Distance = Field(
         False,
         description="whether obstacles moved just before the episode: `true`, to another random"
-        " point of the region; a number [m], by this distance. The stale map shows the old positions",
+        " point of the region; a number [m], by this distance. The stale map shows the old places",
     )
     relocate_at: NonNegativeScalar | None = Field(
         None, description="time [s] in the episode at which each obstacle moves, once"

@@ -56,8 +56,8 @@ class Rules(Spec):
     )
     contact: Literal["slide", "stop", "end"] = Field(
         "slide",
-        description="effect of a contact on an agent: it slides along the surface, it stops until its"
-        " next decision, or its attempt ends",
+        description="effect of a contact on an agent: it slides along the surface, it stops until"
+        " its next decision, or its attempt ends",
     )
     on_arrival: Literal["vanish", "stay"] = Field(
         "stay", description="whether an agent that arrived leaves the world or stays as an obstacle"
