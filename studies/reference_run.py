@@ -118,7 +118,7 @@ def page(run: RunFolder, said: dict[str, Any], rows: list[dict[str, str]], note:
         "",
         f"{len(suite['scenarios'])} scenarios × {len(suite['tracks'])} tracks ×"
         f" {len(suite['navigators'])} navigators × {SEEDS} seeds of the test split, made and"
-        " written by `python -m studies.reference_run`. What uses no map ran once for all"
+        " written by `python -m studies.reference_run`. Navigators without a map ran once for all"
         " tracks.",
         "",
         *table(
@@ -130,10 +130,10 @@ def page(run: RunFolder, said: dict[str, Any], rows: list[dict[str, str]], note:
                 ["took", f"{said['seconds'] / 60:.1f} minutes on {said['cores']} cores{note}"],
                 ["platform", said["platform"]],
                 ["versions", ", ".join(f"{k} {v}" for k, v in said["versions"].items())],
-                ["suite's hash", f"`{said['suite_hash']}`"],
+                ["hash of the suite", f"`{said['suite_hash']}`"],
                 ["salt", f"`{said['salt']}`"],
                 ["pack", f"{packed['bytes'] / 1e6:.0f} MB, sha256 `{packed['sha256']}`"],
-                ["its content", f"`{packed['content']}`"],
+                ["sha256 of its content", f"`{packed['content']}`"],
                 ["`benchnav verify`", f"of the sample: {said['verified']}"],
             ],
         ),
@@ -156,14 +156,14 @@ def _how(name: str, said: dict[str, Any]) -> Iterator[str]:
     yield from (
         "## Check it",
         "",
-        f"- `benchnav run {SUITE} --seeds {SEEDS} --salt {said['salt']}` makes it again. Episodes"
-        f" have the digests of [{name}.json]({name}.json) wherever no clock decides; learned"
-        " navigators may differ on another kind of processor.",
+        f"- `benchnav run {SUITE} --seeds {SEEDS} --salt {said['salt']}` repeats it. Episodes"
+        f" have the digests of [{name}.json]({name}.json) if they do not depend on a clock; learned"
+        " navigators may differ on another type of processor.",
         f"- `benchnav verify {name}-sample.bnrun` checks a sample of it"
         f" ([{name}-sample.bnrun]({name}-sample.bnrun): {', '.join(f'`{s}`' for s in SAMPLE)}, seed"
-        " 0) without running a navigator. CI does this, and runs some of its navigators again.",
-        f"- All 100 seeds: `benchnav run {SUITE} --out runs/{SUITE}`, which goes on where it was"
-        " broken off; `--shard I/N` and `benchnav merge` share it among machines.",
+        " 0) without running a navigator. CI does the same, and runs some of its navigators again.",
+        f"- All 100 seeds: `benchnav run {SUITE} --out runs/{SUITE}`, which can be continued"
+        " after a stop; `--shard I/N` and `benchnav merge` distribute it to several machines.",
         "",
     )
 
