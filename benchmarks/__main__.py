@@ -60,10 +60,10 @@ def page(rows: list[dict[str, object]]) -> str:
         f"Measured {datetime.now(UTC):%Y-%m-%d} with `make bench` on {platform.machine()},"
         f" {thread_count()} cores, {platform.system()}, Python {platform.python_version()};"
         f" {versions}.",
-        "Peers and limits are measured side by side in the same run; the head of each file in"
-        " `benchmarks/` describes the timed part.",
+        "benchnav and its peers (other simulators) are measured in the same run. The docstring of"
+        " each file in `benchmarks/` describes the timed part.",
         "",
-        "| what | measured | against | wanted | reached |",
+        "| benchmark | measured | peer | target | reached |",
         "| --- | ---: | ---: | ---: | --- |",
     ]
     return "\n".join([*lines, *map(line, rows), ""])

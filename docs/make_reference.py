@@ -1,4 +1,4 @@
-"""Writes two pages from the code: ``python docs/make_reference.py``; a test compares.
+"""Write two pages from the code: ``python docs/make_reference.py``; a test compares.
 
 `observations.md` lists the fields that a navigator reads, from the comments beside them;
 `scenario_keys.md` lists the keys of a scenario file, from its JSON Schema.
@@ -48,15 +48,36 @@ dict.
 
 SCENARIO = """# The keys of a scenario file
 
-{note} [How to write a scenario](scenarios.md) explains them with examples, and
+{note} [How to write a scenario](scenarios.md) explains the keys with examples.
 `benchnav validate FILE` checks a file.
 
-*required* keys have no default. **number or distribution** is a number, a parameter of the scenario
-(`{{param: NAME}}`), or one of {samplers}, from which each world draws its own value.
+Lengths are in metres, times in seconds, angles in radians. A *required* key has no default.
+**number or distribution** is a number, a parameter of the scenario (`{{parameter: NAME}}`), or a
+distribution: {samplers}. Each world draws its own value.
 """
 
 UNIT = re.compile(r"\[([a-z][^\], ]*)\]")  # [m/s], but not [xmin, …]
 SAMPLERS = ("Uniform", "Normal", "Choice", "Integers")
+GROUPS = {  # heading → picture in images/keys and its text, and types; any other type comes last
+    "Walls and layouts": ("walls", "walls", "Wall Maze Rooms"),
+    "Shapes": ("shapes", "shapes", "Box Disc Polygon Polyline Mesh Occupancy"),
+    "Obstacles": ("obstacles", "gaps and moved obstacles", "StaticGroup DynamicGroup"),
+    "Motion laws": ("laws", "motion laws", "BackAndForth WaypointLoop CircleLaw RecordedTrack"),
+    "Teams": ("", "", "Team NavigatorChoice"),
+    "Starts": ("starts", "starts", "RegionStart CircleStart GridStart PackedStart PointsStart"),
+    "Goals": (
+        "goals",
+        "starts (discs) and goals (crosses)",
+        "RegionGoal PointsGoal AntipodalGoal ShiftedGoal",
+    ),
+    "Regions": ("regions", "regions and drawn points", "Rectangle DiscRegion Ring Points Anywhere"),
+    "Time, rules and sensors": (
+        "episode",
+        "sensors, arrival and contacts",
+        "Clock Rules Sensing Rays Nearest",
+    ),
+    "Numbers": ("", "", "Uniform Normal Choice Integers Parameter Reference"),
+}
 Schema = dict[str, Any]
 
 
@@ -94,22 +115,34 @@ def scenario_keys() -> str:
     schema = json_schema()
     parts = [SCENARIO.format(note=NOTE, samplers=", ".join(map(_link, SAMPLERS)))]
     parts += ["## Scenario", "", *_keys(schema)]
-    for name, part in sorted(schema["$defs"].items()):
-        doc = " ".join(str(part.get("description", "")).split())
-        parts += [f"## {name}", "", *([doc, ""] if doc else []), *_keys(part)]
+    left = dict(schema["$defs"])
+    for heading, (picture, text, names) in GROUPS.items():
+        parts += [f"## {heading}", ""]
+        parts += [f"![{text}](images/keys/{picture}.png)", ""] if picture else []
+        parts += [line for name in names.split() for line in _section(name, left.pop(name))]
+    parts += ["## Other types", ""] if left else []
+    parts += [line for name in sorted(left) for line in _section(name, left[name])]
     return "\n".join(parts)
+
+
+def _section(name: str, part: Schema) -> list[str]:
+    doc = " ".join(str(part.get("description", "")).split())
+    return [f"### {name}", "", *([doc, ""] if doc else []), *_keys(part)]
 
 
 def _keys(schema: Schema) -> Iterator[str]:
     if not schema.get("properties"):
         return
-    yield "| key | value | default | unit | what |"
+    yield "| key | value | default | unit | meaning |"
     yield "|---|---|---|---|---|"
     required = schema.get("required", ())
     for key, part in schema["properties"].items():
         description = str(part.get("description", ""))
         unit = UNIT.search(description)
         what = " ".join(UNIT.sub(" ", description, count=1).split()).strip(" ,;")
+        what = what.replace(" ,", ",").replace(" ;", ";").replace(" :", ":")
+        if "const" in part:
+            what = "selects this type"
         default = "*required*" if key in required else _default(part)
         cells = f"`{key}`", _value(part), default, unit[1] if unit else "", what
         yield f"| {' | '.join(map(_cell, cells))} |"
@@ -128,7 +161,7 @@ def _default(part: Schema) -> str:
 
 
 def _value(part: Schema) -> str:
-    """Return in words what may stand for a key."""
+    """Return the allowed values of a key, in words."""
     if "const" in part:
         return f"`{part['const']}`"
     if "enum" in part:

@@ -118,8 +118,8 @@ def page(run: RunFolder, summary: dict[str, Any], rows: list[dict[str, str]], no
         "",
         f"{len(suite['scenarios'])} scenarios × {len(suite['tracks'])} tracks ×"
         f" {len(suite['navigators'])} navigators × {SEEDS} seeds of the test split, made and"
-        " written by `python -m studies.reference_run`. A navigator that uses no map ran"
-        " once for all tracks.",
+        " written by `python -m studies.reference_run`. Navigators without a map ran once for all"
+        " tracks.",
         "",
         *table(
             ["", ""],
@@ -133,10 +133,10 @@ def page(run: RunFolder, summary: dict[str, Any], rows: list[dict[str, str]], no
                 ],
                 ["platform", summary["platform"]],
                 ["versions", ", ".join(f"{k} {v}" for k, v in summary["versions"].items())],
-                ["suite's hash", f"`{summary['suite_hash']}`"],
+                ["hash of the suite", f"`{summary['suite_hash']}`"],
                 ["salt", f"`{summary['salt']}`"],
                 ["pack", f"{packed['bytes'] / 1e6:.0f} MB, sha256 `{packed['sha256']}`"],
-                ["its content", f"`{packed['content']}`"],
+                ["sha256 of its content", f"`{packed['content']}`"],
                 ["`benchnav verify`", f"of the sample: {summary['verified']}"],
             ],
         ),
@@ -159,14 +159,14 @@ def _how(name: str, summary: dict[str, Any]) -> Iterator[str]:
     yield from (
         "## Check it",
         "",
-        f"- `benchnav run {SUITE} --seeds {SEEDS} --salt {summary['salt']}` repeats it."
-        f" Episodes have the digests of [{name}.json]({name}.json) wherever no clock decides;"
-        " learned navigators may differ on another kind of processor.",
+        f"- `benchnav run {SUITE} --seeds {SEEDS} --salt {summary['salt']}` repeats it. Episodes"
+        f" have the digests of [{name}.json]({name}.json) if they do not depend on a clock; learned"
+        " navigators may differ on another type of processor.",
         f"- `benchnav verify {name}-sample.bnrun` checks a sample of it"
         f" ([{name}-sample.bnrun]({name}-sample.bnrun): {', '.join(f'`{s}`' for s in SAMPLE)}, seed"
-        " 0) without running a navigator. CI does this, and runs some of its navigators again.",
-        f"- All 100 seeds: `benchnav run {SUITE} --out runs/{SUITE}`, which goes on where it was"
-        " broken off; `--shard I/N` and `benchnav merge` share it among machines.",
+        " 0) without running a navigator. CI does the same, and runs some of its navigators again.",
+        f"- All 100 seeds: `benchnav run {SUITE} --out runs/{SUITE}`, which can be continued"
+        " after a stop; `--shard I/N` and `benchnav merge` distribute it to several machines.",
         "",
     )
 

@@ -23,7 +23,7 @@ IN_DOCUMENTS = re.compile(
     re.IGNORECASE,
 )
 FENCE = re.compile(r"^(```|~~~|:::).*?^\1\s*$", re.MULTILINE | re.DOTALL)
-QUOTED = re.compile(r"`[^`]*`|(?<!\*)\*\w+\*(?!\*)")  # code, and words in italics
+QUOTED = re.compile(r"`[^`]*`|(?<!\*)\*\w[^*]*\*(?!\*)")  # code, and text in italics
 NOT_PROSE = re.compile(r"\s*(?:\||#|!\[|---+$)")  # tables, headings, pictures, lines
 NEW_PARAGRAPH = re.compile(r"^\s*(?:[-*] |\d+\. )")
 

@@ -19,7 +19,9 @@ class ClearanceConfig(PluginConfig):
     """Parameters of every planner here."""
 
     clearance: float = Field(
-        0.05, ge=0, description="[m] kept from obstacles where start, goal and passages allow it"
+        0.05,
+        ge=0,
+        description="[m] gap to obstacles; smaller if start, goal or passages are narrow",
     )
 
 

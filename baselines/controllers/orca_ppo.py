@@ -37,13 +37,13 @@ class OrcaPpoConfig(PluginConfig):
     memory: float = Field(
         5.0,
         ge=0,
-        description="[s] for which the policy drives on after a dynamic obstacle was sensed",
+        description="[s] for which the policy still drives after a dynamic obstacle was sensed",
     )
     detour: float = Field(
         0.5,
         ge=0,
-        description="[m] that a path may be longer than the straight way to the goal for the policy"
-        " to be shown the goal itself; on a longer one it is shown waypoints",
+        description="[m] the policy drives to the goal if the path is at most this much longer than"
+        " the straight line, else to a waypoint",
     )
 
 
@@ -53,9 +53,9 @@ class OrcaPpo(Controller):
     ORCA assumes that a body can execute its commands, and that others avoid it too. Therefore the
     policy of `recurrent-ppo-plus`, which learned on unicycles among obstacles that
     never yield, drives unicycles, and every agent that has just sensed a dynamic
-    obstacle; ORCA drives all others. The policy knows goals better than waypoints
-    (`.waypoint`), and passes obstacles on its way: unless the path is a detour, it
-    gets the goal.
+    obstacle; ORCA drives all others. The policy is better with goals than with waypoints
+    (`.waypoint`), and avoids obstacles itself: unless the path is a detour, its
+    target is the goal.
     """
 
     Config = OrcaPpoConfig

@@ -1,1 +1,1 @@
-"""Navigators that are no single planner or controller."""
+"""Navigators that are not a single planner or controller."""

@@ -24,7 +24,7 @@ class Visibility(DiscPlanner):
         """Parameters."""
 
         bend: float = Field(
-            0.1, ge=1e-4, le=1.0, description="[rad] by which a waypoint on an arc turns, at most"
+            0.1, ge=1e-4, le=1.0, description="[rad] largest turn at a waypoint on an arc"
         )
 
     def __init__(self, config: PluginConfig | None = None) -> None:

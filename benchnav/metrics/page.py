@@ -52,7 +52,7 @@ A distribution names each of its metrics by an entry point of the group `benchna
 `early = "my_package.metrics:early"`. In a script, `benchnav.register_metric("early")(early)`
 registers it in this process.
 
-| metric | what | unit | better | range | of | reference |
+| metric | title | unit | better | range | value of | reference |
 | --- | --- | --- | --- | --- | --- | --- |
 '''
 

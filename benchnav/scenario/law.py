@@ -14,26 +14,28 @@ Time = Annotated[float, Field(ge=0, le=1e6)]
 
 
 class BackAndForth(Spec):
-    """Back and forth on a straight track that is centred where the obstacle is placed."""
+    """The obstacle moves back and forth on a straight track, centred at its origin."""
 
     type: Literal["back-and-forth"]
-    length: PositiveScalar = Field(description="of the track [m]")
-    speed: PositiveScalar = Field(description="[m/s]")
+    length: PositiveScalar = Field(description="length [m] of the track")
+    speed: PositiveScalar = Field(description="constant speed [m/s]")
     direction: Scalar = Field(
-        Uniform(uniform=(0.0, 6.283185307179586)), description="of the track [rad]"
+        Uniform(uniform=(0.0, 6.283185307179586)), description="direction [rad] of the track"
     )
-    phase: Scalar = Field(_ANY_PHASE, description="share of the period that has passed at t = 0")
+    phase: Scalar = Field(_ANY_PHASE, description="fraction of the period at t = 0")
 
 
 class WaypointLoop(Spec):
-    """A closed loop of straight lines through waypoints."""
+    """The obstacle moves along straight lines from waypoint to waypoint, in a closed loop."""
 
     type: Literal["waypoint-loop"]
     points: tuple[Point, ...] = Field(
-        min_length=2, max_length=1000, description="relative to where the obstacle is placed [m]"
+        min_length=2,
+        max_length=1000,
+        description="waypoints [m], relative to the origin of the law",
     )
-    speed: PositiveScalar = Field(description="[m/s]")
-    phase: Scalar = Field(_ANY_PHASE, description="share of the period that has passed at t = 0")
+    speed: PositiveScalar = Field(description="constant speed [m/s]")
+    phase: Scalar = Field(_ANY_PHASE, description="fraction of the period at t = 0")
 
     @model_validator(mode="after")
     def _check(self) -> "WaypointLoop":
@@ -44,13 +46,13 @@ class WaypointLoop(Spec):
 
 
 class CircleLaw(Spec):
-    """A circle that is centred where the obstacle is placed."""
+    """The obstacle moves on a circle, centred at its origin."""
 
     type: Literal["circle"]
-    radius: PositiveScalar = Field(description="[m]")
-    speed: NonNegativeScalar = Field(description="along the circle [m/s]")
-    clockwise: bool = False
-    phase: Scalar = Field(_ANY_PHASE, description="share of the circle that has passed at t = 0")
+    radius: PositiveScalar = Field(description="radius [m] of the circle")
+    speed: NonNegativeScalar = Field(description="constant speed [m/s] along the circle")
+    clockwise: bool = Field(False, description="whether it moves clockwise")
+    phase: Scalar = Field(_ANY_PHASE, description="fraction of the circle at t = 0")
 
 
 class RecordedTrack(Spec):
@@ -62,21 +64,29 @@ class RecordedTrack(Spec):
 
     type: Literal["recorded-track"]
     file: str | None = Field(
-        None, min_length=1, max_length=500, description="relative to the scenario file"
+        None,
+        min_length=1,
+        max_length=500,
+        description="file of the recording, relative to the scenario file",
     )
     format: Literal["trajnetpp", "text"] | None = Field(
-        None, description="text has four columns: frame, id, x, y"
+        None, description="`trajnetpp`: TrajNet++; `text`: four columns, frame, id, x, y"
     )
     frame_time: Annotated[float, Field(gt=0, le=1e4)] | None = Field(
-        None, description="[s] from one frame number to the next; never guessed"
+        None, description="time [s] between successive frame numbers; required with `file`"
     )
-    ids: tuple[int, ...] | None = Field(None, min_length=1, description="all, if not given")
+    ids: tuple[int, ...] | None = Field(
+        None, min_length=1, description="ids to replay; default: all"
+    )
     points: tuple[tuple[Time, Coordinate, Coordinate], ...] | None = Field(
-        None, min_length=1, max_length=10000, description="[time s, x m, y m], times rising"
+        None,
+        min_length=1,
+        max_length=10000,
+        description="[time s, x m, y m] with rising times, in place of a file",
     )
-    scale: Length = Field(1.0, description="[m] per unit of the recording")
-    offset: Point = Field((0.0, 0.0), description="added after scaling [m]")
-    repeat: bool = Field(False, description="start again after the last time")
+    scale: Length = Field(1.0, description="metres [m] per unit of the recording")
+    offset: Point = Field((0.0, 0.0), description="shift [m] after scaling: [x, y]")
+    repeat: bool = Field(False, description="whether the recording starts again at its end")
 
     @model_validator(mode="after")
     def _check(self) -> "RecordedTrack":

@@ -11,26 +11,26 @@ from benchnav.scenario.shape import Movable, Shape, shape_is_fixed
 
 
 class StaticGroup(Spec):
-    """Furniture: fixed at given points, or drawn from a region."""
+    """Static obstacles at given points, or at random points of a region."""
 
-    shape: Shape
-    count: Count | None = Field(None, description="1 if not given; not with `at`")
+    shape: Shape = Field(description="shape of each obstacle")
+    count: Count | None = Field(None, description="number of obstacles; default: 1; not with `at`")
     at: Places | None = Field(
         None, description="[x, y], or a list of such points with one obstacle at each [m]"
     )
-    region: Region | None = Field(None, description="where the obstacles' origins are drawn")
-    heading: Scalar = Field(0.0, description="[rad] counter-clockwise")
+    region: Region | None = Field(None, description="region of the random positions")
+    heading: Scalar = Field(0.0, description="rotation [rad] of the shape, counter-clockwise")
     gap: Distance = Field(
         0.0,
-        description="least distance [m] to walls, to other obstacles, to fixed starts and goals",
+        description="smallest gap [m] to walls, other obstacles, and fixed starts and goals",
     )
     moved: bool | Distance = Field(
         False,
-        description="re-placed before the episode, anywhere in the region or by so many [m] in"
-        " any direction: the stale map shows where they stood",
+        description="whether obstacles moved just before the episode: `true`, to another random"
+        " point of the region; a number [m], by this distance. The stale map shows the old places",
     )
     relocate_at: NonNegativeScalar | None = Field(
-        None, description="[s] when each is re-placed, once, within the episode"
+        None, description="time [s] in the episode at which each obstacle moves, once"
     )
 
     @model_validator(mode="after")
@@ -64,18 +64,20 @@ class StaticGroup(Spec):
 
 
 class DynamicGroup(Spec):
-    """Obstacles that follow a motion law."""
+    """Dynamic obstacles: each follows a motion law."""
 
-    shape: Movable
-    law: Law
-    count: Count | None = Field(None, description="1 if not given; not with `at`")
+    shape: Movable = Field(description="shape of each obstacle")
+    law: Law = Field(description="motion law")
+    count: Count | None = Field(None, description="number of obstacles; default: 1; not with `at`")
     at: Places | None = Field(
         None, description="[x, y], or a list of such points with one obstacle at each [m]"
     )
-    region: Region | None = Field(None, description="where the laws' origins are drawn")
-    heading: Scalar = Field(0.0, description="of the shape [rad]; it does not turn")
+    region: Region | None = Field(
+        None, description="region of the random origins of the motion laws"
+    )
+    heading: Scalar = Field(0.0, description="rotation [rad] of the shape, constant while it moves")
     gap: Distance = Field(
-        0.0, description="least distance [m] of the swept path to walls and static obstacles"
+        0.0, description="smallest gap [m] from the swept path to walls and static obstacles"
     )
 
     @model_validator(mode="after")

@@ -23,12 +23,12 @@ LARGEST = 1e9
 
 
 class Parameter(Spec):
-    """A number that can be chosen where the scenario is named."""
+    """An open number; `NAME:key=number` sets it."""
 
-    default: float = Field(ge=-LARGEST, le=LARGEST)
-    low: float = Field(ge=-LARGEST, le=LARGEST, description="smallest that may be chosen")
-    high: float = Field(ge=-LARGEST, le=LARGEST, description="greatest that may be chosen")
-    description: str = Field("", max_length=500)
+    default: float = Field(ge=-LARGEST, le=LARGEST, description="value if none is given")
+    low: float = Field(ge=-LARGEST, le=LARGEST, description="smallest allowed value")
+    high: float = Field(ge=-LARGEST, le=LARGEST, description="largest allowed value")
+    description: str = Field("", max_length=500, description="meaning of the number")
 
     @property
     def whole(self) -> bool:
@@ -50,7 +50,7 @@ Parameters = dict[Name, Parameter]
 class Reference(Spec):
     """A reference to a parameter of the scenario, in place of a number."""
 
-    parameter: Name
+    parameter: Name = Field(description="name of the parameter")
 
 
 class _Declared(Spec):

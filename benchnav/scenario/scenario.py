@@ -40,37 +40,50 @@ _PROSE = {"title", "description", "parameters"}  # parameter values count where 
 
 
 class Scenario(Spec):
-    """The content of a scenario file. Metres, seconds, radians; x right, y up."""
+    """The content of a scenario file. Units: metres, seconds, radians; x right, y up."""
 
     name: str = Field(
         pattern=NAME_PATTERN,
         max_length=MAX_NAME,
-        description="family/name",
+        description="name of the scenario, FAMILY/NAME",
     )
-    version: int = Field(1, ge=1, le=10**6, description="rises when results stop being comparable")
-    title: str = Field("", max_length=200, description="one line for lists")
-    description: str = Field("", max_length=5000, description="what is difficult here")
-    parameters: Parameters = Field({}, max_length=20, description="that NAME:key=number may set")
-    bounds: Bounds = Field(description="of the arena: [xmin, ymin, xmax, ymax] [m]")
-    walled: bool = Field(True, description="a wall stands along the bounds")
-    layout: Layout | None = Field(None, description="walls that are generated")
+    version: int = Field(
+        1,
+        ge=1,
+        le=10**6,
+        description="number that the author raises when results are no longer comparable",
+    )
+    title: str = Field("", max_length=200, description="one line, shown in lists")
+    description: str = Field("", max_length=5000, description="purpose and difficulty")
+    parameters: Parameters = Field(
+        {}, max_length=20, description="open numbers, which `NAME:key=number` sets"
+    )
+    bounds: Bounds = Field(description="edges of the arena: [xmin, ymin, xmax, ymax] [m]")
+    walled: bool = Field(True, description="whether walls close the arena at its bounds")
+    layout: Layout | None = Field(None, description="generated walls: a maze, or rooms with doors")
     walls: tuple[Wall, ...] = Field(
-        (), max_length=MAX_OBSTACLES, description="fixed structure, the same in every world"
+        (),
+        max_length=MAX_OBSTACLES,
+        description="single walls; sampled numbers differ between worlds",
     )
     static: tuple[StaticGroup, ...] = Field(
-        (), max_length=100, description="obstacles that are placed anew in each world"
+        (), max_length=100, description="obstacles that stand still, placed anew in each world"
     )
     dynamic: tuple[DynamicGroup, ...] = Field(
-        (), max_length=100, description="obstacles that move by a law and never yield"
+        (), max_length=100, description="obstacles that follow a motion law and never yield"
     )
-    teams: tuple[Team, ...] = Field(min_length=1, max_length=100, description="the agents")
+    teams: tuple[Team, ...] = Field(min_length=1, max_length=100, description="groups of agents")
     clock: Clock = Field(Clock(), description="time step, horizon and decision budget")
-    rules: Rules = Field(Rules(), description="contacts, and when an agent has arrived")
-    sensing: Sensing = Field(Sensing(), description="what each agent perceives")
+    rules: Rules = Field(Rules(), description="condition of arrival, and effects of contacts")
+    sensing: Sensing = Field(Sensing(), description="sensors of every agent")
     tracks: Annotated[tuple[Track, ...], Field(min_length=1, max_length=4)] | None = Field(
-        None, description="in which it may be run; all that make sense if not given"
+        None,
+        description="knowledge tracks of the scenario; default: `known`, `partial` and `unknown`,"
+        " and `stale` if any group has `moved` or `relocate_at`",
     )
-    measurement_area: Bounds | None = Field(None, description="where density is measured [m]")
+    measurement_area: Bounds | None = Field(
+        None, description="region of the density metrics: [xmin, ymin, xmax, ymax] [m]"
+    )
 
     _folder: Path = PrivateAttr(default_factory=Path)
     _chosen: dict[str, float] = PrivateAttr(default_factory=dict)

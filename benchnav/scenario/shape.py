@@ -12,13 +12,11 @@ Axis = Literal["x", "y", "z"]
 
 
 class Box(Spec):
-    """A rectangle centred at the origin."""
+    """A rectangle, centred at its origin."""
 
     type: Literal["box"]
     width: PositiveScalar = Field(description="extent along x [m]")
-    depth: PositiveScalar | None = Field(
-        None, description="extent along y [m]; as wide if not given"
-    )
+    depth: PositiveScalar | None = Field(None, description="extent along y [m]; default: `width`")
 
     @property
     def reach(self) -> float:
@@ -29,10 +27,10 @@ class Box(Spec):
 
 
 class Disc(Spec):
-    """A disc centred at the origin."""
+    """A disc, centred at its origin."""
 
     type: Literal["disc"]
-    radius: PositiveScalar = Field(description="[m]")
+    radius: PositiveScalar = Field(description="radius [m]")
 
     @property
     def reach(self) -> float:
@@ -41,7 +39,7 @@ class Disc(Spec):
 
 
 class Polygon(Spec):
-    """A simple polygon, with corners in either order."""
+    """A polygon that does not cross itself; corners clockwise or counter-clockwise."""
 
     type: Literal["polygon"]
     points: tuple[Point, ...] = Field(min_length=3, max_length=1000, description="corners [m]")
@@ -64,11 +62,13 @@ class Polygon(Spec):
 
 
 class Polyline(Spec):
-    """A thin or thick wall along a line of points."""
+    """A wall along a line through points."""
 
     type: Literal["polyline"]
-    points: tuple[Point, ...] = Field(min_length=2, max_length=1000, description="[m]")
-    thickness: Distance = Field(0.0, description="[m]; 0 is a wall without thickness")
+    points: tuple[Point, ...] = Field(
+        min_length=2, max_length=1000, description="points [m] of the line"
+    )
+    thickness: Distance = Field(0.0, description="thickness [m] of the wall; 0 is allowed")
 
     @model_validator(mode="after")
     def _check(self) -> "Polyline":
@@ -87,15 +87,21 @@ class Polyline(Spec):
 
 
 class Mesh(Spec):
-    """The cross-section of a triangle mesh within the agents' height band."""
+    """The outline of a triangle mesh within a band of heights, seen from above."""
 
     type: Literal["mesh"]
-    file: str = Field(min_length=1, max_length=500, description="relative to the scenario file")
-    unit: Length | None = Field(None, description="[m] per unit of the file; the file's own if not")
-    up: Axis | None = Field(None, description="vertical axis; the file's own if not given")
-    scale: tuple[Length, Length, Length] = Field((1.0, 1.0, 1.0), description="after unit")
+    file: str = Field(
+        min_length=1, max_length=500, description="path, relative to the scenario file"
+    )
+    unit: Length | None = Field(
+        None, description="metres [m] per unit of the file; default: the file's own unit"
+    )
+    up: Axis | None = Field(None, description="vertical axis; default: the file's own")
+    scale: tuple[Length, Length, Length] = Field(
+        (1.0, 1.0, 1.0), description="factors along x, y and z, after `unit`"
+    )
     band: tuple[Coordinate, Coordinate] = Field(
-        (0.05, 2.0), description="[low, high] heights [m] in which the mesh is an obstacle"
+        (0.05, 2.0), description="heights [m] at which the mesh is an obstacle: [low, high]"
     )
 
     @model_validator(mode="after")
@@ -106,15 +112,19 @@ class Mesh(Spec):
 
 
 class Occupancy(Spec):
-    """The blocked cells of an occupancy map."""
+    """The blocked cells of an occupancy grid map."""
 
     type: Literal["occupancy"]
-    file: str = Field(min_length=1, max_length=500, description="relative to the scenario file")
-    format: Literal["movingai", "ros"]
-    cell: Length | None = Field(
-        None, description="[m] per cell; the file's own (or 1) if not given"
+    file: str = Field(
+        min_length=1, max_length=500, description="path, relative to the scenario file"
     )
-    unknown_is_free: bool = Field(False, description="agents may enter cells of unknown content")
+    format: Literal["movingai", "ros"] = Field(
+        description="`movingai`: MovingAI grid map; `ros`: YAML file of the ROS map_server"
+    )
+    cell: Length | None = Field(
+        None, description="side [m] of a cell; default: the file's own, or 1"
+    )
+    unknown_is_free: bool = Field(False, description="whether agents may enter unknown cells")
 
 
 Movable = Annotated[Box | Disc | Polygon, Field(discriminator="type")]

@@ -11,90 +11,96 @@ from benchnav.scenario.sampling.sampler import Count, PositiveScalar, Scalar, su
 
 
 class RegionStart(Spec):
-    """Each agent somewhere in a region."""
+    """Each agent starts at a random point of a region."""
 
     type: Literal["region"]
-    region: Region
-    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
+    region: Region = Field(description="region of the centres")
+    separation: Distance = Field(0.0, description="smallest gap [m] between bodies at the start")
 
 
 class CircleStart(Spec):
-    """Agents on a circle."""
+    """The agents start on a circle."""
 
     type: Literal["circle"]
-    center: Point = Field((0.0, 0.0), description="[m]")
-    radius: Length = Field(description="[m]")
-    angles: Literal["even", "random"] = Field("even", description="even begins at angle 0")
-    jitter: Distance = Field(
-        0.0, description="x and y are each shifted by up to half of it either way [m]"
+    center: Point = Field((0.0, 0.0), description="centre [m] of the circle")
+    radius: Length = Field(description="radius [m] of the circle")
+    angles: Literal["even", "random"] = Field(
+        "even", description="`even`: equal steps from angle 0; `random`: uniform"
     )
-    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
+    jitter: Distance = Field(
+        0.0, description="width of a random shift: x and y each move by up to ± half of it [m]"
+    )
+    separation: Distance = Field(0.0, description="smallest gap [m] between bodies at the start")
     clear_of_goals: bool = Field(
-        False, description="keep the gap to the goals of those placed before, too"
+        False, description="whether `separation` also holds to the goals of agents placed before"
     )
 
 
 class GridStart(Spec):
-    """Agents in rows and columns, row by row from the lower left."""
+    """The agents start in rows and columns, filled row by row from the lower left."""
 
     type: Literal["grid"]
-    origin: Point = Field(description="centre of the first agent [m]")
-    columns: int = Field(ge=1, le=5000)
-    spacing: Length = Field(description="between centres [m]")
+    origin: Point = Field(description="centre [m] of the first agent")
+    columns: int = Field(ge=1, le=5000, description="agents in a full row")
+    spacing: Length = Field(description="distance [m] between neighbouring centres")
     jitter: Distance = Field(
-        0.0, description="x and y are each shifted by up to half of it either way [m]"
+        0.0, description="width of a random shift: x and y each move by up to ± half of it [m]"
     )
-    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
+    separation: Distance = Field(0.0, description="smallest gap [m] between bodies at the start")
 
 
 class PackedStart(Spec):
-    """Agents on a hexagonal lattice in a region, those nearest to its front first."""
+    """The agents start on a hexagonal lattice in a region, nearest to `front` first."""
 
     type: Literal["packed"]
-    region: Region = Field(description="of their centres")
-    front: Point = Field(description="a point of the lattice, also beside the region [m]")
-    spacing: Length = Field(description="between centres [m]")
+    region: Region = Field(description="region of the centres")
+    front: Point = Field(description="a point [m] of the lattice; it may lie outside the region")
+    spacing: Length = Field(description="distance [m] between neighbouring centres")
     jitter: Distance = Field(
-        0.0, description="x and y are each shifted by up to half of it either way [m]"
+        0.0, description="width of a random shift: x and y each move by up to ± half of it [m]"
     )
-    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
+    separation: Distance = Field(0.0, description="smallest gap [m] between bodies at the start")
 
 
 class PointsStart(Spec):
-    """Agent i at point i."""
+    """Agent i starts at point i."""
 
     type: Literal["points"]
-    points: tuple[Point, ...] = Field(min_length=1, max_length=5000, description="[m]")
-    separation: Distance = Field(0.0, description="least gap [m] to any agent at the start")
+    points: tuple[Point, ...] = Field(
+        min_length=1, max_length=5000, description="starts [m], at least one for each agent"
+    )
+    separation: Distance = Field(0.0, description="smallest gap [m] between bodies at the start")
 
 
 class RegionGoal(Spec):
-    """Each agent's goal somewhere in a region."""
+    """Each agent's goal is a random point of a region."""
 
     type: Literal["region"]
-    region: Region
-    min_distance: Distance = Field(0.0, description="least distance [m] from the start")
+    region: Region = Field(description="region of the goals")
+    min_distance: Distance = Field(0.0, description="smallest distance [m] between start and goal")
 
 
 class PointsGoal(Spec):
     """Agent i's goal is point i."""
 
     type: Literal["points"]
-    points: tuple[Point, ...] = Field(min_length=1, max_length=5000, description="[m]")
+    points: tuple[Point, ...] = Field(
+        min_length=1, max_length=5000, description="goals [m], at least one for each agent"
+    )
 
 
 class AntipodalGoal(Spec):
-    """Each agent's goal is its start, mirrored through a centre."""
+    """Each agent's goal is its start, mirrored at a centre."""
 
     type: Literal["antipodal"]
-    center: Point = Field((0.0, 0.0), description="[m]")
+    center: Point = Field((0.0, 0.0), description="centre [m] of the reflection")
 
 
 class ShiftedGoal(Spec):
-    """Each agent's goal is its start, moved by a vector: a group keeps its formation."""
+    """Each agent's goal is its start plus a vector, so the team keeps its formation."""
 
     type: Literal["shifted"]
-    by: Point = Field(description="[m]")
+    by: Point = Field(description="shift [m] from start to goal: [x, y]")
 
 
 Start = Annotated[
@@ -108,7 +114,7 @@ class NavigatorChoice(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
 
-    type: str = Field(min_length=1, max_length=200)
+    type: str = Field(min_length=1, max_length=200, description="name of the navigator")
 
     @property
     def params(self) -> dict[str, Any]:
@@ -126,25 +132,34 @@ class Team(Spec):
     Two teams with one name, one for each role, form one team of leaders and followers.
     """
 
-    name: Name
-    role: Literal["leader", "follower"] = "leader"
-    count: Count = Field(1.0, description="agents in the team")
-    radius: PositiveScalar = Field(description="[m]")
-    max_speed: PositiveScalar = Field(description="[m/s]")
-    preferred_speed: PositiveScalar | None = Field(
-        None, description="[m/s]; max_speed if not given"
+    name: Name = Field(description="name of the team")
+    role: Literal["leader", "follower"] = Field(
+        "leader", description="metrics are reported for each role separately"
     )
-    max_turn_rate: PositiveScalar = Field(2.5, description="[rad/s], of unicycles")
-    dynamics: Literal["holonomic", "unicycle"] = "holonomic"
-    start: Start
-    goal: Goal
+    count: Count = Field(1.0, description="number of agents")
+    radius: PositiveScalar = Field(description="radius [m] of the body, a disc")
+    max_speed: PositiveScalar = Field(description="largest speed [m/s]")
+    preferred_speed: PositiveScalar | None = Field(
+        None, description="desired speed [m/s]; default: `max_speed`"
+    )
+    max_turn_rate: PositiveScalar = Field(
+        2.5, description="largest turn rate [rad/s] of a unicycle"
+    )
+    dynamics: Literal["holonomic", "unicycle"] = Field(
+        "holonomic",
+        description="`holonomic`: moves in any direction; `unicycle`: along its heading",
+    )
+    start: Start = Field(description="rule that places the agents")
+    goal: Goal = Field(description="rule that sets the goals")
     heading: Literal["goal"] | Scalar = Field(
-        "goal", description="at the start [rad], or goal: towards the goal"
+        "goal", description="heading [rad] at the start; `goal`: towards the goal"
     )
     driver: Annotated[
         NavigatorChoice, BeforeValidator(_named, json_schema_input_type=str | NavigatorChoice)
     ] = NavigatorChoice(type="evaluated")
-    ignores: tuple[str, ...] = Field((), description="teams that these agents do not perceive")
+    ignores: tuple[str, ...] = Field(
+        (), description="names of teams that these agents do not sense"
+    )
 
     @property
     def evaluated(self) -> bool:

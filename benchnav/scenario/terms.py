@@ -1,7 +1,7 @@
 """The terms of an episode: clock, rules, sensing and knowledge."""
 
 import math
-from typing import Annotated, Literal, get_args
+from typing import Literal, get_args
 
 from pydantic import Field, model_validator
 
@@ -15,13 +15,15 @@ MAX_STEPS = 100_000
 
 
 class Clock(Spec):
-    """Time."""
+    """Time steps of an episode."""
 
-    dt: float = Field(0.2, gt=0, le=10, description="between decisions [s]")
-    substeps: int = Field(2, ge=1, le=100, description="integration steps within a decision")
-    horizon: float = Field(50.0, gt=0, le=1e5, description="when the episode ends [s]")
+    dt: float = Field(0.2, gt=0, le=10, description="time [s] between decisions")
+    substeps: int = Field(2, ge=1, le=100, description="integration steps per decision")
+    horizon: float = Field(
+        50.0, gt=0, le=1e5, description="time limit [s] of an episode; a multiple of `dt`"
+    )
     decision_budget: float | None = Field(
-        None, gt=0, le=1e3, description="[s] that a decision may take; scored, not enforced"
+        None, gt=0, le=1e3, description="time limit [s] of a decision; measured, not enforced"
     )
 
     @property
@@ -49,37 +51,57 @@ class Clock(Spec):
 class Rules(Spec):
     """The conditions of arrival, and the effects of contacts."""
 
-    goal_tolerance: Length = Field(0.5, description="between centre and goal [m]")
-    contact: Literal["slide", "stop", "end"] = Field(
-        "slide", description="what touching something does to an agent"
+    goal_tolerance: Length = Field(
+        0.5, description="distance [m] from centre to goal at which an agent arrives"
     )
-    on_arrival: Literal["vanish", "stay"] = "stay"
-    on_end: Literal["vanish", "stay"] = "stay"
+    contact: Literal["slide", "stop", "end"] = Field(
+        "slide",
+        description="effect of a contact on an agent: it slides along the surface, it stops until"
+        " its next decision, or its attempt ends",
+    )
+    on_arrival: Literal["vanish", "stay"] = Field(
+        "stay", description="whether an agent that arrived leaves the world or stays as an obstacle"
+    )
+    on_end: Literal["vanish", "stay"] = Field(
+        "stay", description="the same, after a contact that ends the attempt"
+    )
     charge: Literal["hitter", "both"] = Field(
-        "hitter", description="who is charged when one that arrived or ended, and stayed, is hit"
+        "hitter",
+        description="agent that is charged with a collision between an active agent and one that"
+        " stays after its attempt: the active one, or both",
     )
 
 
 class Rays(Spec):
-    """A fan of rays, symmetric about the heading."""
+    """A fan of range sensor rays, symmetric about the heading."""
 
-    count: int = Field(7, ge=1, le=1000)
-    fan: float = Field(math.pi, gt=0, le=2 * math.pi, description="between the outermost [rad]")
-    range: Length = Field(8.0, description="[m]")
-    thick: bool = Field(True, description="sphere casts of the agent's own radius")
+    count: int = Field(7, ge=1, le=1000, description="number of rays")
+    fan: float = Field(
+        math.pi, gt=0, le=2 * math.pi, description="angle [rad] between the outermost rays"
+    )
+    range: Length = Field(8.0, description="length [m] of a ray")
+    thick: bool = Field(
+        True, description="whether a ray is as wide as the agent (a sphere cast) or a line"
+    )
 
 
 class Nearest(Spec):
     """The nearest objects within a range."""
 
-    count: Annotated[int, Field(ge=1, le=1000)] = 10
-    range: Length = Field(10.0, description="[m]")
+    count: int = Field(10, ge=1, le=1000, description="largest number of objects")
+    range: Length = Field(10.0, description="largest distance [m]")
 
 
 class Sensing(Spec):
-    """The sensors of every agent; null for a missing kind."""
+    """The sensors of every agent; `null` removes a sensor."""
 
-    rays: Rays | None = Rays()
-    neighbours: Nearest | None = Nearest(count=10, range=10.0)
-    edges: Nearest | None = Nearest(count=16, range=8.0)
-    occlusion: bool = Field(True, description="what walls and obstacles hide is not sensed")
+    rays: Rays | None = Field(Rays(), description="range sensor")
+    neighbours: Nearest | None = Field(
+        Nearest(count=10, range=10.0), description="nearest agents and dynamic obstacles"
+    )
+    edges: Nearest | None = Field(
+        Nearest(count=16, range=8.0), description="nearest edges of walls and static obstacles"
+    )
+    occlusion: bool = Field(
+        True, description="whether walls and obstacles hide objects behind them"
+    )

@@ -17,17 +17,19 @@ Share = Annotated[float, Field(ge=0, le=1)]
 class Wall(Spec):
     """A wall, or the same wall in several places."""
 
-    shape: Shape
+    shape: Shape = Field(description="shape of the wall")
     at: Annotated[
         Annotated[Place, Tag("a point")]
         | Annotated[tuple[Place, ...], Field(min_length=1, max_length=1000), Tag("several points")],
         ONE_OR_MORE,
     ] = Field(
         (0.0, 0.0),
-        description="where the shape's origin lies: [x, y], or a list of such points with one"
+        description="position of the shape's origin: [x, y], or a list of such points with one"
         " wall at each [m]",
     )
-    heading: Scalar = Field(0.0, description="[rad] counter-clockwise; occupancy maps take none")
+    heading: Scalar = Field(
+        0.0, description="rotation [rad], counter-clockwise; not for occupancy maps"
+    )
 
     @model_validator(mode="after")
     def _check(self) -> "Wall":
@@ -55,24 +57,26 @@ class Wall(Spec):
 
 
 class Maze(Spec):
-    """A random maze that fills the arena: a spanning tree of a grid of cells, plus some loops."""
+    """A random maze that fills the arena: a spanning tree over a grid of cells, plus loops."""
 
     type: Literal["maze"]
-    columns: int = Field(ge=2, le=100)
-    rows: int = Field(ge=2, le=100)
-    thickness: Length = Field(0.2, description="of the walls [m]")
-    loops: Share = Field(0.0, description="share of the tree's walls that are taken away")
+    columns: int = Field(ge=2, le=100, description="cells along x")
+    rows: int = Field(ge=2, le=100, description="cells along y")
+    thickness: Length = Field(0.2, description="thickness [m] of the walls")
+    loops: Share = Field(0.0, description="fraction of the remaining inner walls that is removed")
 
 
 class Rooms(Spec):
-    """A grid of rooms that fills the arena; random doors join them all."""
+    """A grid of rooms that fills the arena; random doors connect all rooms."""
 
     type: Literal["rooms"]
-    columns: int = Field(ge=1, le=50)
-    rows: int = Field(ge=1, le=50)
-    door: Length = Field(1.2, description="clear width [m]")
-    thickness: Length = Field(0.2, description="of the walls [m]")
-    extra_doors: Share = Field(0.2, description="share of the doorless walls that get a door too")
+    columns: int = Field(ge=1, le=50, description="rooms along x")
+    rows: int = Field(ge=1, le=50, description="rooms along y")
+    door: Length = Field(1.2, description="clear width [m] of a door")
+    thickness: Length = Field(0.2, description="thickness [m] of the walls")
+    extra_doors: Share = Field(
+        0.2, description="fraction of the other inner walls that gets a door too"
+    )
 
 
 Layout = Annotated[Maze | Rooms, Field(discriminator="type")]

@@ -33,11 +33,11 @@ def section(material: Material) -> Iterator[str]:
     yield "## The paper's claims"
     yield ""
     yield (
-        "A verdict is computed from the run by a rule. *Confirmed* needs what the claim says to"
-        " hold"
-        f" and, where it compares, a paired 95 % interval without zero; success counts as good"
-        f" from {100 * GOOD:.0f} % on, movers as avoided up to {100 * SAFE:.0f} hit per 100 agents."
-        " *Contradicted* means the opposite was measured, *not confirmed* neither."
+        "A rule computes each verdict from the run. *Confirmed* means that the claim holds; if it"
+        " compares, the paired 95 % interval must exclude zero. Success is good"
+        f" from {100 * GOOD:.0f} % on; movers (dynamic obstacles) are avoided up to"
+        f" {100 * SAFE:.0f} hit per 100 agents."
+        " *Contradicted* means that the opposite holds; *not confirmed* means neither."
     )
     yield ""
     found = ((text, *judge(material)) for text, judge in CLAIMS)
@@ -91,9 +91,8 @@ def _planning_and_movers(m: Material) -> Finding:
     blind = (cast.DYNAMIC, "unknown", cast.BLIND)
     hits = m.evidence.value("collisions_dynamic", planned)
     return CONFIRMED if hits.low > SAFE else NOT, (
-        f"`{cast.PLANNER}` is hit by movers {hits.text(100)} times per 100 agents, who goes"
-        " straight"
-        f" without looking {m.evidence.value('collisions_dynamic', blind).text(100)}"
+        f"`{cast.PLANNER}` is hit by movers {hits.text(100)} times per 100 agents,"
+        f" `{cast.BLIND}` {m.evidence.value('collisions_dynamic', blind).text(100)}"
     )
 
 

@@ -42,9 +42,10 @@ def section(evidence: Evidence, pictures: Pictures) -> Iterator[str]:
         f" best trajectory with ORCA (Fig. 12); `{cast.BOTH}` is Fig. 13, `{cast.LOCAL}` heads"
         " straight"
         " for the goals. Values are means over worlds; the difference is paired by world, its"
-        f" interval in bold where it leaves out zero: `{cast.GUIDED}` − `{cast.BOTH}`. Guidance"
+        f" interval is bold if it excludes zero: `{cast.GUIDED}` − `{cast.BOTH}`. Guidance"
         " costs"
-        " rehearsals, which the leaderboard charges and never ranks with entries that had none."
+        " rehearsals, which the leaderboard shows; it never ranks such entries with entries without"
+        " rehearsals."
     )
     yield ""
     rows = []

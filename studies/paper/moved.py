@@ -15,7 +15,7 @@ ROWS = (  # navigator, and its tracks after the move
     (cast.BOTH, ("stale", "known")),
     (cast.GRID, ("stale", "known")),
 )
-MAPS = {"unknown": "no map", "stale": "the map of before", "known": "a new map"}
+MAPS = {"unknown": "no map", "stale": "the old map", "known": "a new map"}
 
 
 def section(evidence: Evidence) -> Iterator[str]:
@@ -24,9 +24,9 @@ def section(evidence: Evidence) -> Iterator[str]:
     yield ""
     yield (
         "Success per agent in %. *Before* is `leaders/static`; *after* is `leaders/moved`, where"
-        " the cubes were re-placed before the episode. No navigator was trained again. The worlds"
-        " of the two scenarios are not the same, so that their difference is not paired world by"
-        " world."
+        " the"
+        " cubes were moved before the episode. No policy was trained again. The worlds of the two"
+        " scenarios are different, so the difference is not paired by world."
     )
     yield ""
     rows = []
@@ -39,7 +39,7 @@ def section(evidence: Evidence) -> Iterator[str]:
                 f"`{navigator}`", MAPS[track], evidence.value("success", before).text(100),
                 evidence.value("success", after).text(100), change.text(100),
             ])  # fmt: skip
-    yield from table(["navigator", "after the move it has", "before", "after", "change"], rows)
+    yield from table(["navigator", "map after the move", "before", "after", "change"], rows)
     yield (
         "In `leaders/moving-furniture` three cubes are re-placed once while the agents are on their"
         " way; the map of track `known` follows them at once."

@@ -26,11 +26,12 @@ def section(evidence: Evidence, found: dict[str, Behaviour], pictures: Pictures)
     yield "## Fig. 8: movers"
     yield ""
     yield (
-        "`leaders/dynamic`, track `unknown`. An *encounter* begins where the collision"
+        "`leaders/dynamic`, track `unknown`. An *encounter* begins when the collision"
         " probability of"
         " Eq. 22–24 with one mover exceeds T_c = 0.6, and ends two seconds after the closest"
         " approach;"
-        f" a change of speed counts from {SPEED} m/s on, of heading from {np.degrees(TURN):.0f}°."
+        f" changes below {SPEED} m/s in speed, or below {np.degrees(TURN):.0f}° in heading, do not"
+        " count."
     )
     yield ""
     rows = []

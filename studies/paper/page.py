@@ -32,8 +32,8 @@ def _head(evidence: Evidence) -> Iterator[str]:
     yield ""
     yield (
         "*Crowd Navigation in an Unknown and Dynamic Environment Based on Deep Reinforcement"
-        " Learning* shows pictures and a table of words. This page measures the same"
-        " things. It is generated; do not edit it:"
+        " Learning* shows pictures and a table without numbers. This page measures its"
+        " claims. It is generated; do not edit it:"
     )
     yield ""
     yield "```text"

@@ -47,13 +47,12 @@ def section(evidence: Evidence) -> Iterator[str]:
     yield "## Table 2, measured"
     yield ""
     yield (
-        "Success per agent in % unless said, in `leaders/static` (known → unknown) and"
+        "Success per agent in %, unless stated otherwise, in `leaders/static` (known → unknown) and"
         " `leaders/moved`; collisions with movers per 100 agents in `leaders/dynamic`; arrival in %"
-        " in `trap/u` and `maze/grid`; different commands among all decisions in `leaders/static`"
-        " (`of`"
-        " how many) and turning in rad/m there. The last three in the track that the method is"
-        " meant for. n/a: it cannot be run so; *in each*: the same in every world, whatever the"
-        " map."
+        " in `trap/u` and `maze/grid`; number of different commands `of` all decisions in"
+        " `leaders/static`, and turning in rad/m there. The last three are of the track that the"
+        " method is intended for. n/a: the method cannot run; *in each*: the same in every world,"
+        " with any map."
     )
     yield ""
     yield from table(HEAD, [_cells(evidence, row) for row in ROWS])

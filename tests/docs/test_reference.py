@@ -30,3 +30,10 @@ def test_fields_have_shape_unit_and_meaning():
         in text
     )
     assert "| `row` | number of the world from `reset` to the end of its episode |" in text
+
+
+def test_every_type_of_the_keys_is_in_a_group_and_pictures_are_small():
+    assert "## Other types" not in MAKER.scenario_keys()
+    for picture, text, _ in MAKER.GROUPS.values():
+        file = ROOT / "docs/images/keys" / f"{picture}.png"
+        assert not picture or (text and file.stat().st_size <= 40_000)

@@ -130,7 +130,10 @@ def test_a_wrong_selection_is_asked_wrongly(write):
         (Selection(navigators=("orca", "{type: orca}")), "as 'orca' and as '{type: orca}'"),
         (Selection(tracks=("known", "known")), "The tracks must be named once each"),
         (Selection(scenarios=("trap/u", "trap/u@1")), "The scenarios must be named once each"),
-        (Selection(scenarios=("trap/u", "trap/u@1")), "named more than once, as 'trap/u' and as 'trap/u@1'"),
+        (
+            Selection(scenarios=("trap/u", "trap/u@1")),
+            "named more than once, as 'trap/u' and as 'trap/u@1'",
+        ),
     ],
 )
 def test_a_name_that_is_selected_twice_is_not_blamed_on_the_file(write, selection, complaint):

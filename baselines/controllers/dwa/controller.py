@@ -27,36 +27,34 @@ class DynamicWindowConfig(PluginConfig):
     """Parameters of the dynamic window approach."""
 
     acceleration: float = Field(
-        10.0, gt=0, description="[m/s²] by which the speed is changed, and braked, at most"
+        10.0, gt=0, description="[m/s²] largest acceleration and deceleration"
     )
     turn_acceleration: float = Field(
-        20.0, gt=0, description="[rad/s²] by which the turn rate is changed at most"
+        20.0, gt=0, description="[rad/s²] largest change of the turn rate"
     )
-    heading: float = Field(0.8, ge=0, description="α, weight of facing the target")
-    distance: float = Field(3.0, ge=0, description="β, weight of the way that is free")
+    heading: float = Field(0.8, ge=0, description="α, weight of the direction to the target")
+    distance: float = Field(3.0, ge=0, description="β, weight of the free distance")
     speed: float = Field(0.2, ge=0, description="γ, weight of driving fast")
-    far: float = Field(
-        1.0, gt=0, description="[m] a way on which nothing stands so far is free enough"
-    )
-    margin: float = Field(0.06, ge=0, description="[m] kept from everything")
+    far: float = Field(1.0, gt=0, description="[m] longer free distances count the same")
+    margin: float = Field(0.06, ge=0, description="[m] smallest gap to any object")
     predict: bool = Field(
         True,
-        description="neighbours keep their velocities; false: they stand where they are, as in"
+        description="whether neighbours keep their velocities; false: they stand still, as in"
         " the paper",
     )
-    horizon: float = Field(3.0, gt=0, description="[s] for which they are predicted")
+    horizon: float = Field(3.0, gt=0, description="[s] of prediction")
     hold: float = Field(
         0.6,
         gt=0,
         description="[s] after which a turning agent is predicted to keep its course, when"
         " neighbours are predicted (not from the paper)",
     )
-    speeds: int = Field(6, ge=2, description="speeds that are tried in the window")
-    turns: int = Field(15, ge=2, description="turn rates that are tried in the window")
+    speeds: int = Field(6, ge=2, description="number of speeds in the window")
+    turns: int = Field(15, ge=2, description="number of turn rates in the window")
 
 
 class DynamicWindow(Controller):
-    """Drives the best arc that it can reach within a step and on which it can still stop.
+    """Drives the best arc that is reachable within a step and allows a stop before obstacles.
 
     It commands twists, so that the checked motion is the executed one; holonomic bodies follow
     twists too.

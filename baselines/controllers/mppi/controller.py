@@ -27,13 +27,15 @@ from .kernel import control
 class MppiConfig(PluginConfig):
     """Parameters of model predictive path integral control."""
 
-    samples: int = Field(64, ge=3, description="plans that are tried at each decision")
+    samples: int = Field(64, ge=3, description="number of plans at each decision")
     steps: int = Field(10, ge=2, description="twists of a plan")
     tick: float = Field(0.3, gt=0, description="[s] that each twist of a plan is held")
     knots: int = Field(6, ge=2, description="times in a plan at which noise is drawn")
-    temperature: float = Field(0.15, gt=0, description="[m] λ: how much worse plans still count")
+    temperature: float = Field(
+        0.15, gt=0, description="[m] λ: larger values give more weight to worse plans"
+    )
     control_cost: float = Field(
-        0.1, ge=0, description="γ / λ: what plans cost that go on with the last one and exceed it"
+        0.1, ge=0, description="γ / λ: cost of plans that deviate from the last one"
     )
     speed_noise: float = Field(
         0.5, gt=0, description="standard deviation of speeds, as a share of the preferred one"
@@ -44,27 +46,33 @@ class MppiConfig(PluginConfig):
     margin: float = Field(
         0.05,
         ge=0,
-        description="[m] nearer than which a neighbour is touched; half of it for what stands",
+        description="[m] gap to a neighbour that counts as a contact; half of it for edges",
     )
-    contact: float = Field(20.0, ge=0, description="[m] cost of a contact; twice that if at once")
+    contact: float = Field(
+        20.0, ge=0, description="[m] cost of a contact; twice that in the first step"
+    )
     probability: float = Field(
         1.0, ge=0, description="[m] cost of a collision probability (Eq. 24) of 1 all the time"
     )
     back: float = Field(
-        1.0, ge=0, description="[m] cost of touching at once a dynamic obstacle if it turned back"
+        1.0,
+        ge=0,
+        description="[m] cost of a contact in the first step if a dynamic obstacle reverses",
     )
     near: float = Field(
-        3.0, ge=0, description="[m] cost of touching a neighbour all the time; nearness costs less"
+        3.0,
+        ge=0,
+        description="[m] cost of contact with a neighbour all the time; less for small gaps",
     )
-    near_edges: float = Field(0.6, ge=0, description="[m] the same of touching what stands")
-    clearance: float = Field(0.4, gt=0, description="[m] from which on nothing is near")
+    near_edges: float = Field(0.6, ge=0, description="[m] the same, for edges")
+    clearance: float = Field(0.4, gt=0, description="[m] larger gaps have no cost")
     smooth: float = Field(
-        0.1, ge=0, description="[m] cost of a change by the whole preferred speed or turn rate"
+        0.1, ge=0, description="[m] cost of a change by the full preferred speed or turn rate"
     )
 
 
 class Mppi(Controller):
-    """Tries many disturbances of its last plan, and weights them by exp(−cost / λ).
+    """Samples random variations of its last plan, and averages them with weights exp(−cost / λ).
 
     It commands twists; holonomic bodies follow them too.
     """

@@ -33,13 +33,12 @@ class OrcaConfig(PluginConfig):
         1.0, gt=0, description="[s] for which velocities are safe with respect to edges"
     )
     margin: float = Field(
-        0.05, ge=0, description="[m] by which every disc is taken to be larger among neighbours"
+        0.05, ge=0, description="[m] added to the radius of every disc, for neighbours"
     )
     edge_margin: float = Field(
         0.05,
         ge=0,
-        description="[m] by which an agent takes itself to be larger among edges; less where its"
-        " path leaves less",
+        description="[m] added to the agent's own radius, for edges; less on a narrow path",
     )
     neighbours: int = Field(10, ge=0, description="nearest neighbours that are considered")
     perturbation: float = Field(
@@ -47,8 +46,8 @@ class OrcaConfig(PluginConfig):
         ge=0,
         lt=1,
         description="size of a constant random error of the agent's own velocity and preferred"
-        " velocity, as a share of the preferred speed; agents that meet in exact symmetry"
-        " stand for ever without it",
+        " velocity, as a share of the preferred speed; without it, agents in exact symmetry"
+        " never move",
     )
 
 

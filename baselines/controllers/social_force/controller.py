@@ -39,23 +39,25 @@ class SocialForceConfig(PluginConfig):
     borders: float = Field(10.0, ge=0, description="[m²/s²] U⁰ of the potential of a border")
     border_range: float = Field(0.2, gt=0, description="[m] R, at which it falls to 1/e")
     sight: float = Field(
-        math.radians(200.0), gt=0, le=2 * math.pi, description="[rad] 2φ, angle of sight"
+        math.radians(200.0), gt=0, le=2 * math.pi, description="[rad] 2φ, angle of view"
     )
-    behind: float = Field(0.5, ge=0, le=1, description="c, weight of forces from out of sight")
+    behind: float = Field(
+        0.5, ge=0, le=1, description="c, weight of forces from outside this angle"
+    )
     top: float = Field(1.3, gt=0, description="largest speed as a multiple of the preferred one")
     border_body: float = Field(
         0.4,
         ge=0,
-        description="[m] radius of the bodies for which the distance of borders is that of the"
-        " centre; to what is larger they are nearer (not from the paper)",
+        description="[m] distances to borders start at the centre of bodies up to this radius, and"
+        " this far inside larger ones (not from the paper)",
     )
     fluctuation: float = Field(
         0.02,
         ge=0,
         description="[m/s²] standard deviation of a constant acceleration of each agent, in x and"
-        " in y, without which agents that meet in exact symmetry stand for ever",
+        " in y; without it, agents in exact symmetry never move",
     )
-    tick: float = Field(0.05, gt=0, description="[s] of integration, at most (not from the paper)")
+    tick: float = Field(0.05, gt=0, description="[s] largest integration step (not from the paper)")
 
 
 class SocialForce(Controller):

@@ -21,7 +21,7 @@ class QLearningConfig(PluginConfig):
     """Parameters."""
 
     table: Path | None = Field(
-        None, description="file of a training (.safetensors); none: the included one"
+        None, description="table file of a training (.safetensors); none: the included table"
     )
 
 

@@ -29,19 +29,19 @@ _LIMITS = ("radius", "max_speed", "max_turn_rate")
 class PolicyConfig(PluginConfig):
     """The choice of weights, and of foresight."""
 
-    weights: str = Field("", description="file that `benchnav train` wrote; its own if empty")
+    weights: str = Field(
+        "", description="weights file of `benchnav train`; empty: the included weights"
+    )
     foresight: bool = Field(True, description="correct twists that would collide")
     hold: float = Field(
-        0.9, ge=HELD, le=2, description="[s] that looking ahead may hold a twist at most"
+        0.9, ge=HELD, le=2, description="[s] longest time for which the prediction holds a twist"
     )
 
 
 class DriverConfig(PolicyConfig):
     """The same, for an agent without a path to follow."""
 
-    patience: float = Field(
-        4.0, ge=0, description="[s] of standing after which to try another way; 0: never"
-    )
+    patience: float = Field(4.0, ge=0, description="[s] of standing before a detour; 0: no detours")
 
 
 class PolicyPilot(Pilot):
@@ -53,7 +53,7 @@ class PolicyPilot(Pilot):
         weights: file of `benchnav train`.
         foresight: correct twists that would collide.
         hold: [s] largest duration of a twist.
-        patience: [s] of standing after which to try another way; 0: never.
+        patience: [s] of standing before a detour; 0: no detours.
 
     A policy with rays predicts collisions only with what its rays hit.
     """

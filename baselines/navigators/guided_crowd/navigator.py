@@ -24,33 +24,34 @@ class GuidedCrowdConfig(PluginConfig):
         5, ge=1, le=100, description="rehearsals of the leaders before each episode; charged"
     )
     leader: str | dict[str, Any] = Field(
-        "recurrent-ppo", description="who drives the leaders in them: name or {type: name, …}"
+        "recurrent-ppo",
+        description="navigator of the leaders in rehearsals: name or {type: name, …}",
     )
     path: str | None = Field(
         None,
         min_length=1,
-        description="file of guiding paths that come before the rehearsals' where they fit a group",
+        description="file of guiding paths, preferred to rehearsed ones if they fit a group",
     )
     fit: float = Field(
-        3.0, ge=0, description="[m] that such a path may begin or end away from its leader's"
+        3.0, ge=0, description="[m] largest distance of their ends from the leader's start and goal"
     )
     fallback: Literal["orca", "collided"] = Field(
         "orca",
-        description="what a group does whose leader never succeeded: go straight at its goals with"
-        " ORCA, or follow the fastest trajectory that arrived with a collision, if there is one",
+        description="behaviour of a group whose leader never succeeded: go straight to its goals"
+        " with ORCA, or follow the fastest trajectory that arrived with a collision, if any",
     )
-    lookahead: float = Field(2.0, gt=0, description="[m] along the path from a member to its aim")
-    spread: float = Field(
-        3.0, ge=0, description="[m] half width of the corridor that a group takes about its path"
+    lookahead: float = Field(
+        2.0, gt=0, description="[m] distance along the path from a member to its target"
     )
+    spread: float = Field(3.0, ge=0, description="[m] half width of the corridor around the path")
     leaving: float = Field(
         3.0,
         ge=0,
-        description="[m] before the place of the path that is nearest to its own goal, at which"
-        " a member leaves the path for it",
+        description="[m] a member leaves the path this far before the point of the path that is"
+        " nearest to its goal",
     )
     tolerance: float = Field(
-        0.05, ge=0, description="[m] by which a path may leave the trajectory, to be simpler"
+        0.05, ge=0, description="[m] tolerance when the trajectory is simplified to a path"
     )
     orca: OrcaConfig = Field(OrcaConfig(), description="parameters of the avoidance")
 

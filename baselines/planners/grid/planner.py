@@ -21,11 +21,11 @@ class GridConfig(ClearanceConfig):
     """Parameters of both."""
 
     cell: float = Field(
-        0.25, gt=0, description="[m] between neighbouring places; they lie at half a cell from"
-        " the lower left corner of the map's bounds"
+        0.25, gt=0, description="[m] distance of neighbouring grid points; the first one is half a"
+        " cell from the lower left corner of the map's bounds"
     )  # fmt: skip
     halvings: int = Field(
-        2, ge=0, le=6, description="how often the cell is halved where no path is found"
+        2, ge=0, le=6, description="how many times the cell is halved if no path is found"
     )
 
 
@@ -92,7 +92,7 @@ class GridPlanner(DiscPlanner):
 
 
 class AStar(GridPlanner):
-    """A* (Hart, Nilsson & Raphael 1968) with eight steps and the octile distance."""
+    """A* (Hart, Nilsson & Raphael 1968) on an eight-connected grid, with the octile distance."""
 
     class Config(GridConfig):
         """Parameters."""
@@ -101,7 +101,7 @@ class AStar(GridPlanner):
 
 
 class ThetaStar(GridPlanner):
-    """Theta* (Nash et al. 2007): a path's corners are places, its sides go at any angle."""
+    """Theta* (Nash et al. 2007): corners of a path are grid points, segments have any angle."""
 
     class Config(GridConfig):
         """Parameters."""

@@ -1,1 +1,1 @@
-"""A navigation mesh: triangles of free space, a search over their sides, and a taut string."""
+"""A navigation mesh: triangles of free space, A* over their sides, funnel algorithm."""

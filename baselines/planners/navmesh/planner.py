@@ -17,23 +17,21 @@ _AROUND = 1.0  # [m] of space around all obstacles
 
 
 class NavMesh(DiscPlanner):
-    """A* over the sides of free space's triangles (constrained Delaunay), then a taut string.
+    """A* over the sides of triangles of free space, then the funnel algorithm.
 
-    The string is pulled by the funnel algorithm (Mononen 2010). The mesh is computed once for
-    a map and a radius. The path is the shortest of its sequence of triangles, and clear of
-    obstacles, whose corners' arcs are approximated from outside; the sequence found is not
-    always the best.
+    The triangles are a constrained Delaunay triangulation, computed once for a map and a radius.
+    The funnel algorithm (Mononen 2010) finds the shortest path through a sequence of triangles. The
+    path is clear of obstacles: polygons outside the arcs around corners replace these arcs. The
+    sequence of triangles is not always the best one.
     """
 
     class Config(ClearanceConfig):
         """Parameters."""
 
-        segments: int = Field(
-            8, ge=1, le=90, description="straight pieces in place of a quarter of a circle"
-        )
+        segments: int = Field(8, ge=1, le=90, description="line segments per quarter of a circle")
         spacing: float = Field(
-            1.0, gt=0, description="[m] between the places at which the search may pass one side"
-            " of a triangle, at most; a side that is shorter is passed in its middle"
+            1.0, gt=0, description="[m] largest distance between the points of a side at which"
+            " the search can cross it; a shorter side has one point, its middle"
         )  # fmt: skip
 
     def __init__(self, config: PluginConfig | None = None) -> None:

@@ -20,12 +20,14 @@ class OmplConfig(ClearanceConfig):
     """Parameters of every OMPL planner."""
 
     iterations: int = Field(
-        20_000, ge=1, description="calls of the termination condition until it gives up"
+        20_000, ge=1, description="largest number of calls of the termination condition"
     )
     seconds: float | None = Field(
-        None, gt=0, description="[s] of wall clock that a search may take besides; not reproducible"
+        None, gt=0, description="[s] additional limit of wall-clock time; not reproducible"
     )
-    simplify: bool = Field(True, description="skip waypoints and pull the path taut afterwards")
+    simplify: bool = Field(
+        True, description="whether unnecessary waypoints are removed and the path is shortened"
+    )
     checker: CheckerName = Field(
         "planar", description="exact swept test in the plane, or python-fcl on the map's meshes"
     )

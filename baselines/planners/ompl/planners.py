@@ -65,7 +65,7 @@ class RRTConnect(TreePlanner):
         """Parameters."""
 
         iterations: int = Field(
-            100_000, ge=1, description="calls of the termination condition until it gives up"
+            100_000, ge=1, description="largest number of calls of the termination condition"
         )
         range: float | None = Field(
             None,
@@ -90,7 +90,7 @@ class RRTStar(TreePlanner):
         """Parameters."""
 
         iterations: int = Field(
-            16_000, ge=1, description="calls of the termination condition until it gives up"
+            16_000, ge=1, description="largest number of calls of the termination condition"
         )
         improve: int = Field(200, ge=0, description="iterations after the first solution")
 
@@ -140,9 +140,13 @@ class PRM(OmplPlanner):
         """Parameters."""
 
         iterations: int = Field(
-            400, ge=2, description="calls of the termination condition of the smallest roadmap"
+            400,
+            ge=2,
+            description="number of calls of the termination condition for the first roadmap",
         )
-        doublings: int = Field(5, ge=0, le=20, description="how often it is doubled if it fails")
+        doublings: int = Field(
+            5, ge=0, le=20, description="how many times the roadmap is doubled if it fails"
+        )
         shared: bool = Field(
             True, description="one roadmap for all agents of a radius; else one for each query"
         )

@@ -13,7 +13,7 @@ class Rectangle(Spec):
     """An axis-aligned rectangle."""
 
     type: Literal["rectangle"]
-    bounds: Bounds = Field(description="[xmin, ymin, xmax, ymax] [m]")
+    bounds: Bounds = Field(description="edges: [xmin, ymin, xmax, ymax] [m]")
 
     def box(self, arena: Extent) -> Extent:
         """Return the smallest rectangle around the region."""
@@ -24,8 +24,8 @@ class DiscRegion(Spec):
     """The inside of a circle."""
 
     type: Literal["disc"]
-    center: Point = Field(description="[m]")
-    radius: Length = Field(description="[m]")
+    center: Point = Field(description="centre [m]")
+    radius: Length = Field(description="radius [m]")
 
     def box(self, arena: Extent) -> Extent:
         """Return the smallest rectangle around the region."""
@@ -37,9 +37,9 @@ class Ring(Spec):
     """The area between two circles."""
 
     type: Literal["ring"]
-    center: Point = Field(description="[m]")
-    inner: Distance = Field(description="[m]")
-    outer: Length = Field(description="[m]")
+    center: Point = Field(description="centre [m]")
+    inner: Distance = Field(description="radius [m] of the inner circle")
+    outer: Length = Field(description="radius [m] of the outer circle")
 
     @model_validator(mode="after")
     def _check(self) -> "Ring":
@@ -57,7 +57,9 @@ class Points(Spec):
     """One of a list of points."""
 
     type: Literal["points"]
-    points: tuple[Point, ...] = Field(min_length=1, max_length=5000, description="[m]")
+    points: tuple[Point, ...] = Field(
+        min_length=1, max_length=5000, description="points [m] to choose from"
+    )
 
     def box(self, arena: Extent) -> Extent:
         """Return the smallest rectangle around the region."""
@@ -69,7 +71,7 @@ class Anywhere(Spec):
     """The whole arena, minus a margin along its bounds."""
 
     type: Literal["anywhere"]
-    margin: Distance = Field(0.0, description="[m]")
+    margin: Distance = Field(0.0, description="width [m] of the border that is left out")
 
     def box(self, arena: Extent) -> Extent:
         """Return the smallest rectangle around the region."""

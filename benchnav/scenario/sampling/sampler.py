@@ -18,9 +18,9 @@ def _rising(low: float, high: float, key: str) -> None:
 
 
 class Uniform(Spec):
-    """Uniform in [a, b)."""
+    """A uniform distribution over [a, b)."""
 
-    uniform: tuple[Number, Number] = Field(description="[a, b] with a ≤ b")
+    uniform: tuple[Number, Number] = Field(description="limits [a, b] with a ≤ b")
 
     @model_validator(mode="after")
     def _check(self) -> "Uniform":
@@ -29,7 +29,7 @@ class Uniform(Spec):
 
 
 class Normal(Spec):
-    """Normal, drawn again while outside [low, high]."""
+    """A normal distribution; values outside [low, high] are drawn again."""
 
     normal: tuple[Number, Annotated[Number, Field(ge=0)], Number, Number] = Field(
         description="[mean, standard deviation, low, high] with low ≤ mean ≤ high"
@@ -48,17 +48,17 @@ class Normal(Spec):
 
 
 class Choice(Spec):
-    """One of the numbers, equally likely."""
+    """One of several numbers, all equally likely."""
 
-    choice: tuple[Number, ...] = Field(min_length=1, max_length=1000)
+    choice: tuple[Number, ...] = Field(min_length=1, max_length=1000, description="the numbers")
 
 
 class Integers(Spec):
-    """A whole number from a to b, both included."""
+    """A whole number from a to b, both included, all equally likely."""
 
     integers: tuple[
         Annotated[int, Field(ge=-(10**6), le=10**6)], Annotated[int, Field(ge=-(10**6), le=10**6)]
-    ] = Field(description="[a, b] with a ≤ b")
+    ] = Field(description="limits [a, b] with a ≤ b")
 
     @model_validator(mode="after")
     def _check(self) -> "Integers":
