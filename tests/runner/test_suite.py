@@ -128,12 +128,15 @@ def test_a_wrong_selection_is_asked_wrongly(write):
     [
         (Selection(navigators=("orca", "orca")), "The navigators must be named once each"),
         (Selection(navigators=("orca", "{type: orca}")), "as 'orca' and as '{type: orca}'"),
-        (Selection(tracks=("known", "known")), "--track must name each of the tracks once"),
-        (Selection(scenarios=("trap/u", "trap/u@1")), "--scenario must name each of the scenarios"),
-        (Selection(scenarios=("trap/u", "trap/u@1")), "'trap/u@1' more than once, as 'trap/u' and"),
+        (Selection(tracks=("known", "known")), "The tracks must be named once each"),
+        (Selection(scenarios=("trap/u", "trap/u@1")), "The scenarios must be named once each"),
+        (
+            Selection(scenarios=("trap/u", "trap/u@1")),
+            "'trap/u@1' is named more than once, as 'trap/u' and",
+        ),
     ],
 )
-def test_what_is_selected_twice_is_blamed_on_the_option(write, selection, complaint):
+def test_what_is_selected_twice_is_named(write, selection, complaint):
     path = write()
     with pytest.raises(UsageError) as refused:
         load_suite(path, selection)
