@@ -37,19 +37,22 @@ def measure(suite: str, seeds: int) -> list[Cost]:
     """Run the suite, and return the cost of each navigator."""
     costs = []
     whole = load_suite(suite)
-    for entry in whole.entries:
+    for contestant in whole.contestants:
         seconds, sizes = [], []
         for scenario in whole.scenarios:
             with tempfile.TemporaryDirectory() as folder:
                 for name, count in (("warm", 2), ("run", seeds)):
-                    chosen = Selection((scenario.identity,), ("known",), (entry.label,), f"{count}")
+                    chosen = Selection(
+                        (scenario.identity,), ("known",), (contestant.label,), f"{count}"
+                    )
                     began = process_time()
                     summary = run_suite(load_suite(suite, chosen), Path(folder, name), workers=0)
                 if summary.stored:
                     seconds.append((process_time() - began) / summary.stored)
                     sizes.append(size(Path(folder, "run", "parts")) / summary.stored)
-        costs.append(Cost(entry.label, statistics.mean(seconds), statistics.mean(sizes)))
-        print(f"{entry.label}: {costs[-1].seconds:.4f} s, {costs[-1].bytes:.0f} bytes", flush=True)
+        costs.append(Cost(contestant.label, statistics.mean(seconds), statistics.mean(sizes)))
+        cost = costs[-1]
+        print(f"{cost.navigator}: {cost.seconds:.4f} s, {cost.bytes:.0f} bytes", flush=True)
     return costs
 
 

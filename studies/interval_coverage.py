@@ -26,7 +26,10 @@ TABLES = 2000
 WORLDS = (50, 100, 200)
 RATES = (0.01, 0.02, 0.05, *(k / 10 for k in range(1, 10)), 0.95, 0.98, 0.99)
 APART = 0.1  # between the rates of two navigators that differ
-WITHIN = (0.93, 0.97)  # what is asked; near 0 and 1, where few worlds tell, the first alone
+WITHIN = (
+    0.93,
+    0.97,
+)  # the required coverage; near 0 and 1 only the lower end, as few worlds decide there
 EDGE, DIFFERENCE_EDGE = 0.05, 0.1  # how near, of rates and of their differences
 
 
@@ -106,8 +109,8 @@ def mean_coverage(shape: str, worlds: int, tables: int, percentiles: bool = Fals
     return held(found.low, found.high, truth)
 
 
-def asked(chance: float, share: float, edge: float = EDGE) -> bool:
-    """Whether a coverage is what is asked of a rate; nearer than ``edge`` to 0 or 1, at least."""
+def is_required(chance: float, share: float, edge: float = EDGE) -> bool:
+    """Whether a rate has the required coverage; nearer than ``edge`` to 0 or 1, at least."""
     low, high = WITHIN
     return share >= low and (share <= high or not edge <= chance <= 1 - edge)
 
@@ -115,7 +118,7 @@ def asked(chance: float, share: float, edge: float = EDGE) -> bool:
 def cells(
     measure: Callable[[float, int], float], tables: int, edge: float = EDGE
 ) -> tuple[str, ...]:
-    """Coverage at each of `RATES`, and whether all are what is asked.
+    """Coverage at each of `RATES`, and whether all have the required coverage.
 
     2,000 tables tell a coverage to ± 0.01: what falls outside is measured again (*) with
     ten times as many, and judged by that.
@@ -123,9 +126,9 @@ def cells(
     texts, good = [], True
     for p in RATES:
         share, mark = measure(p, tables), ""
-        if not asked(p, share, edge):
+        if not is_required(p, share, edge):
             share, mark = measure(p, 10 * tables), "*"
-            good &= asked(p, share, edge)
+            good &= is_required(p, share, edge)
         texts.append(f"{share:.3f}{mark}")
     return (*texts, "yes" if good else "no")
 
@@ -135,7 +138,7 @@ Row = tuple[str, ...]
 
 def rate_rows(tables: int) -> Iterator[Row]:
     """Coverage of single rates."""
-    yield ("agents, correlation", "worlds", *(f"{p:g}" for p in RATES), "as asked")
+    yield ("agents, correlation", "worlds", *(f"{p:g}" for p in RATES), "as required")
     for (agents, mix), n in product(CORRELATIONS, WORLDS):
         measure = partial(rate_coverage, agents=agents, correlation=mix, worlds=n)
         yield (f"{agents}, {mix}", f"{n}", *cells(measure, tables))
@@ -143,7 +146,7 @@ def rate_rows(tables: int) -> Iterator[Row]:
 
 def difference_rows(tables: int) -> Iterator[Row]:
     """Coverage of paired differences, of equals and of navigators that differ."""
-    yield ("crowd", "B", "worlds", *(f"{p:g}" for p in RATES), "as asked")
+    yield ("crowd", "B", "worlds", *(f"{p:g}" for p in RATES), "as required")
     for crowd, apart, n in product(CROWDS, (0.0, APART), WORLDS):
         measure = partial(difference_coverage, apart=apart, crowd=crowd, worlds=n)
         name = f"{apart:g} nearer ½" if apart else "as A"

@@ -1,11 +1,11 @@
-"""Kills commands at random moments until they have survived: ``python -m studies.kill_nine``.
+"""Kill commands at random moments, and check that they resume: ``python -m studies.kill_nine``.
 
 A course is a chain of commands that share a folder: a run, shards that are merged, a pack, a
 verification. At a random moment the whole process group of a command gets SIGKILL (or, with
-``--parent-only``, the command alone, which its workers must not outlive), and the same command
-goes on in the same folder. A course that reaches its end is compared with one that nobody
-disturbed, every value and every line of the table, timings aside; no temporary file, process or
-lock may be left. Courses begin again, in turn, until there were so many kills.
+``--parent-only``, only the command; its workers must then end too). The same command then
+resumes in the same folder. A completed course is compared with an undisturbed one: every value
+and every line of the table, except timings. No temporary file, process or lock may be left.
+Courses repeat in turn until the number of kills is reached.
 """
 
 import argparse
@@ -78,7 +78,7 @@ def courses(suite: str, options: tuple[str, ...]) -> list[Course]:
 
 @dataclass
 class Tally:
-    """What happened."""
+    """The counts of one trial."""
 
     kills: int = 0
     finished: int = 0  # courses that reached their end, and were compared
@@ -245,21 +245,21 @@ def main() -> None:
     parser.add_argument("--workers", default="2")
     parser.add_argument("--parent-only", action="store_true")
     parser.add_argument("--seed", type=int, default=0, help="of the moments")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
         suite = Path(name) / "suite.yaml"
         suite.write_text(SUITE)
-        chosen = asked.suite or str(suite)
-        all_courses = courses(chosen, ("--seeds", asked.seeds, "--workers", asked.workers))
-        shares = [len(range(k, asked.kills, len(all_courses))) for k in range(len(all_courses))]
+        chosen = options.suite or str(suite)
+        all_courses = courses(chosen, ("--seeds", options.seeds, "--workers", options.workers))
+        shares = [len(range(k, options.kills, len(all_courses))) for k in range(len(all_courses))]
         for course, share in zip(all_courses, shares, strict=True):
             began = time.monotonic()
             tally = survive(
-                course, Path(name), share, parent_only=asked.parent_only, seed=asked.seed
+                course, Path(name), share, parent_only=options.parent_only, seed=options.seed
             )
-            whom = "the command alone" if asked.parent_only else "the whole process group"
+            killed = "the command alone" if options.parent_only else "the whole process group"
             print(
-                f"{course.name}: {tally.kills} kills of {whom}; {tally.finished} courses reached"
+                f"{course.name}: {tally.kills} kills of {killed}; {tally.finished} courses reached"
                 f" their end, each equal to the unbroken one and with nothing left behind."
                 f" At the kill: {dict(tally.states)}. {time.monotonic() - began:.0f} s.",
                 flush=True,

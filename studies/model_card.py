@@ -104,9 +104,9 @@ def _measured(episode: Episode) -> tuple[FloatArray, FloatArray, FloatArray, lis
     )  # fmt: skip
 
 
-def _first_hits(episode: Episode, who: Any) -> Iterator[int]:
+def _first_hits(episode: Episode, agents: Any) -> Iterator[int]:
     contacts = episode.contacts
-    for agent in np.flatnonzero(who):
+    for agent in np.flatnonzero(agents):
         rows = np.flatnonzero((contacts.agent == agent) & contacts.charged)
         if len(rows):
             yield int(contacts.kind[rows[0]])
@@ -186,14 +186,14 @@ def _line(row: Row, known: dict[str, Any] | None) -> str:
 
 
 def _stages(recipe: str, seed: int) -> Iterator[str]:
-    """What each stage gained, on the validation split."""
+    """Yield the gain of each stage on the validation split."""
     from benchnav_baselines.learned.recurrent_ppo.learning.log import read_rows
     from benchnav_baselines.learned.recurrent_ppo.learning.recipe import Recipe
     from benchnav_baselines.learned.recurrent_ppo.learning.trainer import RecurrentPPOTrainer
 
     curve = read_rows(CURVES / f"{recipe}-{seed}.csv")
-    said = RecurrentPPOTrainer.recipes / f"{recipe}.yaml"
-    stages = Recipe(**yaml.safe_load(said.read_text("utf-8"))).stages
+    path = RecurrentPPOTrainer.recipes / f"{recipe}.yaml"
+    stages = Recipe(**yaml.safe_load(path.read_text("utf-8"))).stages
     names = [name for name in curve[0] if name.startswith("validation ")]
     corrected = [str(k) for k, stage in enumerate(stages, 1) if stage.foresight]
     only = f"corrected by foresight in stage {', '.join(corrected)} alone"
@@ -219,25 +219,25 @@ def main() -> None:
         help="weights that another seed gave; may be given again",
     )  # fmt: skip
     parser.add_argument("--out", type=Path, help="the card; and the numbers as JSON beside it")
-    asked = parser.parse_args()
+    options = parser.parse_args()
 
     def measured(names: Sequence[str], **changes: Any) -> list[Row]:
         rows = []
         for scenario in names:
-            rows.append(measure({"type": asked.navigator, **changes}, scenario, asked.agents))
+            rows.append(measure({"type": options.navigator, **changes}, scenario, options.agents))
             print(changes, rows[-1], flush=True)
         return rows
 
     seeds = {
-        make(NAVIGATORS, {"type": asked.navigator, "weights": str(path)}).pilot.about["progress"][
+        make(NAVIGATORS, {"type": options.navigator, "weights": str(path)}).pilot.about["progress"][
             "seed"
         ]: measured(LEADERS, weights=str(path))
-        for path in asked.seed
+        for path in options.seed
     }
-    rows = measured(asked.scenario or SCENARIOS)
-    text = card(asked.navigator, rows, measured(LEADERS, **ALONE), seeds)
-    if asked.out:
-        asked.out.write_text(text)
+    rows = measured(options.scenario or SCENARIOS)
+    text = card(options.navigator, rows, measured(LEADERS, **ALONE), seeds)
+    if options.out:
+        options.out.write_text(text)
     else:
         print(text)
 

@@ -37,7 +37,7 @@ from studies.paper.markdown import table
 
 SUITE = "standard"
 SEEDS = 10
-SALT = "0123456789abcdef0123456789abcdef"  # anybody's, so that anybody can run it again
+SALT = "0123456789abcdef0123456789abcdef"  # public, so that the run can be repeated
 METRICS = ("success", "collided", "spl")
 SAMPLE = ("circle/antipodal:agents=8", "leaders/dynamic", "trap/u")
 DIGITS = 16  # of a digest that is kept
@@ -54,9 +54,9 @@ def digests(run: RunFolder) -> dict[str, dict[str, dict[str, list[str]]]]:
     """Scenario → track → navigator → the first digits of each seed's digest."""
     found: dict[str, dict[str, dict[str, list[str]]]] = {}
     for episode in read_episodes(run.path):
-        who = episode.identity
-        cells = found.setdefault(who.scenario, {}).setdefault(who.track, {})
-        cells.setdefault(who.navigator, []).append(episode.digest[:DIGITS])
+        identity = episode.identity
+        cells = found.setdefault(identity.scenario, {}).setdefault(identity.track, {})
+        cells.setdefault(identity.navigator, []).append(episode.digest[:DIGITS])
     return found
 
 
@@ -68,7 +68,7 @@ def lasted(run: RunFolder) -> float:
 
 
 def facts(run: RunFolder, packed: Path, seconds: float) -> dict[str, Any]:
-    """What identifies the run, and what it took."""
+    """Return the identity of the run and its cost."""
     manifest = run.manifest
     return {
         "suite": f"{manifest.suite['name']}@{manifest.suite['version']}",
@@ -89,7 +89,7 @@ def facts(run: RunFolder, packed: Path, seconds: float) -> dict[str, Any]:
         "rehearsals": _rows(run, REHEARSALS_FILE),
         "digests": {
             scenario: {
-                track: {who: " ".join(found) for who, found in navigators.items()}
+                track: {navigator: " ".join(found) for navigator, found in navigators.items()}
                 for track, navigators in tracks.items()
             }
             for scenario, tracks in digests(run).items()
@@ -108,36 +108,39 @@ def records(run: RunFolder) -> tuple[str, list[dict[str, str]]]:
     return text, list(csv.DictReader(io.StringIO(text)))
 
 
-def page(run: RunFolder, said: dict[str, Any], rows: list[dict[str, str]], note: str) -> str:
+def page(run: RunFolder, summary: dict[str, Any], rows: list[dict[str, str]], note: str) -> str:
     """The page, in Markdown."""
     reasons = [cell["reason"] for cell in run.manifest.cells]
-    suite, packed = run.manifest.suite, said["pack"]
+    suite, packed = run.manifest.suite, summary["pack"]
     name = f"{suite['name']}-{suite['version']}"
     lines = [
-        f"# The reference run of `{said['suite']}`",
+        f"# The reference run of `{summary['suite']}`",
         "",
         f"{len(suite['scenarios'])} scenarios × {len(suite['tracks'])} tracks ×"
         f" {len(suite['navigators'])} navigators × {SEEDS} seeds of the test split, made and"
-        " written by `python -m studies.reference_run`. What uses no map ran once for all"
-        " tracks.",
+        " written by `python -m studies.reference_run`. A navigator that uses no map ran"
+        " once for all tracks.",
         "",
         *table(
             ["", ""],
             [
-                ["episodes", f"{said['episodes']:,}, and {said['rehearsals']:,} rehearsals"],
+                ["episodes", f"{summary['episodes']:,}, and {summary['rehearsals']:,} rehearsals"],
                 ["cells", f"{reasons.count(''):,}; {len(reasons) - reasons.count(''):,} are n/a"],
-                ["begun", said["created"]],
-                ["took", f"{said['seconds'] / 60:.1f} minutes on {said['cores']} cores{note}"],
-                ["platform", said["platform"]],
-                ["versions", ", ".join(f"{k} {v}" for k, v in said["versions"].items())],
-                ["suite's hash", f"`{said['suite_hash']}`"],
-                ["salt", f"`{said['salt']}`"],
+                ["begun", summary["created"]],
+                [
+                    "took",
+                    f"{summary['seconds'] / 60:.1f} minutes on {summary['cores']} cores{note}",
+                ],
+                ["platform", summary["platform"]],
+                ["versions", ", ".join(f"{k} {v}" for k, v in summary["versions"].items())],
+                ["suite's hash", f"`{summary['suite_hash']}`"],
+                ["salt", f"`{summary['salt']}`"],
                 ["pack", f"{packed['bytes'] / 1e6:.0f} MB, sha256 `{packed['sha256']}`"],
                 ["its content", f"`{packed['content']}`"],
-                ["`benchnav verify`", f"of the sample: {said['verified']}"],
+                ["`benchnav verify`", f"of the sample: {summary['verified']}"],
             ],
         ),
-        *_how(name, said),
+        *_how(name, summary),
         "## Over all scenarios",
         "",
         *_overall(run),
@@ -152,13 +155,13 @@ def page(run: RunFolder, said: dict[str, Any], rows: list[dict[str, str]], note:
     return "\n".join(lines)
 
 
-def _how(name: str, said: dict[str, Any]) -> Iterator[str]:
+def _how(name: str, summary: dict[str, Any]) -> Iterator[str]:
     yield from (
         "## Check it",
         "",
-        f"- `benchnav run {SUITE} --seeds {SEEDS} --salt {said['salt']}` makes it again. Episodes"
-        f" have the digests of [{name}.json]({name}.json) wherever no clock decides; learned"
-        " navigators may differ on another kind of processor.",
+        f"- `benchnav run {SUITE} --seeds {SEEDS} --salt {summary['salt']}` repeats it."
+        f" Episodes have the digests of [{name}.json]({name}.json) wherever no clock decides;"
+        " learned navigators may differ on another kind of processor.",
         f"- `benchnav verify {name}-sample.bnrun` checks a sample of it"
         f" ([{name}-sample.bnrun]({name}-sample.bnrun): {', '.join(f'`{s}`' for s in SAMPLE)}, seed"
         " 0) without running a navigator. CI does this, and runs some of its navigators again.",
@@ -187,14 +190,14 @@ def _overall(run: RunFolder) -> Iterator[str]:
 def _matrix(rows: list[dict[str, str]]) -> list[str]:
     """Success in per cent, scenarios × navigators."""
     rows = [r for r in rows if r["metric"] == "success" and "/" in r["scenario"]]
-    who = list(dict.fromkeys(r["navigator"] for r in rows))
+    labels = list(dict.fromkeys(r["navigator"] for r in rows))
     found = {(r["scenario"], r["role"], r["navigator"]): r["value"] for r in rows}
     places = list(dict.fromkeys((r["scenario"], r["role"]) for r in rows))
     cells = [
-        [f"{scenario}, {role}s", *(_percent(found.get((scenario, role, n), "")) for n in who)]
+        [f"{scenario}, {role}s", *(_percent(found.get((scenario, role, n), "")) for n in labels)]
         for scenario, role in places
     ]
-    return table(["", *who], cells)
+    return table(["", *labels], cells)
 
 
 def _percent(text: str) -> str:
@@ -207,9 +210,9 @@ def keep_sample(out: Path, every: dict[str, Any]) -> str:
         run = execute(Path(folder) / "sample", 1, SAMPLE)
         for scenario, tracks in digests(run).items():
             for track, navigators in tracks.items():
-                for who, (first,) in navigators.items():
-                    if every[scenario][track][who].split()[0] != first:
-                        print(f"{scenario}, {track}, {who}: another episode than in the run")
+                for navigator, (first,) in navigators.items():
+                    if every[scenario][track][navigator].split()[0] != first:
+                        print(f"{scenario}, {track}, {navigator}: another episode than in the run")
         report = verify(run, Wanted(), progress=progress(quiet=False))
         for finding in report.few(20):
             print(finding)
@@ -224,22 +227,26 @@ def main() -> None:
     parser.add_argument("run", type=Path)
     parser.add_argument("--out", type=Path, default=Path("docs/leaderboard"))
     parser.add_argument("--seconds", type=float, help="that it took, if not in one go until now")
-    parser.add_argument("--note", default="", help="to be said beside that")
-    asked = parser.parse_args()
-    run = execute(asked.run, SEEDS)
-    seconds = lasted(run) if asked.seconds is None else asked.seconds
-    packed = asked.run.with_name(asked.run.name + SUFFIX)
+    parser.add_argument("--note", default="", help="a note beside the duration")
+    options = parser.parse_args()
+    run = execute(options.run, SEEDS)
+    seconds = lasted(run) if options.seconds is None else options.seconds
+    packed = options.run.with_name(options.run.name + SUFFIX)
     packed.unlink(missing_ok=True)
     pack(run, packed)
-    said = facts(run, packed, seconds)
+    summary = facts(run, packed, seconds)
     text, rows = records(run)
     name = f"{run.manifest.suite['name']}-{run.manifest.suite['version']}"
-    asked.out.mkdir(parents=True, exist_ok=True)
-    said["verified"] = keep_sample(asked.out / f"{name}-sample{SUFFIX}", said["digests"])
-    (asked.out / f"{name}.csv").write_text(text, encoding="utf-8")
-    (asked.out / f"{name}.json").write_text(json.dumps(said, indent=1) + "\n", encoding="utf-8")
-    (asked.out / f"{name}.md").write_text(page(run, said, rows, asked.note), encoding="utf-8")
-    print(asked.out / f"{name}.md")
+    options.out.mkdir(parents=True, exist_ok=True)
+    summary["verified"] = keep_sample(options.out / f"{name}-sample{SUFFIX}", summary["digests"])
+    (options.out / f"{name}.csv").write_text(text, encoding="utf-8")
+    (options.out / f"{name}.json").write_text(
+        json.dumps(summary, indent=1) + "\n", encoding="utf-8"
+    )
+    (options.out / f"{name}.md").write_text(
+        page(run, summary, rows, options.note), encoding="utf-8"
+    )
+    print(options.out / f"{name}.md")
 
 
 if __name__ == "__main__":

@@ -23,7 +23,9 @@ from benchnav.cli.tables.compare import compare
 from benchnav.cli.tables.leaderboard import leaderboard
 from benchnav.cli.viewing.doctor import doctor
 from benchnav.cli.viewing.list import list_
+from benchnav.cli.viewing.replay import replay
 from benchnav.cli.viewing.show import show
+from benchnav.cli.viewing.watch import watch
 from benchnav.errors import (
     BenchnavError,
     InputError,
@@ -60,6 +62,8 @@ app.command("verify")(stoppable(verify))
 app.command("pack")(stoppable(pack))
 app.command("compare")(stoppable(compare))
 app.command("merge")(stoppable(merge))
+app.command("replay")(stoppable(replay))
+app.command("watch")(stoppable(watch))
 app.command("train")(stoppable(train))
 app.command("list")(stoppable(list_))
 app.command("show")(stoppable(show))

@@ -10,7 +10,13 @@ from typing import Any
 
 from benchnav.config.yaml_reader import read_yaml
 from benchnav.errors import BenchnavError, PluginConflictError
-from benchnav.navigation.plugin.plugin_process import IMPORT, Plugin, Stepping, ask_plugins, tell
+from benchnav.navigation.plugin.plugin_process import (
+    IMPORT,
+    Plugin,
+    StepCallback,
+    query_plugins,
+    serve,
+)
 from benchnav.plugins import TRAINERS
 from benchnav.processes.channel import Channel
 
@@ -62,7 +68,7 @@ def _answers() -> dict[str, list[str] | BenchnavError]:
             answers[name] = _paths(name, lambda step: None)
         else:
             plugins.append(Plugin(TRAINERS.kind, name, "", name))
-    replies = ask_plugins(f"{__name__}:tell_recipes", [[plugin] for plugin in plugins], _TIMEOUT)
+    replies = query_plugins(f"{__name__}:serve_recipes", [[plugin] for plugin in plugins], _TIMEOUT)
     for plugin, (answer,) in zip(plugins, replies, strict=True):
         answers[plugin.name] = _checked(plugin, answer)
     return answers
@@ -76,12 +82,12 @@ def _checked(plugin: Plugin, answer: Any) -> list[str] | BenchnavError:
     return plugin.broken("it did not name its recipes")
 
 
-def tell_recipes(channel: Channel, notes: "memoryview[float]") -> None:
+def serve_recipes(channel: Channel, notes: "memoryview[float]") -> None:
     """Send the recipes of trainers. Runs in a separate process."""
-    tell(channel, notes, _paths)
+    serve(channel, notes, _paths)
 
 
-def _paths(trainer: str, stepping: Stepping) -> list[str]:
-    stepping(IMPORT)
+def _paths(trainer: str, on_step: StepCallback) -> list[str]:
+    on_step(IMPORT)
     folder = Path(TRAINERS.load(trainer).recipes)
     return [str(path) for path in sorted(folder.glob("*.yaml"))]

@@ -22,7 +22,7 @@ from benchnav.named_module import search_in
 from benchnav.navigation.command_check import CallFailed, checked, exception_text, remarks_of
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import Navigator
-from benchnav.navigation.plugin.capabilities import meet
+from benchnav.navigation.plugin.capabilities import inspect_navigator
 from benchnav.navigation.plugin.trace import plain, trace
 
 Answer = tuple[str, dict[str, Any]]
@@ -59,16 +59,21 @@ class Host:
             }
 
     def _hello(self, fields: dict[str, Any]) -> Answer:
-        config = json.loads(fields["says"])
+        config = json.loads(fields["text"])
         sys.path += [entry for entry in config.get("path", ()) if entry not in sys.path]
         search_in(config.get("folder", ""))
         spec = config.get("navigator") or {"type": self.name, **config["config"]}
         sensings = _SENSINGS.validate_python(config.get("sensings", []))
         self.maps = {}
-        self.navigator, introduction = meet(spec, sensings, where=config.get("where", ""))
-        if introduction.lacks and not config.get("sensings"):
-            return "failed", {"error": MissingExtraError.__name__, "reason": introduction.lacks}
-        return "ready", {"says": introduction.model_dump_json(exclude_defaults=True)}
+        self.navigator, capabilities = inspect_navigator(
+            spec, sensings, where=config.get("where", "")
+        )
+        if capabilities.missing_extra and not config.get("sensings"):
+            return "failed", {
+                "error": MissingExtraError.__name__,
+                "reason": capabilities.missing_extra,
+            }
+        return "ready", {"text": capabilities.model_dump_json(exclude_defaults=True)}
 
     def _reset(self, fields: dict[str, Any]) -> Answer:
         briefings = decode_briefings(fields)
@@ -85,7 +90,7 @@ class Host:
 
     def _remarks(self, fields: dict[str, Any]) -> Answer:
         texts = remarks_of(self._hosted.remarks(int(fields["row"])))
-        return "remarks", {"says": json.dumps(texts)}
+        return "remarks", {"text": json.dumps(texts)}
 
     @property
     def _hosted(self) -> Navigator:

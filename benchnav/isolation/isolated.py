@@ -10,9 +10,9 @@ from benchnav.arena.sensing import Sensing
 from benchnav.errors import BrokenPluginError, NavigatorError, UsageError
 from benchnav.isolation import process_pool, sandbox
 from benchnav.isolation.navigator_process import Process
-from benchnav.isolation.remote_navigator import Remote, python_path, say_hello
+from benchnav.isolation.remote_navigator import Remote, handshake, python_path
 from benchnav.named_module import current_folder
-from benchnav.navigation.plugin.capabilities import Introduction
+from benchnav.navigation.plugin.capabilities import Capabilities
 from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.plugins import NAVIGATORS
 from benchnav.source.parts import local_names
@@ -37,8 +37,10 @@ class Isolated(Remote):
         return _hello(self._spec)
 
 
-def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "") -> Introduction:
-    """Return the introduction of a navigator, from a separate process.
+def read_capabilities(
+    spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = ""
+) -> Capabilities:
+    """Return the capabilities of a navigator, from a separate process.
 
     This process imports nothing of the navigator. Raises also BrokenPluginError if the process
     dies, and UsageError if no other process can host the navigator.
@@ -54,7 +56,7 @@ def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "
     process = Process(HOST)
     try:
         request = {"where": where, "sensings": [asdict(sensing) for sensing in sensings]}
-        return say_hello(process, {**_hello(spec), **request})
+        return handshake(process, {**_hello(spec), **request})
     except NavigatorError as error:
         raise BrokenPluginError(f"The navigator {name!r} cannot be used: {error}.") from None
     finally:

@@ -22,11 +22,11 @@ from benchnav.navigation.command_check import CallFailed
 from benchnav.navigation.map import Map
 from benchnav.navigation.navigator import CommandKind, Navigator, Need, Training
 from benchnav.navigation.observation import Observation
-from benchnav.navigation.plugin.capabilities import Introduction
+from benchnav.navigation.plugin.capabilities import Capabilities
 from benchnav.navigation.plugin.configure import Spec
 from benchnav.navigation.plugin.trace import bounded, plain
 
-PROTOCOL = 1  # version of the messages
+PROTOCOL = 2  # version of the messages
 STARTING = 120.0  # [s] until a process must have answered `hello`
 _ANSWERS = {"hello": "ready", "reset": "done", "act": "command", "remarks": "remarks"}
 _NO_MAP_YET: Any = object()
@@ -62,37 +62,37 @@ class Remote(Navigator):
         return self.start()
 
     @cached_property
-    def introduction(self) -> Introduction:
+    def capabilities(self) -> Capabilities:
         """The properties that the process reports. Raises NavigatorError if it cannot start."""
-        return say_hello(self.process, self.hello)
+        return handshake(self.process, self.hello)
 
     @property
     def required(self) -> frozenset[Need]:
-        return self.introduction.needs
+        return self.capabilities.needs
 
     @property
     def command(self) -> CommandKind:
-        return self.introduction.command
+        return self.capabilities.command
 
     @property
     def uses_map(self) -> bool:
-        return self.introduction.uses_map
+        return self.capabilities.uses_map
 
     @property
     def reproducible(self) -> bool:
-        return self.introduction.reproducible
+        return self.capabilities.reproducible
 
     @property
     def training(self) -> Training | None:
-        return self.introduction.training
+        return self.capabilities.training
 
     @property
     def rehearsal(self) -> int:
-        return self.introduction.rehearsal
+        return self.capabilities.rehearsal
 
     @property
     def leader(self) -> Spec | None:
-        return self.introduction.leader
+        return self.capabilities.leader
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         self._request("reset", encode_briefings(briefings, rows))
@@ -111,28 +111,28 @@ class Remote(Navigator):
         return command
 
     def remarks(self, row: int) -> Sequence[str]:
-        if not self.process.alive or not self.introduction.remarks:
+        if not self.process.alive or not self.capabilities.remarks:
             return ()
-        return [str(text) for text in json.loads(self._request("remarks", {"row": row})["says"])]
+        return [str(text) for text in json.loads(self._request("remarks", {"row": row})["text"])]
 
     def _request(self, kind: str, fields: Mapping[str, Any]) -> dict[str, Any]:
         try:
-            _ = self.introduction
+            _ = self.capabilities
             return request(self.process, kind, fields, self.patience)
         except NavigatorError as error:
             raise CallFailed(f"{kind}: {error}") from None
 
 
-def say_hello(process: Process, hello: Mapping[str, Any]) -> Introduction:
+def handshake(process: Process, hello: Mapping[str, Any]) -> Capabilities:
     """Return the properties that the navigator in ``process`` reports.
 
     Raises NavigatorError if it dies or answers anything else, and the error by which it refuses
     to be created.
     """
     message = json.dumps({"protocol": PROTOCOL, **hello})
-    answer = request(process, "hello", {"says": message}, STARTING)["says"]
+    answer = request(process, "hello", {"text": message}, STARTING)["text"]
     try:
-        return Introduction.model_validate_json(answer)
+        return Capabilities.model_validate_json(answer)
     except ValidationError as error:
         problem = first_problem(error)
         raise NavigatorError(
@@ -161,7 +161,7 @@ def request(
             raise _with_note(NavigatorError(reason), traceback)
         raise CallFailed(reason, answer.get("suspects"), traceback)
     wanted = _ANSWERS[kind]
-    field = {"ready": "says", "command": "command", "remarks": "says"}.get(wanted)
+    field = {"ready": "text", "command": "command", "remarks": "text"}.get(wanted)
     if got != wanted or (field is not None and field not in answer):
         process.stop()
         detail = f" without {field!r}" if got == wanted else ""

@@ -207,7 +207,7 @@ def _settings(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
     """The values of the parameter ``axis`` in the scenarios that have it."""
     found, axes = {}, {HORIZON}
     for entry in (e for folder in folders for e in folder.manifest.suite["scenarios"]):
-        declared = entry["says"].get("parameters", {})
+        declared = entry["config"].get("parameters", {})
         axes |= set(declared)
         if axis in declared:
             base, given = split_parameters(entry["scenario"])

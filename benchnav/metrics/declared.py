@@ -9,7 +9,13 @@ from benchnav.errors import BenchnavError, PluginError
 from benchnav.metrics.measure import is_own, load_metric
 from benchnav.metrics.metric import Metric
 from benchnav.navigation.command_check import short
-from benchnav.navigation.plugin.plugin_process import IMPORT, Plugin, Stepping, ask_plugins, tell
+from benchnav.navigation.plugin.plugin_process import (
+    IMPORT,
+    Plugin,
+    StepCallback,
+    query_plugins,
+    serve,
+)
 from benchnav.plugins import METRICS
 from benchnav.processes.channel import Channel
 
@@ -51,7 +57,7 @@ def declared_metrics() -> tuple[dict[str, Metric], list[str]]:
                 groups.setdefault(source, []).append(Plugin(METRICS.kind, name, "", name))
         except PluginError as error:
             found[name] = error
-    answers = ask_plugins(f"{__name__}:tell_declarations", list(groups.values()), _TIMEOUT)
+    answers = query_plugins(f"{__name__}:serve_declarations", list(groups.values()), _TIMEOUT)
     for group, answered in zip(groups.values(), answers, strict=True):
         for plugin, answer in zip(group, answered, strict=True):
             found[plugin.name] = _metric(plugin, answer)
@@ -78,11 +84,11 @@ def _not_here(*_: Any) -> NoReturn:
     raise PluginError("A metric of a plugin is measured in a separate process.")
 
 
-def tell_declarations(channel: Channel, notes: "memoryview[float]") -> None:
+def serve_declarations(channel: Channel, notes: "memoryview[float]") -> None:
     """Send the declarations of the requested metrics. Runs in a separate process."""
-    tell(channel, notes, _declared)
+    serve(channel, notes, _declared)
 
 
-def _declared(name: str, stepping: Stepping) -> dict[str, Any]:
-    stepping(IMPORT)
+def _declared(name: str, on_step: StepCallback) -> dict[str, Any]:
+    on_step(IMPORT)
     return _Declaration.model_validate(load_metric(name)).model_dump()

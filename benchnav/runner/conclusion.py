@@ -60,8 +60,8 @@ def _limited(lines: list[str]) -> list[str]:
 
 def _not_applicable(summary: Summary) -> Iterator[str]:
     reasons = Counter[tuple[str, str]]()
-    for cell, reason in summary.not_applicable:
-        reasons[cell.entry.label, f"{reason} ({cell.track})"] += 1
+    for job, reason in summary.not_applicable:
+        reasons[job.contestant.label, f"{reason} ({job.track})"] += 1
     for (label, why), n in sorted(reasons.items()):
         yield f"n/a: {label} {why}, {counted(n, 'cell')}"
 

@@ -11,7 +11,7 @@ from benchnav.plugins import METRICS
 from benchnav.runner.execute.executor import Finished, execute
 from benchnav.runner.execute.in_process import bound_here, refuse_edited, refuse_limits_here
 from benchnav.runner.execute.progress import Progress
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.prepare import planned, refuse_limits, start
 from benchnav.runner.plan.renewal import Renewal
@@ -36,7 +36,7 @@ class Summary:
     found: int = 0  # of these, on disk before the run began
     stored: int = 0  # of these, on disk now
     redraws: int = 0  # draws of worlds that this execution rejected as unsolvable
-    not_applicable: list[tuple[Cell, str]] = field(default_factory=list)
+    not_applicable: list[tuple[Job, str]] = field(default_factory=list)
     failures: Counter[tuple[str, str]] = field(default_factory=Counter)  # (navigator, reason)
     unled: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     """Worlds by (navigator, scenario, team) in which a leader succeeded in no rehearsal."""
@@ -54,17 +54,17 @@ class Summary:
         """Add the outcome of a finished task."""
         self.stored += outcome.episodes
         self.redraws += outcome.redraws
-        label = task.cell.entry.label
+        label = task.job.contestant.label
         self.failures.update((label, reason) for _, reason in outcome.failures)
-        scenario = task.cell.scenario.identity
+        scenario = task.job.scenario.identity
         self.unled.update((label, scenario, team) for _, team in outcome.unled)
         self.remarks.update((label, scenario, text) for _, text in outcome.remarks)
         self.missing.update(outcome.missing)
         self.tracebacks |= {(label, kind): text for kind, text in outcome.tracebacks.items()}
-        if outcome.lacks:
+        if outcome.missing_extra:
             self.total -= len(task.seeds)
-            if all(cell != task.cell for cell, _ in self.not_applicable):
-                self.not_applicable.append((task.cell, outcome.lacks))
+            if all(job != task.job for job, _ in self.not_applicable):
+                self.not_applicable.append((task.job, outcome.missing_extra))
 
 
 def default_workers() -> int:
@@ -115,16 +115,16 @@ def run_suite(
     out = run_path(out)
     reporter = progress if progress is not None else Progress()
     summary = summary if summary is not None else Summary()
-    cells = list(suite.cells())
+    jobs = list(suite.jobs())
     if executor is None:
         refuse_limits(workers, timeout, memory)
-    here = cells if workers == 0 else bound_here(cells, elsewhere=executor is not None)
+    here = jobs if workers == 0 else bound_here(jobs, elsewhere=executor is not None)
     refuse_edited(here)
     if workers != 0:
         refuse_limits_here(here, (timeout, memory) != (None, None))
-        summary.in_process = tuple(dict.fromkeys(cell.entry.label for cell in here))
-    wanted = _wanted(suite, cells, shard)
-    manifest = planned(suite, cells, wanted, shard)
+        summary.in_process = tuple(dict.fromkeys(job.contestant.label for job in here))
+    wanted = _wanted(suite, jobs, shard)
+    manifest = planned(suite, jobs, wanted, shard)
     begun, limits = start(suite, out, manifest, timeout, memory)
     with begun.writing() as folder:
         for scenario in suite.scenarios:
@@ -133,15 +133,15 @@ def run_suite(
         if not again:
             renewal.refuse(folder)
         summary.older = renewal.episodes
-        reasons = {cell.key: cell.reason for cell in cells}
+        reasons = {job.key: job.reason for job in jobs}
         if shard is None:
             folder = folder.extend(suite.seeds)
         folder = renewal.begin(folder.amend(reasons))  # reasons change if packages were installed
         target = renewal.target(folder)
         folder.drop_others(target)
-        tasks = _tasks(suite, target, cells, wanted, summary)
-        keys = {cell.key for cell in here}
-        folder = folder.unguard(t.cell.entry.label for t in tasks if t.cell.key in keys)
+        tasks = _tasks(suite, target, jobs, wanted, summary)
+        keys = {job.key for job in here}
+        folder = folder.unguard(t.job.contestant.label for t in tasks if t.job.key in keys)
         reporter.begin(summary.total, summary.stored)
         reporter.expect(task.load for task in tasks)
         try:
@@ -153,19 +153,19 @@ def run_suite(
             process_pool.stop_all()
             with suppress(OSError):
                 drop_abandoned()  # folders of workers that were killed
-            not_run = {cell.key: why for cell, why in summary.not_applicable}
+            not_run = {job.key: why for job, why in summary.not_applicable}
             summary.replaced.update(renewal.finish(folder.amend(reasons | not_run)))
     return summary
 
 
 def _finished(
-    tasks: Sequence[Task], here: Sequence[Cell], workers: int | None, progress: Progress,
+    tasks: Sequence[Task], here: Sequence[Job], workers: int | None, progress: Progress,
     limits: Limits, executor: Executor | None,
 ) -> Generator[Finished, None, None]:  # fmt: skip
     """Run all tasks; those of the cells ``here`` run last, in this process."""
-    keys = {cell.key for cell in here}
-    mine = [task for task in tasks if task.cell.key in keys]
-    away = [task for task in tasks if task.cell.key not in keys]
+    keys = {job.key for job in here}
+    mine = [task for task in tasks if task.job.key in keys]
+    away = [task for task in tasks if task.job.key not in keys]
     for chosen, run_tasks, count in ((away, executor or _locally, workers), (mine, _locally, 0)):
         if chosen:
             with closing(run_tasks(chosen, count, progress, limits)) as finished:
@@ -178,34 +178,34 @@ def _locally(
     return execute(tasks, default_workers() if workers is None else workers, progress, limits)
 
 
-def _wanted(suite: Suite, cells: list[Cell], shard: Shard | None) -> dict[str, set[int]]:
+def _wanted(suite: Suite, jobs: list[Job], shard: Shard | None) -> dict[str, set[int]]:
     """Return the seeds to run of each cell."""
     if shard is not None:
-        return shard.seeds(cells, suite.seeds)
-    return {cell.key: set(suite.seeds) for cell in cells}
+        return shard.seeds(jobs, suite.seeds)
+    return {job.key: set(suite.seeds) for job in jobs}
 
 
 def _tasks(
-    suite: Suite, folder: RunFolder, cells: list[Cell], wanted: Mapping[str, set[int]],
+    suite: Suite, folder: RunFolder, jobs: list[Job], wanted: Mapping[str, set[int]],
     summary: Summary,
 ) -> list[Task]:  # fmt: skip
     """Return the missing tasks, the longest first."""
     tasks = []
-    for cell in cells:
-        if cell.reason:
-            summary.not_applicable.append((cell, cell.reason))
+    for job in jobs:
+        if job.reason:
+            summary.not_applicable.append((job, job.reason))
             continue
-        seeds = wanted.get(cell.key, set())
-        missing = seeds - folder.done(cell.key)
+        seeds = wanted.get(job.key, set())
+        missing = seeds - folder.done(job.key)
         summary.total += len(seeds)
         summary.stored += len(seeds) - len(missing)
         task = Task(
-            cell, folder.cell(cell.key), 0, 0, salt=folder.manifest.salt, probe=suite.seeds.start
+            job, folder.cell(job.key), 0, 0, salt=folder.manifest.salt, probe=suite.seeds.start
         )
-        for first, stop in chunks(missing, cell.effort):
+        for first, stop in chunks(missing, job.effort):
             tasks.append(replace(task, first=first, stop=stop))
     summary.found = summary.stored
-    return sorted(tasks, key=lambda task: -task.cell.effort * len(task.seeds))
+    return sorted(tasks, key=lambda task: -task.job.effort * len(task.seeds))
 
 
 def _refuse_without_metrics() -> None:

@@ -22,7 +22,7 @@ from benchnav.scenario.sampling.region import region_problem
 from benchnav.scenario.sampling.sampler import support
 from benchnav.scenario.shape import Mesh, Occupancy, Shape
 from benchnav.scenario.team import (
-    Driver,
+    NavigatorChoice,
     PackedStart,
     PointsGoal,
     PointsStart,
@@ -132,9 +132,9 @@ class Scenario(Spec):
         return digest.hexdigest()[:16]
 
     @cached_property
-    def drivers(self) -> tuple[Driver, ...]:
+    def drivers(self) -> tuple[NavigatorChoice, ...]:
         """Background navigators by first team; an agent with driver k > 0 has entry k - 1."""
-        found: list[Driver] = []
+        found: list[NavigatorChoice] = []
         for team in self.teams:
             if not team.evaluated and team.driver not in found:
                 found.append(team.driver)

@@ -103,7 +103,7 @@ Start = Annotated[
 Goal = Annotated[RegionGoal | PointsGoal | AntipodalGoal | ShiftedGoal, Field(discriminator="type")]
 
 
-class Driver(BaseModel):
+class NavigatorChoice(BaseModel):
     """A navigator by name, with its parameters as further keys."""
 
     model_config = ConfigDict(frozen=True, extra="allow", allow_inf_nan=False)
@@ -141,9 +141,9 @@ class Team(Spec):
     heading: Literal["goal"] | Scalar = Field(
         "goal", description="at the start [rad], or goal: towards the goal"
     )
-    driver: Annotated[Driver, BeforeValidator(_named, json_schema_input_type=str | Driver)] = (
-        Driver(type="evaluated")
-    )
+    driver: Annotated[
+        NavigatorChoice, BeforeValidator(_named, json_schema_input_type=str | NavigatorChoice)
+    ] = NavigatorChoice(type="evaluated")
     ignores: tuple[str, ...] = Field((), description="teams that these agents do not perceive")
 
     @property

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from benchnav.errors import CorruptPartError
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.job import Job
 from benchnav.store.parts.part import Part, parts_of
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.spans import count, twice, union, without
@@ -15,27 +15,27 @@ from benchnav.verify.rebuilt_suite import RebuiltSuite
 _SHOWN = 10  # seeds of each kind
 
 
-def covered(run: RunFolder, suite: RebuiltSuite, report: Report) -> Iterator[tuple[Cell, Part]]:
+def covered(run: RunFolder, suite: RebuiltSuite, report: Report) -> Iterator[tuple[Job, Part]]:
     """Yield every part with its cell; report missing and surplus seeds and parts."""
     stored = {str(c["key"]): c for c in run.manifest.cells}
-    for cell in suite.cells:
-        where = f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
-        entry = stored.get(cell.key, {"key": cell.key})
-        reason = str(entry.get("reason", ""))
+    for job in suite.jobs:
+        where = f"{job.scenario.identity}, {job.track}, {job.contestant.label}"
+        fields = stored.get(job.key, {"key": job.key})
+        reason = str(fields.get("reason", ""))
         if reason:
-            if parts_of(run.cell(cell.key)):
+            if parts_of(run.cell(job.key)):
                 report.find("coverage", where, f"is n/a ({reason}), and has episodes")
             report.counts["n/a cells"] += 1
             continue
         try:
-            parts = run.parts_in(entry)
+            parts = run.parts_in(fields)
         except CorruptPartError as error:
             report.find("manifest", where, str(error))
             continue
         _check_seeds(parts, suite.seeds, where, report)
         for part in parts:
-            yield cell, part
-    known = {run.cell(cell.key) for cell in suite.cells}
+            yield job, part
+    known = {run.cell(job.key) for job in suite.jobs}
     for path in sorted((run.path / "parts").glob("*")):
         if path not in known and run.key_of(path):
             report.notes["cell of other source, which an unfinished repetition left"] += 1

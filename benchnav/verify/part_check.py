@@ -13,7 +13,7 @@ from benchnav.errors import BenchnavError, CorruptPartError, ForeignRowError
 from benchnav.generation.build import build
 from benchnav.generation.rehearsal_world import rehearsal_world
 from benchnav.plugins import METRICS
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.task import Measuring
 from benchnav.runner.rollouts.rollout import Assignment, batches
 from benchnav.runner.rollouts.seeding import phases
@@ -33,7 +33,7 @@ _WORLDS: OrderedDict[tuple[str, str, int], World] = OrderedDict()
 class PartCheck:
     """A part, and the context of its check."""
 
-    cell: Cell
+    job: Job
     part: Part
     salt: str
     probe: int  # the seed of the episode that stores latency
@@ -44,13 +44,13 @@ class PartCheck:
     @property
     def assignment(self) -> Assignment:
         """The assignment of the navigator to the part's cell."""
-        return replace(self.cell.assignment, salt=self.salt)
+        return replace(self.job.assignment, salt=self.salt)
 
     @property
     def shown(self) -> str:
         """The name of the cell in findings."""
-        cell = self.cell
-        return f"{cell.scenario.identity}, {cell.track}, {cell.entry.label}"
+        job = self.job
+        return f"{job.scenario.identity}, {job.track}, {job.contestant.label}"
 
     def place(self, episode: Episode) -> str:
         """Return the name of an episode in findings."""
@@ -149,11 +149,11 @@ def _batches(
 
 def _world(task: PartCheck, episode: Episode) -> World:
     """Return the redrawn world of an episode."""
-    cell, seed, k = task.cell, episode.identity.seed, episode.identity.rehearsal
-    key = cell.scenario.hash, cell.split, seed
+    job, seed, k = task.job, episode.identity.seed, episode.identity.rehearsal
+    key = job.scenario.hash, job.split, seed
     world = _WORLDS.get(key)
     if world is None:
-        world = _WORLDS[key] = build(cell.scenario, cell.split, seed)
+        world = _WORLDS[key] = build(job.scenario, job.split, seed)
         while len(_WORLDS) > _KEPT:
             _WORLDS.popitem(last=False)
     if not k:

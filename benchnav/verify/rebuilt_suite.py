@@ -10,8 +10,8 @@ from pydantic import ValidationError
 
 from benchnav.errors import BenchnavError
 from benchnav.navigation.navigator import Training
-from benchnav.runner.plan.contestant import Entry
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.contestant import Contestant
+from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.shard import Shard
 from benchnav.runner.plan.suite import Block, Suite
@@ -33,7 +33,7 @@ class RebuiltSuite:
     """The rebuilt suite of a run."""
 
     seeds: range
-    cells: tuple[Cell, ...]  # every cell, n/a ones included, in the order of the manifest
+    jobs: tuple[Job, ...]  # every cell, n/a ones included, in the order of the manifest
 
 
 def restore(run: RunFolder, root: Path, report: Report) -> RebuiltSuite | None:
@@ -54,8 +54,8 @@ def restore(run: RunFolder, root: Path, report: Report) -> RebuiltSuite | None:
         if not whole or not 1 <= stop - first <= MAX_SEEDS or split not in _SPLITS:
             raise ValueError(f"seeds {suite['seeds']!r} of split {split!r}")
         sources = run.manifest.sources
-        entries = [
-            _entry(fields, sources.get(fields["label"], {})) for fields in suite["navigators"]
+        contestants = [
+            _contestant(fields, sources.get(fields["label"], {})) for fields in suite["navigators"]
         ]
         known = len(report.findings)
         drawn = [
@@ -67,15 +67,15 @@ def restore(run: RunFolder, root: Path, report: Report) -> RebuiltSuite | None:
             return None
         whole_suite = Suite(
             str(suite["name"]), suite["version"], split, range(first, stop), tuple(scenarios),
-            tracks, tuple(entries), blocks=blocks,
+            tracks, tuple(contestants), blocks=blocks,
         )  # fmt: skip
-        cells = list(whole_suite.cells())
+        jobs = list(whole_suite.jobs())
     except _MALFORMED as error:
         report.find("manifest", where, f"the suite cannot be read: {type(error).__name__}: {error}")
         return None
-    _compare_cells(run, cells, where, report)
+    _compare_cells(run, jobs, where, report)
     _check_claims(run, where, report)
-    return RebuiltSuite(whole_suite.seeds, tuple(cells))
+    return RebuiltSuite(whole_suite.seeds, tuple(jobs))
 
 
 def _check_claims(run: RunFolder, where: str, report: Report) -> None:
@@ -88,7 +88,7 @@ def _check_claims(run: RunFolder, where: str, report: Report) -> None:
         report.find("manifest", where, f"a limit or the shard is invalid: {error}")
     if run.manifest.shard and any("seeds" not in c and not c["reason"] for c in run.manifest.cells):
         report.find("manifest", where, "every cell of a shard must list the seeds of its share")
-    labels = {str(entry["label"]) for entry in run.manifest.suite["navigators"]}
+    labels = {str(fields["label"]) for fields in run.manifest.suite["navigators"]}
     for label in sorted(set(run.manifest.unguarded) - labels):
         report.find("manifest", where, f"unguarded names {label!r}, which is not a navigator of it")
 
@@ -99,7 +99,7 @@ def _scenario(
     identity = str(fields["scenario"])
     try:
         _, chosen = split_parameters(identity)
-        scenario = Scenario.model_validate(fields["says"])
+        scenario = Scenario.model_validate(fields["config"])
         scenario = scenario.placed_in(stage_files(run.path, fields["files"], root), chosen)
         named = {n for n in scenario.named_files() if n not in fields["files"]}
         if named:
@@ -120,11 +120,11 @@ def _tuples(fields: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
     return {name: tuple(map(str, listed)) for name, listed in fields.items()}
 
 
-def _entry(fields: Mapping[str, Any], source: Mapping[str, Any] = {}) -> Entry:
-    leader = _entry(fields["leader"]) if "leader" in fields else None
+def _contestant(fields: Mapping[str, Any], source: Mapping[str, Any] = {}) -> Contestant:
+    leader = _contestant(fields["leader"]) if "leader" in fields else None
     training = Training(**fields["training"]) if "training" in fields else None
-    return Entry(
-        str(fields["label"]), dict(fields["says"]), str(fields["source"]), frozenset(),
+    return Contestant(
+        str(fields["label"]), dict(fields["config"]), str(fields["source"]), frozenset(),
         training=training, fingerprint=str(fields.get("fingerprint", "")),
         rehearsal=int(fields.get("rehearsal", 0)), leader=leader,
         uses_map=bool(fields.get("uses_map", True)),
@@ -133,18 +133,18 @@ def _entry(fields: Mapping[str, Any], source: Mapping[str, Any] = {}) -> Entry:
     )  # fmt: skip
 
 
-def _compare_cells(run: RunFolder, cells: list[Cell], where: str, report: Report) -> None:
+def _compare_cells(run: RunFolder, jobs: list[Job], where: str, report: Report) -> None:
     """Report cells that differ from the product of the suite, or have other keys."""
     stored = run.manifest.cells
-    if len(stored) != len(cells):
-        report.find("manifest", where, f"there are {len(stored)} cells, not {len(cells)}")
-    for i, (fields, cell) in enumerate(zip(stored, cells, strict=False)):
+    if len(stored) != len(jobs):
+        report.find("manifest", where, f"there are {len(stored)} cells, not {len(jobs)}")
+    for i, (fields, job) in enumerate(zip(stored, jobs, strict=False)):
         expected: dict[str, Any] = {
-            "key": cell.key, "scenario": cell.scenario.identity, "track": cell.track,
-            "navigator": cell.entry.label,
+            "key": job.key, "scenario": job.scenario.identity, "track": job.track,
+            "navigator": job.contestant.label,
         }  # fmt: skip
-        if cell.also or "also" in fields:
-            expected["also"] = list(cell.also)
+        if job.also or "also" in fields:
+            expected["also"] = list(job.also)
         if not run.manifest.shard and "seeds" in fields:
             expected["seeds"] = None  # only a shard lists its seeds
         for name, value in expected.items():
@@ -152,14 +152,14 @@ def _compare_cells(run: RunFolder, cells: list[Cell], where: str, report: Report
                 report.find(
                     "manifest", where, f"cells[{i}].{name} is {fields.get(name)!r}, not {value!r}"
                 )
-        absent = f"the scenario has no track {cell.track!r}"
-        granted = cell.track in cell.scenario.granted_tracks
+        absent = f"the scenario has no track {job.track!r}"
+        granted = job.track in job.scenario.granted_tracks
         if granted == (fields.get("reason") == absent):
             has = "a" if granted else "no"
             report.find(
                 "manifest", where,
                 f"cells[{i}].reason is {fields.get('reason')!r};"
-                f" there is {has} track {cell.track!r}",
+                f" there is {has} track {job.track!r}",
             )  # fmt: skip
 
 

@@ -17,8 +17,8 @@ from benchnav.errors import BenchnavError, CorruptPartError
 from benchnav.generation.build import sensing_of
 from benchnav.runner.execute.executor import execute
 from benchnav.runner.execute.progress import Progress
-from benchnav.runner.plan.contestant import Entry, Meeting
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.contestant import Contestant, ContestantFactory
+from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.task import Task, chunks
 from benchnav.store.parts.part import FILES, SEAL, Part
@@ -32,29 +32,29 @@ from benchnav.verify.untrusted_spec import is_by_module, is_program
 # Failures that a navigator caused by an exception or an invalid command, and so repeats:
 _REPEATED = ("act ", "reset ", "in rehearsal ", "the scenario's background ")
 
-Installed = Mapping[str, tuple[Entry | None, str]]  # by label: `installed`
+Installed = Mapping[str, tuple[Contestant | None, str]]  # by label: `installed`
 
 
 def rerun(
-    run: RunFolder, cells: Sequence[Cell], checks: Sequence[PartCheck], folder: Path,
+    run: RunFolder, jobs: Sequence[Job], checks: Sequence[PartCheck], folder: Path,
     report: Report, *, workers: int, progress: Progress | None = None,
 ) -> None:  # fmt: skip
     """Run the installed navigators again, and report every difference from the run.
 
     Args:
         run: the run.
-        cells: all its cells, of which the navigators also report whether they are n/a.
+        jobs: all its cells, of which the navigators also report whether they are n/a.
         checks: the parts to run again.
         folder: an empty folder for the new episodes.
         report: receives the findings, counts and notes.
         workers: processes; 0: this process.
         progress: is notified of every episode.
     """
-    entries = all_installed(run, cells)
-    check_reasons(run, cells, entries, report)
+    contestants = all_installed(run, jobs)
+    check_reasons(run, jobs, contestants, report)
     parts = Rerun(folder, Limits.of(run.manifest.limits), report, progress or Progress())
     for check in checks:
-        parts.add(check, entries[check.cell.entry.label])
+        parts.add(check, contestants[check.job.contestant.label])
     parts.run(workers)
 
 
@@ -72,9 +72,9 @@ class Rerun:
     tasks: list[Task] = field(default_factory=list)
     stored: dict[tuple[str, int], PartCheck] = field(default_factory=dict)  # by cell and seed
 
-    def add(self, check: PartCheck, entry: tuple[Entry | None, str]) -> None:
+    def add(self, check: PartCheck, installed: tuple[Contestant | None, str]) -> None:
         """Plan the episodes of a part that can be run again."""
-        found, why = entry
+        found, why = installed
         seeds = list(check.part.seeds)
         if found is None:
             self._leave_out(seeds, why)
@@ -90,21 +90,21 @@ class Rerun:
             if not _may_fail_again(failure):
                 self._leave_out([seed], f"it failed because {failure}")
         again = [seed for seed in seeds if _may_fail_again(failures.get(seed, ""))]
-        folder = self.folder / check.cell.key
-        for first, stop in chunks(again, check.cell.effort):
-            self.tasks.append(Task(check.cell, folder, first, stop, salt=check.salt))
-        self.stored.update(((check.cell.key, seed), check) for seed in again)
+        folder = self.folder / check.job.key
+        for first, stop in chunks(again, check.job.effort):
+            self.tasks.append(Task(check.job, folder, first, stop, salt=check.salt))
+        self.stored.update(((check.job.key, seed), check) for seed in again)
 
     def run(self, workers: int) -> None:
         """Run, and report every episode that differs in any bit."""
-        tasks = sorted(self.tasks, key=lambda task: -task.cell.effort * len(task.seeds))
+        tasks = sorted(self.tasks, key=lambda task: -task.job.effort * len(task.seeds))
         self.progress.expect(task.load for task in tasks)
         if not tasks:
             return
         with closing(execute(tasks, workers, self.progress, self.limits)) as finished:
             for task, outcome in finished:
-                if outcome.lacks:
-                    self._leave_out(task.seeds, outcome.lacks)
+                if outcome.missing_extra:
+                    self._leave_out(task.seeds, outcome.missing_extra)
                 else:
                     self._compare(task)
 
@@ -113,7 +113,7 @@ class Rerun:
         self.progress.advance(len(seeds))
 
     def _compare(self, task: Task) -> None:
-        check = self.stored[task.cell.key, task.first]
+        check = self.stored[task.job.key, task.first]
         part = Part(task.folder, task.first, task.stop)
         new = {_place(episode): episode for episode in _episodes(part)}
         for old in _episodes(check.part):
@@ -147,64 +147,67 @@ def _may_fail_again(failure: str) -> bool:
     return not failure or failure.startswith(_REPEATED)
 
 
-def installed(entry: Entry, packed: bool, cells: Sequence[Cell]) -> tuple[Entry | None, str]:
+def installed(
+    contestant: Contestant, packed: bool, jobs: Sequence[Job]
+) -> tuple[Contestant | None, str]:
     """Return (the navigator as installed here, ""), or (None, why it cannot be used).
 
     No module that an untrusted pack names is imported, and none of its programs is started:
-    only registered plugins are used. ``cells`` have the sensors that it must support.
+    only registered plugins are used. ``jobs`` have the sensors that it must support.
     """
-    if packed and is_program(entry.spec):
-        return None, f"{entry.label} is a program, in an untrusted pack"
-    if packed and is_by_module(entry.spec):
-        return None, f"{entry.label} is named by its module, in an untrusted pack"
-    sensings = tuple(dict.fromkeys(sensing_of(cell.scenario) for cell in cells))
-    meeting = Meeting(sensings, entry.mode == ISOLATED)
+    label = contestant.label
+    if packed and is_program(contestant.spec):
+        return None, f"{label} is a program, in an untrusted pack"
+    if packed and is_by_module(contestant.spec):
+        return None, f"{label} is named by its module, in an untrusted pack"
+    sensings = tuple(dict.fromkeys(sensing_of(job.scenario) for job in jobs))
+    factory = ContestantFactory(sensings, contestant.mode == ISOLATED)
     try:
-        spec, where = {**entry.spec, "label": entry.label}, f"the navigator {entry.label!r}"
-        found = meeting.entry(spec, where)
+        found = factory.create({**contestant.spec, "label": label}, f"the navigator {label!r}")
     except BenchnavError as error:
-        return None, f"{entry.label} cannot be created here: {_short(str(error))}"
-    if found.lacks:
-        return None, f"{entry.label} cannot be created here: {found.lacks}"
-    if found.hash != entry.hash:
-        return None, f"{entry.label} is another one here ({found.source} instead of {entry.source})"
-    if entry.source_hash and found.source_hash != entry.source_hash:
-        return None, f"{entry.label} has another source here"
+        return None, f"{label} cannot be created here: {_short(str(error))}"
+    if found.missing_extra:
+        return None, f"{label} cannot be created here: {found.missing_extra}"
+    if found.hash != contestant.hash:
+        return None, f"{label} differs here ({found.source} instead of {contestant.source})"
+    if contestant.source_hash and found.source_hash != contestant.source_hash:
+        return None, f"{label} has another source here"
     return found, ""
 
 
-def all_installed(run: RunFolder, cells: Sequence[Cell]) -> Installed:
+def all_installed(run: RunFolder, jobs: Sequence[Job]) -> Installed:
     """Return the installed navigators of a run, and why others are missing."""
     packed = run.packed is not None
-    entries = {cell.entry.label: cell.entry for cell in cells}
-    return {label: installed(entry, packed, cells) for label, entry in entries.items()}
+    contestants = {job.contestant.label: job.contestant for job in jobs}
+    return {label: installed(contestant, packed, jobs) for label, contestant in contestants.items()}
 
 
 def check_reasons(
-    run: RunFolder, cells: Sequence[Cell], entries: Installed, report: Report
+    run: RunFolder, jobs: Sequence[Job], contestants: Installed, report: Report
 ) -> None:
     """Report cells whose n/a status does not match the installed navigator."""
     reasons = {str(c["key"]): str(c.get("reason", "")) for c in run.manifest.cells}
-    for cell in cells:
-        label = cell.entry.label
-        entry, why = entries[label]
-        stored = reasons.get(cell.key, "")
-        if entry is None:
+    for job in jobs:
+        label = job.contestant.label
+        contestant, why = contestants[label]
+        stored = reasons.get(job.key, "")
+        if contestant is None:
             if stored:
                 report.notes[f"reason of a cell that is n/a: {why}"] += 1
             continue
-        if entry.uses_map != cell.entry.uses_map:
-            where = f"{cell.scenario.identity}, {label}"
-            uses = "uses" if entry.uses_map else "does not use"
+        if contestant.uses_map != job.contestant.uses_map:
+            where = f"{job.scenario.identity}, {label}"
+            uses = "uses" if contestant.uses_map else "does not use"
             report.find("rerun", where, f"the navigator reports that it {uses} the map")
-        if entry.training != cell.entry.training:
-            where = f"{cell.scenario.identity}, {label}"
-            text = f"training is {cell.entry.training}, but the navigator reports {entry.training}"
+        if contestant.training != job.contestant.training:
+            where = f"{job.scenario.identity}, {label}"
+            claimed, reported = job.contestant.training, contestant.training
+            text = f"training is {claimed}, but the navigator reports {reported}"
             report.find("rerun", where, text)
-        right = dataclasses.replace(cell, entry=entry).reason
+        right = dataclasses.replace(job, contestant=contestant).reason
         report.counts["rerun n/a"] += bool(stored)
         if right != stored:
-            where = f"{cell.scenario.identity}, {cell.track}, {label}"
+            where = f"{job.scenario.identity}, {job.track}, {label}"
             report.find("rerun", where, f"n/a: {stored!r}, but the navigator reports {right!r}")
 
 

@@ -80,7 +80,7 @@ def verify(
             fit = _examined(tasks, count, report, reporter)
             if wanted.rerun and suite:
                 folder = root.path / "rerun"
-                rerun(run, suite.cells, fit, folder, report, workers=count, progress=reporter)
+                rerun(run, suite.jobs, fit, folder, report, workers=count, progress=reporter)
         finally:
             reporter.end()
     changed = changed_since(run)
@@ -131,16 +131,16 @@ def tasks_of(
     """
     report.caveats += [caveat.text for caveat in caveats_of(run.manifest)]
     report.claims = _claims(run.manifest) if report.clean else ""
-    entries = {cell.entry.label: cell.entry for cell in suite.cells}
-    report.sources += [compare_source(e, run.packed is not None) for e in entries.values()]
+    contestants = {job.contestant.label: job.contestant for job in suite.jobs}
+    report.sources += [compare_source(e, run.packed is not None) for e in contestants.values()]
     version = str(run.manifest.versions.get("benchnav", ""))
     metrics = {name: metric.verifiable for name, metric in declared_metrics()[0].items()}
     measuring = _measuring(run) if guarded else None
     checks = [
-        PartCheck(cell, part, run.manifest.salt, suite.seeds.start, version, metrics, measuring)
-        for cell, part in covered(run, suite, report)
+        PartCheck(job, part, run.manifest.salt, suite.seeds.start, version, metrics, measuring)
+        for job, part in covered(run, suite, report)
     ]
-    checks.sort(key=lambda c: (c.cell.scenario.identity, c.part.first))  # they share worlds
+    checks.sort(key=lambda c: (c.job.scenario.identity, c.part.first))  # they share worlds
     chosen = sampled(checks, wanted.twin)
     return [
         Examination(check, tuple(seeds), wanted.referee)

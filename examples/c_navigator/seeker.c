@@ -60,9 +60,9 @@ static void answer(const char *kind, const struct field *f, const void *data, ui
 }
 
 static void hello(void) {
-    const char *says = "{\"needs\": [\"rays\"], \"command\": \"velocity\"}";
-    struct field f = {"says", 't', 1, {0}, {strlen(says)}};
-    answer("ready", &f, says, strlen(says));
+    const char *text = "{\"needs\": [\"rays\"], \"command\": \"velocity\"}";
+    struct field f = {"text", 't', 1, {0}, {strlen(text)}};
+    answer("ready", &f, text, strlen(text));
 }
 
 /* What is kept of each row (one world): how fast its agents prefer to go. */

@@ -1,10 +1,10 @@
-"""What full knowledge could reach: a reference for navigators that must do without.
+"""Measure the success that full knowledge makes possible, as a reference for navigators.
 
-Every agent of a world is planned for ahead of time by one who knows the map, the laws of
-the movers and the other agents' plans; the real simulator then drives the plans and
-judges them. It is a measurement and no navigator: a navigator may not see laws.
+A search plans for every agent ahead of time. It knows the map, the laws of the dynamic
+obstacles and the plans of the other agents. The simulator then executes the plans. This is a
+measurement and not a navigator: a navigator must not know the laws.
 
-A plan that is found shows what can be done. One that is not found shows nothing: the
-search has a lattice of commands and a budget. So the success measured is a lower bound
-of what is possible, and the part not found is said apart.
+A plan that is found proves that the goal can be reached. A plan that is not found proves
+nothing, because the search has a lattice of commands and a budget. The measured success is
+therefore a lower bound, and agents without a plan are reported separately.
 """

@@ -14,7 +14,7 @@ from .measure import measure, summary
 
 
 def main() -> None:
-    """Measure each scenario, print a line of it, and keep all numbers where asked."""
+    """Measure each scenario, print a line of it, and keep all numbers if a file is given."""
     parser = argparse.ArgumentParser(
         description=studies.full_knowledge.__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
@@ -23,17 +23,17 @@ def main() -> None:
     parser.add_argument("--seeds", type=parse_seeds, default="0:500", help="N or A:B")
     parser.add_argument("--split", choices=SPLITS, default="test")
     parser.add_argument("--out", type=Path, help="JSON file that keeps the numbers")
-    asked = parser.parse_args()
+    options = parser.parse_args()
     found = []
-    for scenario in asked.scenario:
+    for scenario in options.scenario:
         try:
-            outcomes = measure(scenario, asked.split, asked.seeds)
+            outcomes = measure(scenario, options.split, options.seeds)
         except BenchnavError as error:
             parser.error(str(error))
-        found.append(summary(scenario, asked.split, outcomes))
+        found.append(summary(scenario, options.split, outcomes))
         print(found[-1], flush=True)
-        if asked.out:
-            asked.out.write_text(json.dumps([asdict(row) for row in found], indent=2) + "\n")
+        if options.out:
+            options.out.write_text(json.dumps([asdict(row) for row in found], indent=2) + "\n")
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ _ARRIVED, _ENDED = int(Status.ARRIVED), int(Status.ENDED)
 
 @dataclass(frozen=True)
 class Outcome:
-    """What became of the agents of one world."""
+    """The outcome of the agents of one world."""
 
     seed: int
     agents: int

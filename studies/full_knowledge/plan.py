@@ -1,11 +1,11 @@
-"""Plans for all agents of a world: one after the other, each around those before it.
+"""Plan for all agents of a world, one after the other; each plan avoids the earlier ones.
 
 Prioritised planning (M. Erdmann and T. Lozano-Pérez, "On multiple moving objects",
-Algorithmica 2, 1987). Who finds no way goes first in the next round (M. Bennewitz,
+Algorithmica 2, 1987). An agent without a plan is first in the next round (M. Bennewitz,
 W. Burgard and S. Thrun, "Finding and optimizing solvable priority schemes for decoupled
 path planning techniques for teams of mobile robots", Robotics and Autonomous Systems 41,
-2002); where that repeats itself, an order is drawn. In some rounds one also stays clear, for
-a while, of where those still stand whose turn has not come.
+2002). If an order occurs again, a random order is drawn. In some rounds, plans also avoid for a
+while the start places of agents that are not planned yet.
 """
 
 from collections.abc import Iterator
@@ -29,7 +29,7 @@ ALONE = Effort(nodes=600_000, cell=0.1, speeds=5, turns=9)  # before an agent is
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """What one agent is to do."""
+    """The plan of one agent."""
 
     commands: FloatArray  # (T, 2) twists [m/s, rad/s]; none where no way was found
     path: FloatArray  # (K+1, 2) [m] at every tick, the agent staying at the end
@@ -37,7 +37,7 @@ class Plan:
 
     @property
     def found(self) -> bool:
-        """True where the plan reaches the goal."""
+        """Whether the plan reaches the goal."""
         return len(self.commands) > 0
 
 
@@ -68,7 +68,7 @@ class Planner:
     def __init__(self, known: Scene) -> None:
         self.scene = known
         self.ways = [reach(known.ground[task.radius], known.bounds, task) for task in known.tasks]
-        self.hopeless: set[int] = set()  # found no way though nobody had been planned before
+        self.hopeless: set[int] = set()  # no plan found, although none was made before theirs
 
     def longest_first(self) -> list[int]:
         """Agents by the length of their way."""
@@ -79,7 +79,7 @@ class Planner:
         return sorted(range(len(length)), key=lambda i: (-length[i], i))
 
     def round(self, order: list[int], courtesy: float) -> list[Plan]:
-        """The plan of every agent, by index, made in ``order``. Who has none stands."""
+        """Return the plan of each agent, made in ``order``; without one, it stands still."""
         made = {i: self.standing(i) for i in self.hopeless}
         for i in order:
             if i not in made:

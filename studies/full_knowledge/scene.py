@@ -1,4 +1,4 @@
-"""What the search knows of a world, as arrays that kernels read."""
+"""The knowledge of the search about a world, as arrays for kernels."""
 
 from typing import NamedTuple
 

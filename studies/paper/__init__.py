@@ -1,1 +1,1 @@
-"""What the paper shows, measured: ``docs/paper.md`` from a run of the suite ``paper``."""
+"""Write ``docs/paper.md``, the results of the paper, from a run of the suite ``paper``."""

@@ -16,10 +16,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("run", type=Path)
     parser.add_argument("--out", type=Path, default=Path("docs"))
-    asked = parser.parse_args()
-    text = page(asked.run, Pictures(asked.out / "images"))
-    (asked.out / "paper.md").write_text(text, encoding="utf-8")
-    print(asked.out / "paper.md")
+    options = parser.parse_args()
+    text = page(options.run, Pictures(options.out / "images"))
+    (options.out / "paper.md").write_text(text, encoding="utf-8")
+    print(options.out / "paper.md")
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""Who plays which part, by their labels in the suite ``paper``."""
+"""The labels of navigators and the scenarios in the suite ``paper``, by their part in it."""
 
-BLIND = "straight-line"  # what a planner is whose map is empty
+BLIND = "straight-line"  # equal to a planner with an empty map
 PLANNER = "navmesh+path-following"
-ONCE = "navmesh+path-following once"  # never plans again
+ONCE = "navmesh+path-following once"  # plans once in an episode
 MAPPER = "mapping+visibility+path-following"
 LOCAL = "orca"
 BOTH = "navmesh+orca"

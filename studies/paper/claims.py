@@ -1,4 +1,4 @@
-"""What the paper says, and whether our measurements bear it out."""
+"""The claims of the paper, each with a verdict from our measurements."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -13,12 +13,12 @@ from .table_2 import commands
 
 CONFIRMED, PARTLY, NOT, CONTRADICTED = "confirmed", "in part", "not confirmed", "**contradicted**"
 SAFE = 0.01  # hits per agent up to which movers are called avoided
-GOOD = 0.95  # success from which agents are said to manage
+GOOD = 0.95  # least success that counts as good
 
 
 @dataclass(frozen=True)
 class Material:
-    """Everything that a claim is held against."""
+    """The measurements that a claim is compared with."""
 
     evidence: Evidence
     behaviours: dict[str, Behaviour]
@@ -29,7 +29,7 @@ Claim = tuple[str, Callable[[Material], Finding]]
 
 
 def section(material: Material) -> Iterator[str]:
-    """Lines of the page."""
+    """Yield the lines of the section."""
     yield "## The paper's claims"
     yield ""
     yield (
@@ -49,7 +49,7 @@ def _percent(m: Material, metric: str, cell: tuple[str, str, str]) -> str:
 
 
 def _compared(change: Difference, wanted: int) -> str:
-    """``wanted`` is the sign that the claim gives to a difference."""
+    """Return the verdict on a difference; ``wanted`` is its sign according to the claim."""
     if not change.sure:
         return NOT
     return CONFIRMED if wanted * change.mean > 0 else CONTRADICTED
@@ -75,7 +75,7 @@ def _regenerates(m: Material) -> Finding:
 
 
 def _needs_map(m: Material) -> Finding:
-    mapper, blind = ((cast.STATIC, "unknown", who) for who in (cast.MAPPER, cast.BLIND))
+    mapper, blind = ((cast.STATIC, "unknown", navigator) for navigator in (cast.MAPPER, cast.BLIND))
     known = (cast.STATIC, "known", cast.PLANNER)
     gain = m.evidence.difference("arrival", mapper, blind)
     return PARTLY if gain.sure and gain.mean > 0 else CONFIRMED, (
@@ -103,7 +103,7 @@ def _local_and_movers(m: Material) -> Finding:
 
 
 def _paper_and_movers(m: Material) -> Finding:
-    mine, other = ((cast.DYNAMIC, "unknown", who) for who in (cast.PAPER, cast.LOCAL))
+    mine, other = ((cast.DYNAMIC, "unknown", navigator) for navigator in (cast.PAPER, cast.LOCAL))
     blind = (cast.DYNAMIC, "unknown", cast.BLIND)
     hits = m.evidence.value("collisions_dynamic", mine)
     fewer = m.evidence.difference("collisions_dynamic", mine, blind)
@@ -148,12 +148,15 @@ def _any_goal(m: Material) -> Finding:
 
 def _reaches(m: Material) -> Finding:
     ends = {
-        who: [m.evidence.value("arrival", (at, "unknown", who)) for at in (cast.TRAP, cast.MAZE)]
-        for who in (cast.PAPER, cast.MAPPING_BOTH, cast.HYBRID)
+        navigator: [
+            m.evidence.value("arrival", (at, "unknown", navigator)) for at in (cast.TRAP, cast.MAZE)
+        ]
+        for navigator in (cast.PAPER, cast.MAPPING_BOTH, cast.HYBRID)
     }
     verdict = CONFIRMED if min(v.mean for v in ends[cast.PAPER]) >= GOOD else CONTRADICTED
     return verdict, f"arrival in `{cast.TRAP}` and `{cast.MAZE}`: " + "; ".join(
-        f"`{who}` {trap.text(100)} % and {maze.text(100)} %" for who, (trap, maze) in ends.items()
+        f"`{navigator}` {trap.text(100)} % and {maze.text(100)} %"
+        for navigator, (trap, maze) in ends.items()
     )
 
 
@@ -197,7 +200,9 @@ def _many_goals(m: Material) -> Finding:
 
 
 def _discrete(m: Material) -> Finding:
-    table_, paper = ((cast.STATIC, "unknown", who) for who in (cast.TABULAR, cast.PAPER))
+    table_, paper = (
+        (cast.STATIC, "unknown", navigator) for navigator in (cast.TABULAR, cast.PAPER)
+    )
     few, n = commands(m.evidence, table_)
     many, k = commands(m.evidence, paper)
     return CONFIRMED if few < 100 < many else NOT, (
@@ -219,14 +224,14 @@ def _jagged(m: Material) -> Finding:
 
 
 def _together(verdicts: Iterable[str]) -> str:
-    """What all of them say; in part where they differ."""
+    """Return the common verdict; "in part" if verdicts differ."""
     found = set(verdicts)
     return found.pop() if len(found) == 1 else PARTLY
 
 
 def _guided(m: Material, metric: str) -> Difference:
-    """How followers differ who are guided from those who plan."""
-    cells = (among_groups(who) for who in (cast.GUIDED, cast.BOTH))
+    """Return the difference between followers that are guided and followers that plan."""
+    cells = (among_groups(navigator) for navigator in (cast.GUIDED, cast.BOTH))
     return m.evidence.difference(metric, *cells, "follower")
 
 

@@ -27,12 +27,12 @@ CAST = (cast.GUIDED, cast.GUIDED_PLUS, cast.BOTH, cast.LOCAL)
 
 
 def cell(navigator: str) -> tuple[str, str, str]:
-    """Of a navigator among the groups."""
+    """Return the cell of a navigator in the scenario of groups."""
     return cast.GROUPS, "known", navigator
 
 
 def section(evidence: Evidence, pictures: Pictures) -> Iterator[str]:
-    """Lines of the page."""
+    """Yield the lines of the section."""
     yield "## Figs. 11 and 12 against 13: guided groups, and navmesh + RVO"
     yield ""
     yield (
@@ -48,15 +48,15 @@ def section(evidence: Evidence, pictures: Pictures) -> Iterator[str]:
     )
     yield ""
     rows = []
-    for metric, label, scale, digits, role in METRICS:
+    for metric, heading, scale, digits, role in METRICS:
         change = evidence.difference(metric, cell(cast.GUIDED), cell(cast.BOTH), role)
         text = change.text(scale, digits)
         rows.append([
-            label,
-            *(evidence.value(metric, cell(who), role).text(scale, digits) for who in CAST),
+            heading,
+            *(evidence.value(metric, cell(label), role).text(scale, digits) for label in CAST),
             f"**{text}**" if change.sure else text,
         ])  # fmt: skip
-    head = ["", *(f"`{who}`" for who in CAST), "difference"]
+    head = ["", *(f"`{navigator}`" for navigator in CAST), "difference"]
     yield from table(head, rows)
     pictures.groups(evidence)
     yield (

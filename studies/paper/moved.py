@@ -6,7 +6,7 @@ from . import cast
 from .evidence import Evidence
 from .markdown import table
 
-ROWS = (  # who, and the tracks after the move
+ROWS = (  # navigator, and its tracks after the move
     (cast.PAPER, ("unknown",)),
     (cast.PLUS, ("unknown",)),
     (cast.HYBRID, ("unknown",)),
@@ -19,24 +19,24 @@ MAPS = {"unknown": "no map", "stale": "the map of before", "known": "a new map"}
 
 
 def section(evidence: Evidence) -> Iterator[str]:
-    """Lines of the page."""
+    """Yield the lines of the section."""
     yield "## Fig. 6: the static obstacles move"
     yield ""
     yield (
         "Success per agent in %. *Before* is `leaders/static`; *after* is `leaders/moved`, where"
-        " the"
-        " cubes were re-placed before the episode. Nobody was trained again. The worlds of the two"
-        " scenarios are not the same, so that their difference is not paired world by world."
+        " the cubes were re-placed before the episode. No navigator was trained again. The worlds"
+        " of the two scenarios are not the same, so that their difference is not paired world by"
+        " world."
     )
     yield ""
     rows = []
-    for who, tracks in ROWS:
+    for navigator, tracks in ROWS:
         for track in tracks:
-            before = (cast.STATIC, "known" if track != "unknown" else "unknown", who)
-            after = (cast.MOVED, track, who)
+            before = (cast.STATIC, "known" if track != "unknown" else "unknown", navigator)
+            after = (cast.MOVED, track, navigator)
             change = evidence.difference("success", after, before)
             rows.append([
-                f"`{who}`", MAPS[track], evidence.value("success", before).text(100),
+                f"`{navigator}`", MAPS[track], evidence.value("success", before).text(100),
                 evidence.value("success", after).text(100), change.text(100),
             ])  # fmt: skip
     yield from table(["navigator", "after the move it has", "before", "after", "change"], rows)
@@ -50,8 +50,9 @@ def section(evidence: Evidence) -> Iterator[str]:
     yield from table(
         ["navigator", "track", "success %", "hits of static obstacles per 100 agents"],
         [
-            [f"`{who}`", track, evidence.value("success", (cast.FURNITURE, track, who)).text(100),
-             evidence.value("collisions_static", (cast.FURNITURE, track, who)).text(100)]
-            for who, track in plans
+            [f"`{label}`", track,
+             evidence.value("success", (cast.FURNITURE, track, label)).text(100),
+             evidence.value("collisions_static", (cast.FURNITURE, track, label)).text(100)]
+            for label, track in plans
         ],
     )  # fmt: skip

@@ -14,12 +14,15 @@ DRIVERS = (cast.PAPER, cast.PLUS)
 
 
 def behaviours(evidence: Evidence) -> dict[str, Behaviour]:
-    """Of the learned navigators in `leaders/dynamic`."""
-    return {who: behaviour(evidence.episodes((cast.DYNAMIC, "unknown", who))) for who in DRIVERS}
+    """Return the behaviour of each learned navigator in `leaders/dynamic`."""
+    return {
+        navigator: behaviour(evidence.episodes((cast.DYNAMIC, "unknown", navigator)))
+        for navigator in DRIVERS
+    }
 
 
 def section(evidence: Evidence, found: dict[str, Behaviour], pictures: Pictures) -> Iterator[str]:
-    """Lines of the page."""
+    """Yield the lines of the section."""
     yield "## Fig. 8: movers"
     yield ""
     yield (
@@ -31,12 +34,12 @@ def section(evidence: Evidence, found: dict[str, Behaviour], pictures: Pictures)
     )
     yield ""
     rows = []
-    for who, b in found.items():
+    for navigator, b in found.items():
         e = b.encounters
         if not e:
             continue
         rows.append([
-            f"`{who}`", f"{len(e):,}", _share(x.hit for x in e),
+            f"`{navigator}`", f"{len(e):,}", _share(x.hit for x in e),
             _share(x.sped > SPEED for x in e), _share(x.sped < -SPEED for x in e),
             _share(x.turned > TURN for x in e), f"{np.median([x.gap for x in e]):.2f}",
             f"{b.speed[0]:.2f} / {b.speed[1]:.2f}", f"{b.turning[0]:.2f} / {b.turning[1]:.2f}",

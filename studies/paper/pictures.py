@@ -60,10 +60,10 @@ class Pictures:
                 _draw_encounter(scene, episode, example)
         dt = 0.2
         time = (np.arange(2 * REACH) - REACH) * dt
-        for (who, b), colour in zip(found.items(), TEAMS, strict=False):
+        for (navigator, b), colour in zip(found.items(), TEAMS, strict=False):
             missed = [e for e in b.encounters if not e.hit]
-            _band(speed, time, [e.speed for e in missed], colour, who)
-            _band(turn, time, [np.degrees(np.abs(e.turn)) for e in missed], colour, who)
+            _band(speed, time, [e.speed for e in missed], colour, navigator)
+            _band(turn, time, [np.degrees(np.abs(e.turn)) for e in missed], colour, navigator)
         speed.set(title="speed", ylabel="m/s", xlabel="s from the closest approach", ylim=(0, 2.1))
         turn.set(title="change of heading since the alarm", ylabel="°",
                  xlabel="s from the closest approach", ylim=(0, None))  # fmt: skip
@@ -75,7 +75,7 @@ class Pictures:
 
     def groups(self, evidence: Evidence) -> None:
         """Figs. 11, 12, 13, one row each, in the first world."""
-        cells = [(cast.GROUPS, "known", who) for who in (cast.GUIDED, cast.BOTH)]
+        cells = [(cast.GROUPS, "known", navigator) for navigator in (cast.GUIDED, cast.BOTH)]
         guided, planned = (next(evidence.episodes(cell)) for cell in cells)
         seed = guided.identity.seed
         rehearsed = [e for e in evidence.rehearsals(cells[0]) if e.identity.seed == seed]
@@ -145,7 +145,7 @@ def _draw_world(axes: Axes, episode: Episode, movers: bool = True, state: int = 
 
 
 def _draw_moment(axes: Axes, episode: Episode, time: float) -> None:
-    """Who is where at one time; a leader is a ring."""
+    """Draw the positions of all agents at one time; a leader is a ring."""
     state = min(round(time / episode.world.clock.dt), len(episode.position) - 1)
     _draw_world(axes, episode, state=state)
     agents = episode.world.agents

@@ -60,27 +60,27 @@ def section(evidence: Evidence) -> Iterator[str]:
 
 
 def _cells(evidence: Evidence, row: Row) -> list[str]:
-    who, track = row.navigator, row.track
+    navigator, track = row.navigator, row.track
     ends = [
-        evidence.value("arrival", (scenario, track, who)).text(100)
+        evidence.value("arrival", (scenario, track, navigator)).text(100)
         for scenario in (cast.TRAP, cast.MAZE)
     ]
-    distinct, decisions = commands(evidence, (cast.STATIC, track, who))
-    turning = evidence.value("turning", (cast.STATIC, track, who)).text(1, 2)
+    distinct, decisions = commands(evidence, (cast.STATIC, track, navigator))
+    turning = evidence.value("turning", (cast.STATIC, track, navigator)).text(1, 2)
     return [
         row.method,
-        f"`{who}`",
-        _success(evidence, cast.STATIC, ("known", "unknown"), who),
-        _success(evidence, cast.MOVED, ("stale", "known", "unknown"), who),
-        evidence.value("collisions_dynamic", (cast.DYNAMIC, track, who)).text(100),
+        f"`{navigator}`",
+        _success(evidence, cast.STATIC, ("known", "unknown"), navigator),
+        _success(evidence, cast.MOVED, ("stale", "known", "unknown"), navigator),
+        evidence.value("collisions_dynamic", (cast.DYNAMIC, track, navigator)).text(100),
         ", ".join(ends),
         f"{distinct:,} of {decisions:,}; {turning}",
     ]
 
 
-def _success(evidence: Evidence, scenario: str, tracks: tuple[str, ...], who: str) -> str:
+def _success(evidence: Evidence, scenario: str, tracks: tuple[str, ...], navigator: str) -> str:
     """Of every track; once where no map makes a difference."""
-    cells = [(scenario, track, who) for track in tracks]
+    cells = [(scenario, track, navigator) for track in tracks]
     values = [evidence.value("success", cell) for cell in cells]
     if evidence.alike("success", cells):
         return f"{values[0].text(100)} in each"
@@ -88,10 +88,10 @@ def _success(evidence: Evidence, scenario: str, tracks: tuple[str, ...], who: st
 
 
 def commands(evidence: Evidence, cell: tuple[str, str, str]) -> tuple[int, int]:
-    """How many different commands were asked for, and in how many decisions."""
-    asked = [
+    """Return the number of different commands, and the number of decisions."""
+    given = [
         episode.requested[episode.status[:-1] == Status.ACTIVE]
         for episode in evidence.episodes(cell)
     ]
-    every = np.concatenate(asked) if asked else np.zeros((0, 2))
+    every = np.concatenate(given) if given else np.zeros((0, 2))
     return len(np.unique(every, axis=0)), len(every)

@@ -377,7 +377,7 @@ def test_its_entry_learned_what_its_leader_learned(tmp_path):
     asked = [f"{{type: guided-crowd, leader: {who}, label: {who}}}" for who in leaders]
     path = tmp_path / "s.yaml"
     path.write_text(f"name: s\nscenarios: [groups/crossing]\nnavigators: [{', '.join(asked)}]\n")
-    learned, planned = load_suite(str(path)).entries
+    learned, planned = load_suite(str(path)).contestants
     assert learned.training == make(NAVIGATORS, "recurrent-ppo").training is not None
     assert planned.training is None
 

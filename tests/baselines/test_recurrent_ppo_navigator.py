@@ -56,7 +56,7 @@ def test_another_fan_of_rays_is_not_applicable_with_the_reason(tmp_path):
     path = tmp_path / "rays.yaml"
     path.write_text(yaml.safe_dump(said))
     wanted = Selection(scenarios=(str(path),), navigators=("recurrent-ppo", "recurrent-ppo-plus"))
-    first, second = load_suite("quick", wanted).cells()
+    first, second = load_suite("quick", wanted).jobs()
     assert "was made for 7 thick rays over 180° and 8 m, and agents there have 9" in first.reason
     assert second.reason == ""
 
@@ -66,11 +66,11 @@ def test_other_weights_are_another_navigator(tmp_path):
     copy.write_bytes((SHIPPED / "recurrent-ppo-plus.safetensors").read_bytes())
     spec = f"{{type: recurrent-ppo, label: mine, weights: {copy}}}"
     wanted = Selection(scenarios=("trap/u",), navigators=("recurrent-ppo", spec))
-    shipped, mine = load_suite("quick", wanted).entries
+    shipped, mine = load_suite("quick", wanted).contestants
     assert shipped.fingerprint != mine.fingerprint
     before = mine.hash
     copy.write_bytes((SHIPPED / "recurrent-ppo.safetensors").read_bytes())
-    assert load_suite("quick", wanted).entries[1].hash != before
+    assert load_suite("quick", wanted).contestants[1].hash != before
     resolved = load_suite("quick", wanted).resolved()["navigators"][0]
     assert resolved["training"]["decisions"] > 1_000_000
 

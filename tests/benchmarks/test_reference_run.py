@@ -36,15 +36,15 @@ def flat(kept):
 def test_it_is_of_the_suite_that_ships(said):
     suite = load_suite(SUITE, Selection(seeds="10"))
     assert said["suite"] == f"{suite.name}@{suite.version}"
-    cells = {
-        (cell.scenario.identity, cell.track, cell.entry.label)
-        for cell in suite.cells()
-        if not cell.reason
+    jobs = {
+        (job.scenario.identity, job.track, job.contestant.label)
+        for job in suite.jobs()
+        if not job.reason
     }
-    assert set(flat(said["digests"])) == cells
+    assert set(flat(said["digests"])) == jobs
     assert all(len(values) == 10 for values in flat(said["digests"]).values())
     assert said["verified"].startswith("0 findings")
-    assert said["episodes"] == 10 * len(cells)
+    assert said["episodes"] == 10 * len(jobs)
     assert said["seconds"] < 3600
 
 
@@ -56,8 +56,8 @@ def test_its_sample_is_verified_and_of_it(said):
         assert report.counts["twin episodes"] == 3
         assert run.manifest.salt == said["salt"]
         every = flat(said["digests"])
-        for cell, (first,) in flat(digests(run)).items():
-            assert first == every[cell][0], cell
+        for job, (first,) in flat(digests(run)).items():
+            assert first == every[job][0], job
 
 
 def test_run_again_it_is_the_same(said, tmp_path):
@@ -66,8 +66,8 @@ def test_run_again_it_is_the_same(said, tmp_path):
     run_suite(load_suite(SUITE, wanted), tmp_path / "again", workers=0)
     every, found = flat(said["digests"]), flat(digests(RunFolder.open(tmp_path / "again")))
     assert len(found) > len(SAMPLE) * len(AGAIN)
-    for cell, values in found.items():
-        assert values == every[cell][:2], cell
+    for job, values in found.items():
+        assert values == every[job][:2], job
         assert {len(value) for value in values} == {DIGITS}
 
 

@@ -98,8 +98,8 @@ BY_DESIGN = {
     "manifest.suite.name, manifest.suite.version": (
         "what the author calls the suite; a name that ships is compared with the installed suite"
     ),
-    "*.says.title, *.says.description": "texts for people; nothing follows from them",
-    "manifest.suite.navigators[].says.*": (
+    "*.config.title, *.config.description": "texts for people; nothing follows from them",
+    "manifest.suite.navigators[].config.*": (
         "a parameter that changes no command there; any other is found by --rerun, or named as a"
         " navigator that was not run again"
     ),
@@ -211,7 +211,7 @@ def _noticed(run: Path, again: bool) -> list[str] | None:
                     report.add(examine(task))
             if again and suite and report.clean:
                 checks = [task.check for task in tasks]
-                rerun(folder, suite.cells, checks, Path(root) / "rerun", report, workers=0)
+                rerun(folder, suite.jobs, checks, Path(root) / "rerun", report, workers=0)
         except BenchnavError:
             return None
     lines = [*report.checked, *report.unchecked, *report.sources, *report.versions]
@@ -350,7 +350,7 @@ def _manifest(run: Path) -> Iterator[Attack]:
         if name in ("sha256", "suite_hash") or name in tried:
             continue
         tried.add(name)
-        own = name.startswith("suite.scenarios[].says.")  # one hash covers them all
+        own = name.startswith("suite.scenarios[].config.")  # one hash covers them all
         for variant in range(2 if own else 3):
 
             def change(path=path, name=name, variant=variant) -> bool:
@@ -393,7 +393,7 @@ def _change_key(run: Path, path: tuple[Any, ...], name: str, variant: int) -> bo
         place = place[key]
     held = place.get(path[-1])
     if variant == 0:
-        if path[-1] not in place or name.startswith("suite.scenarios[].says."):
+        if path[-1] not in place or name.startswith("suite.scenarios[].config."):
             return False
         del place[path[-1]]
     else:

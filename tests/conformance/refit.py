@@ -9,9 +9,10 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from benchnav.errors import BenchnavError
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.job import Job
 from benchnav.store.parts.part import FILES, SEAL
 from benchnav.store.runs import checked_json
+from benchnav.store.runs.config_key import old_form
 from benchnav.store.runs.manifest import MANIFEST
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.verify.finding import Report
@@ -47,7 +48,7 @@ def refit_manifest(run: Path, content: dict, attacked: str) -> None:
     for said, cell in zip(content["cells"], cells, strict=True):
         said |= {
             "key": cell.key, "scenario": cell.scenario.identity, "track": cell.track,
-            "navigator": cell.entry.label,
+            "navigator": cell.contestant.label,
         }  # fmt: skip
     write_manifest(run, content)
     after = RunFolder.open(run)
@@ -61,12 +62,12 @@ def refit_manifest(run: Path, content: dict, attacked: str) -> None:
 def write_manifest(run: Path, content: dict) -> None:
     """Write a manifest with checksums that fit."""
     content.pop("sha256", None)
-    text = json.dumps(content.get("suite"), sort_keys=True, separators=(",", ":"))
+    text = json.dumps(old_form(content.get("suite")), sort_keys=True, separators=(",", ":"))
     content["suite_hash"] = hashlib.sha256(text.encode()).hexdigest()
     (run / MANIFEST).write_text(checked_json.dump(content))
 
 
-def _cells(run: Path, content: dict) -> list[Cell]:
+def _cells(run: Path, content: dict) -> list[Job]:
     """The cells of the changed suite; hashes of scenarios are made to fit first."""
     for _ in range(2):
         report = Report()
@@ -77,12 +78,12 @@ def _cells(run: Path, content: dict) -> list[Cell]:
             said = next(s for s in content["suite"]["scenarios"] if s["scenario"] == finding.where)
             said["hash"] = finding.what.split("has the hash ")[1].split(",")[0]
         if restored is not None and not wrong:
-            return list(restored.cells)
+            return list(restored.jobs)
         write_manifest(run, content)
     raise ValueError("the suite cannot be restored")
 
 
-def _relabel(folder: Path, cell: Cell) -> None:
+def _relabel(folder: Path, cell: Job) -> None:
     """Let every row say that it is of ``cell``."""
     who = cell.assignment.identity(0)
     own = {

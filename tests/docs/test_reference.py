@@ -29,4 +29,4 @@ def test_fields_have_shape_unit_and_meaning():
         "| `distance` | (B, A, R) [m] of the ray or of its disc; the range if nothing is hit |"
         in text
     )
-    assert "| `row` | names the world from `reset` to the end of its episode |" in text
+    assert "| `row` | number of the world from `reset` to the end of its episode |" in text

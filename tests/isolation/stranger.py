@@ -38,8 +38,8 @@ def write(kind, name="", code=b"t", shape=(), data=b""):
     sys.stdout.buffer.flush()
 
 
-def text(kind, says):
-    write(kind, "says", shape=(len(says.encode()),), data=says.encode())
+def send_text(kind, text):
+    write(kind, "text", shape=(len(text.encode()),), data=text.encode())
 
 
 def command(fields, how):
@@ -57,17 +57,17 @@ def main(how):
         kind, fields = read()
         if kind == "hello":
             if how == "echo":
-                print(json.loads(fields["says"][1])["config"], file=sys.stderr)
+                print(json.loads(fields["text"][1])["config"], file=sys.stderr)
             if how == "dies at once":
                 sys.exit("no licence")
-            says = {"needs": ["sonar"]} if how == "strange" else {"remarks": how == "remarks"}
-            text("ready", json.dumps(says))
+            answer = {"needs": ["sonar"]} if how == "strange" else {"remarks": how == "remarks"}
+            send_text("ready", json.dumps(answer))
         elif kind == "reset":
             if how == "dies in reset":
                 os.abort()
             write("done")
         elif kind == "remarks":
-            text("remarks", json.dumps(["I was here"]))
+            send_text("remarks", json.dumps(["I was here"]))
         else:
             acts += 1
             if acts == 3 and how == "exits":

@@ -45,7 +45,7 @@ def test_parameters_of_the_pair_and_of_its_parts_stand_beside_the_name():
 def test_without_a_planner_or_with_mapping_no_map_is_needed():
     names = ("grid.astar+orca", "mapping+grid.astar+orca", "none+orca")
     wanted = Selection(scenarios=("trap/u",), tracks=("unknown",), navigators=names)
-    reasons = [cell.reason for cell in load_suite("quick", wanted).cells()]
+    reasons = [job.reason for job in load_suite("quick", wanted).jobs()]
     assert reasons == ["needs a map", "", ""]
 
 
@@ -125,7 +125,7 @@ def test_a_suite_takes_pairs_and_counts_their_parts():
     other = "{type: grid.astar+orca, label: other, controller: {margin: 0.2}}"
     names = ("grid.astar+orca", long, other, "none+recurrent-ppo", "recurrent-ppo")
     suite = load_suite("quick", Selection(scenarios=("trap/u",), navigators=names))
-    pair, same, different, alone, learned = suite.entries
+    pair, same, different, alone, learned = suite.contestants
     assert pair.label == "grid.astar+orca"
     assert pair.hash == same.hash != different.hash
     assert pair.spec["controller"]["margin"] == 0.05
@@ -136,6 +136,6 @@ def test_a_suite_takes_pairs_and_counts_their_parts():
 def test_the_distribution_of_a_part_counts(monkeypatch):
     selected = Selection(scenarios=("trap/u",), navigators=("grid.astar+mine",))
     monkeypatch.setitem(CONTROLLERS._local, "mine", (CONTROLLERS.load("orca"), "here"))
-    (entry,) = load_suite("quick", selected).entries
-    assert entry.source.endswith(", registered in this process")
-    assert entry.source.startswith("benchnav ")
+    (contestant,) = load_suite("quick", selected).contestants
+    assert contestant.source.endswith(", registered in this process")
+    assert contestant.source.startswith("benchnav ")

@@ -167,12 +167,12 @@ def test_the_suite_knows_of_isolated_navigators_what_it_knows_of_others():
     names = ("orca", "q-learning", "guided-crowd", "none+dwa", "ompl.rrt-star+orca")
     here = load_suite("quick", Selection(navigators=names))
     there = load_suite("quick", Selection(navigators=names, isolate=True))
-    for one, other in zip(here.entries, there.entries, strict=True):
+    for one, other in zip(here.contestants, there.contestants, strict=True):
         assert (one.mode, other.mode) == ("in-process", "isolated")
         assert one.hash != other.hash
         for name in ("spec", "source", "required", "training", "fingerprint", "rehearsal", "unfit"):
             assert getattr(one, name) == getattr(other, name)
-    assert [c.reason for c in here.cells()] == [c.reason for c in there.cells()]
+    assert [c.reason for c in here.jobs()] == [c.reason for c in there.jobs()]
     modes = [entry["mode"] for entry in there.resolved()["navigators"]]
     assert modes == ["isolated"] * len(names)
 

@@ -44,8 +44,8 @@ def ray_worker(monkeypatch):
 
 
 def task_of(suite, tmp_path, **changes):
-    (cell,) = suite.cells()
-    task = Task(cell, tmp_path / "run" / "parts" / cell.key, 0, 2, salt="5a" * 16, probe=0)
+    (job,) = suite.jobs()
+    task = Task(job, tmp_path / "run" / "parts" / job.key, 0, 2, salt="5a" * 16, probe=0)
     return replace(task, **changes)
 
 
@@ -88,7 +88,7 @@ def test_files_of_a_scenario_need_not_be_there(ray_worker, tmp_path):
     suite = load_suite(str(home / "suite.yaml"), Selection(salt="5a" * 16))
     run_suite(suite, tmp_path / "here", workers=0)
     task = task_of(suite, tmp_path)
-    files = {n: p.read_bytes() for n, p in task.cell.scenario.named_files().items()}
+    files = {n: p.read_bytes() for n, p in task.job.scenario.named_files().items()}
     assert list(files) == ["maps/wall.map"]
     shutil.rmtree(home)
     refusal = ray_worker.work(task, {"/leads/out": b""})

@@ -315,10 +315,10 @@ def test_a_leader_that_never_succeeds_is_told_in_the_log(suite, tmp_path):
 
 def test_a_cell_is_n_a_where_its_leader_cannot_work(suite, tmp_path):
     asked = suite(told(", leader: ompl-pure"))
-    (cell,) = [c for c in asked.cells() if c.track == "known"]
+    (cell,) = [c for c in asked.jobs() if c.track == "known"]
     assert cell.reason == ""
     unknown = load_suite(str(tmp_path / "suite.yaml"), Selection(tracks=("unknown",)))
-    assert [c.reason for c in unknown.cells()] == ["its leaders' ompl-pure needs a map"]
+    assert [c.reason for c in unknown.jobs()] == ["its leaders' ompl-pure needs a map"]
 
 
 def test_who_leads_must_be_named_and_must_not_rehearse(suite):
@@ -332,9 +332,9 @@ def test_the_manifest_says_who_led_and_the_hash_depends_on_it(suite, tmp_path):
     run_suite(suite(told(), seeds="1"), tmp_path / "r", workers=0)
     (entry,) = load_manifest(tmp_path / "r").suite["navigators"]
     assert (entry["rehearsal"], entry["leader"]["label"]) == (2, "orca")
-    assert entry["leader"]["says"]["time_horizon"] == 5.0
+    assert entry["leader"]["config"]["time_horizon"] == 5.0
     hashes = {
-        suite(told(f", leader: {name}")).entries[0].hash for name in ("orca", "straight-line")
+        suite(told(f", leader: {name}")).contestants[0].hash for name in ("orca", "straight-line")
     }
     assert len(hashes) == 2
 

@@ -223,7 +223,7 @@ def test_what_is_not_installed_makes_a_cell_n_a_and_stops_nobody_else(
     suite, out = load_suite(str(suite_file), chosen), tmp_path / "r"
     summary = run_suite(suite, out, workers=workers)
     why = f"{navigator} needs an extra: pip install 'benchnav[plan]'"
-    assert [(c.entry.label, said) for c, said in summary.not_applicable] == [
+    assert [(c.contestant.label, said) for c, said in summary.not_applicable] == [
         (f"troubled_navigators:{navigator}", why)
     ]
     assert (summary.total, summary.stored, summary.failures) == (6, 6, {})

@@ -47,14 +47,14 @@ def test_what_is_no_shard_is_refused_with_the_rule(text):
 def test_shards_cover_the_plan_once_and_weigh_alike(path, count, monkeypatch):
     monkeypatch.setattr(task_module, "CHUNK", 2)
     suite = load_suite(str(path))
-    cells = list(suite.cells())
-    shares = [Shard(i, count).seeds(cells, suite.seeds) for i in range(1, count + 1)]
-    again = [Shard(i, count).seeds(reversed(cells), suite.seeds) for i in range(1, count + 1)]
+    jobs = list(suite.jobs())
+    shares = [Shard(i, count).seeds(jobs, suite.seeds) for i in range(1, count + 1)]
+    again = [Shard(i, count).seeds(reversed(jobs), suite.seeds) for i in range(1, count + 1)]
     assert shares == again
-    for cell in cells:
-        held = [seed for share in shares for seed in share.get(cell.key, ())]
-        assert sorted(held) == ([] if cell.reason else list(suite.seeds))
-    effort = {cell.key: cell.effort for cell in cells}
+    for job in jobs:
+        held = [seed for share in shares for seed in share.get(job.key, ())]
+        assert sorted(held) == ([] if job.reason else list(suite.seeds))
+    effort = {job.key: job.effort for job in jobs}
     loads = [sum(effort[k] * len(s) for k, s in share.items()) for share in shares]
     assert max(loads) - min(loads) <= 2 * max(effort.values())  # a task's
 

@@ -34,12 +34,12 @@ ONE, TWO = "mapping+visibility+orca", "mapping+navmesh+orca"
 
 
 def test_cells_are_every_scenario_track_and_navigator(write):
-    cells = list(load_suite(write(navigators=MAPPERS)).cells())
-    assert [(c.track, c.entry.label) for c in cells] == [
+    jobs = list(load_suite(write(navigators=MAPPERS)).jobs())
+    assert [(c.track, c.contestant.label) for c in jobs] == [
         ("known", ONE), ("known", TWO), ("unknown", ONE), ("unknown", TWO),
     ]  # fmt: skip
-    assert len({cell.key for cell in cells}) == 4
-    assert all(cell.reason == "" for cell in cells)
+    assert len({job.key for job in jobs}) == 4
+    assert all(job.reason == "" for job in jobs)
 
 
 def test_a_cell_that_cannot_work_says_why(write, troubled):
@@ -50,7 +50,7 @@ def test_a_cell_that_cannot_work_says_why(write, troubled):
         "    def act(self, observation): return observation.velocity\n"
     )
     suite = load_suite(write(navigators="['needy:Maps']", tracks="[known, stale, unknown]"))
-    reasons = {cell.track: cell.reason for cell in suite.cells()}
+    reasons = {job.track: job.reason for job in suite.jobs()}
     assert reasons == {
         "known": "",
         "stale": "the scenario has no track 'stale'",
@@ -62,7 +62,7 @@ def test_a_sensor_that_nobody_has_makes_a_cell_n_a(write, scenario_file, tmp_pat
     blind = tmp_path / "blind.yaml"
     blind.write_text(scenario_file.read_text() + "sensing: {neighbours: null}\n")
     suite = load_suite(write(scenarios=f"[{blind}]", tracks="[known]"))
-    reasons = {cell.entry.label: cell.reason for cell in suite.cells()}
+    reasons = {job.contestant.label: job.reason for job in suite.jobs()}
     assert reasons == {
         "straight-line": "", "orca": "needs neighbours, which no sensor gives there"
     }  # fmt: skip
@@ -72,11 +72,11 @@ def test_the_same_navigator_with_other_parameters_is_another_entry(write):
     suite = load_suite(
         write(navigators="[orca, {type: orca, label: far-sighted, time_horizon: 9.0}]")
     )
-    near, far = suite.entries
+    near, far = suite.contestants
     assert (near.label, far.label) == ("orca", "far-sighted")
     assert near.spec["type"] == far.spec["type"] == "orca"
     assert near.spec != far.spec
-    keys = [cell.key for cell in suite.cells()]
+    keys = [job.key for job in suite.jobs()]
     assert len(set(keys)) == len(keys)
 
 
@@ -84,7 +84,7 @@ def test_what_is_selected_replaces_what_the_file_says(write):
     path = write()
     suite = load_suite(path, Selection((), ("partial",), ("orca", "random-walk"), "7:9"))
     assert suite.tracks == ("partial",)
-    assert [entry.label for entry in suite.entries] == ["orca", "random-walk"]
+    assert [contestant.label for contestant in suite.contestants] == ["orca", "random-walk"]
     assert suite.seeds == range(7, 9)
 
 
@@ -152,8 +152,8 @@ def test_what_stands_twice_in_the_file_is_blamed_on_its_line(write):
 def test_a_navigator_can_be_written_out_where_it_is_selected(write):
     written = "{type: orca, label: far-sighted, time_horizon: 9.0}"
     suite = load_suite(write(), Selection(navigators=("orca", written)))
-    assert [entry.label for entry in suite.entries] == ["orca", "far-sighted"]
-    assert suite.entries[1].spec["time_horizon"] == 9.0
+    assert [contestant.label for contestant in suite.contestants] == ["orca", "far-sighted"]
+    assert suite.contestants[1].spec["time_horizon"] == 9.0
     with pytest.raises(ScenarioError, match="navigators:1"):
         load_suite(write(), Selection(navigators=("{type: orca",)))
 
@@ -163,14 +163,14 @@ def test_what_ships_can_be_loaded_and_every_navigator_can_run_somewhere(name):
     suite = load_suite(name)
     assert suite.name == name
     assert suite.split == "test"
-    for entry in suite.entries:
-        assert any(cell.reason == "" for cell in suite.cells() if cell.entry is entry)
+    for contestant in suite.contestants:
+        assert any(job.reason == "" for job in suite.jobs() if job.contestant is contestant)
 
 
 def test_quick_is_a_first_look_at_five_navigators():
     suite = load_suite("quick")
     assert len(suite.scenarios) >= 4
-    assert len(suite.entries) >= 5
+    assert len(suite.contestants) >= 5
     assert len(suite.seeds) >= 20
 
 
@@ -185,7 +185,7 @@ BLOCKS = f"[{{tracks: [known], navigators: [{TWO}]}}, {{tracks: [unknown]}}]"
 
 def test_blocks_are_the_parts_of_the_product_that_are_run(write):
     suite = load_suite(write(navigators=MAPPERS, blocks=BLOCKS))
-    assert [(c.track, c.entry.label) for c in suite.cells()] == [
+    assert [(c.track, c.contestant.label) for c in suite.jobs()] == [
         ("known", TWO), ("unknown", ONE), ("unknown", TWO),
     ]  # fmt: skip
     assert suite.resolved()["blocks"][0]["navigators"] == (TWO,)
@@ -195,8 +195,8 @@ def test_blocks_are_the_parts_of_the_product_that_are_run(write):
 def test_what_is_selected_from_outside_the_file_is_in_every_block(write):
     chosen = Selection(navigators=(TWO, "ompl-orca"), tracks=("known", "partial"))
     suite = load_suite(write(navigators=MAPPERS, blocks=BLOCKS), chosen)
-    cells = [(c.track, c.entry.label) for c in suite.cells()]
-    assert cells == [
+    jobs = [(c.track, c.contestant.label) for c in suite.jobs()]
+    assert jobs == [
         ("known", TWO), ("known", "ompl-orca"), ("partial", TWO), ("partial", "ompl-orca"),
     ]  # fmt: skip
 
@@ -209,8 +209,8 @@ def test_a_block_names_what_the_suite_has(write):
 
 def test_who_uses_no_map_runs_once_for_all_tracks(write):
     suite = load_suite(write(navigators="[orca, ompl-pure]", tracks="[known, stale, unknown]"))
-    cells = [(c.track, c.entry.label, c.also, bool(c.reason)) for c in suite.cells()]
-    assert cells == [
+    jobs = [(c.track, c.contestant.label, c.also, bool(c.reason)) for c in suite.jobs()]
+    assert jobs == [
         ("known", "ompl-pure", (), False),
         ("stale", "orca", (), True),
         ("stale", "ompl-pure", (), True),

@@ -125,4 +125,4 @@ def test_suites_name_scenarios_with_parameters(tmp_path):
         "tests/small@1:walkers=5",
         "tests/small@1",
     ]
-    assert len({cell.key for cell in suite.cells()}) == 4
+    assert len({job.key for job in suite.jobs()}) == 4

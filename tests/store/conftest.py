@@ -19,7 +19,7 @@ from benchnav.store.parts.results import RESULTS
 from benchnav.store.runs.manifest import Manifest
 from benchnav.store.runs.navigator_hash import hash_of_entry
 
-ORCA = {"label": "orca", "says": {"type": "orca"}, "source": "benchnav"}
+ORCA = {"label": "orca", "config": {"type": "orca"}, "source": "benchnav"}
 HASH = hash_of_entry(ORCA)
 
 
@@ -108,7 +108,7 @@ def make_results(episodes):
 def make_manifest(rehearsal=0, **changes):
     suite = {
         "name": "tiny", "version": 1, "seeds": [0, 20], "split": "test", "tracks": ["known"],
-        "scenarios": [{"scenario": "a/b@1", "hash": "f" * 64, "says": {}, "files": {}}],
+        "scenarios": [{"scenario": "a/b@1", "hash": "f" * 64, "config": {}, "files": {}}],
         "navigators": [{**ORCA, "rehearsal": rehearsal}, {**ORCA, "label": "grid"}], **changes,
     }  # fmt: skip
     of = {"scenario": "a/b@1", "track": "known"}

@@ -22,6 +22,7 @@ import pyarrow.parquet as pq
 from benchnav.cli.main import status
 from benchnav.store.packs.pack import INDEX, members
 from benchnav.store.parts.part import SEAL
+from benchnav.store.runs.config_key import old_form
 from benchnav.store.runs.run_folder import RunFolder
 
 SECONDS = 5.0
@@ -45,7 +46,7 @@ def checked(fields):
     """A manifest or seal, with the digest that fits."""
     fields = {k: v for k, v in fields.items() if k != "sha256"} if isinstance(fields, dict) else {}
     with contextlib.suppress(KeyError, TypeError):
-        suite = json.dumps(fields["suite"], sort_keys=True, separators=(",", ":"))
+        suite = json.dumps(old_form(fields["suite"]), sort_keys=True, separators=(",", ":"))
         fields["suite_hash"] = hashlib.sha256(suite.encode()).hexdigest()
     text = json.dumps(fields, sort_keys=True, separators=(",", ":"))
     return json.dumps({**fields, "sha256": hashlib.sha256(text.encode()).hexdigest()}).encode()

@@ -21,7 +21,7 @@ from benchnav.store.runs.scenario_files import keep_files, sha256_of
 
 
 def scenario(files):
-    return {"scenario": "a/b@1", "hash": "f" * 64, "says": {}, "files": files}
+    return {"scenario": "a/b@1", "hash": "f" * 64, "config": {}, "files": files}
 
 
 @pytest.fixture

@@ -90,10 +90,10 @@ def _suite(source: "str | Document", name: str) -> str:
     from benchnav.runner.plan.suite import load_suite
 
     suite = load_suite(source)
-    cells = list(suite.cells())
-    missing = sum(bool(cell.reason) for cell in cells)
+    jobs = list(suite.jobs())
+    missing = sum(bool(job.reason) for job in jobs)
     return (
-        f"{name} is a suite, {suite.name}@{suite.version}: {counted(len(cells), 'cell')},"
+        f"{name} is a suite, {suite.name}@{suite.version}: {counted(len(jobs), 'cell')},"
         f" {missing} of them n/a, × {counted(len(suite.seeds), 'seed')}"
     )
 

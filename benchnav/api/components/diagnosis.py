@@ -35,7 +35,10 @@ _EXTRAS = {
         "pettingzoo": "pettingzoo",
         "tensorboard": "tensorboard",
     },
-    "view": {"matplotlib": "matplotlib", "plotly": "plotly"},
+    "view": {"matplotlib": "matplotlib"},
+    "video": {"imageio-ffmpeg": "imageio_ffmpeg"},
+    "mcap": {"mcap": "mcap"},
+    "rerun": {"rerun-sdk": "rerun"},
     "ray": {"ray": "ray"},
 }  # extra → package → module
 

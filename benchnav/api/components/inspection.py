@@ -9,7 +9,13 @@ from benchnav.metrics.measure import is_own
 from benchnav.navigation.command_check import short
 from benchnav.navigation.hierarchy.composition import HIERARCHICAL
 from benchnav.navigation.plugin.configure import make, split
-from benchnav.navigation.plugin.plugin_process import IMPORT, Plugin, Stepping, ask_plugins, tell
+from benchnav.navigation.plugin.plugin_process import (
+    IMPORT,
+    Plugin,
+    StepCallback,
+    query_plugins,
+    serve,
+)
 from benchnav.navigation.plugin.trace import plain
 from benchnav.plugins import (
     CONTROLLERS,
@@ -51,7 +57,7 @@ def inspect_plugins(
         else:
             plugin = Plugin(registry.kind, name, "", question)
             groups.setdefault(source.distribution, []).append(plugin)
-    answers = ask_plugins(f"{__name__}:tell_inspected", list(groups.values()), _TIMEOUT)
+    answers = query_plugins(f"{__name__}:serve_inspections", list(groups.values()), _TIMEOUT)
     for group, answered in zip(groups.values(), answers, strict=True):
         for plugin, answer in zip(group, answered, strict=True):
             known = isinstance(answer, BenchnavError)
@@ -59,14 +65,14 @@ def inspect_plugins(
     return {name: found[name] for name in names}
 
 
-def tell_inspected(channel: Channel, notes: "memoryview[float]") -> None:
+def serve_inspections(channel: Channel, notes: "memoryview[float]") -> None:
     """Send the requested facts about plugins. Runs in a separate process."""
-    tell(channel, notes, _inspected)
+    serve(channel, notes, _inspected)
 
 
-def _inspected(question: Any, stepping: Stepping) -> str:
+def _inspected(question: Any, on_step: StepCallback) -> str:
     registry, name, fact = _REGISTRIES[question["kind"]], question["name"], question["fact"]
-    stepping(IMPORT)
+    on_step(IMPORT)
     if fact == PAIR:
         return pair_page(name)
     plugin = registry.load(name)
@@ -78,7 +84,7 @@ def _inspected(question: Any, stepping: Stepping) -> str:
         declared = getattr(plugin, "Config", None)
         required = getattr(declared, "model_fields", {}).values()
         if not any(field.is_required() for field in required):
-            stepping("__init__")
+            on_step("__init__")
             make(registry, name)
     return ""
 

@@ -164,7 +164,7 @@ def _shard(text: str | None) -> "Shard | None":
 def _announcement(suite: "Suite", folder: Path) -> str:
     sizes = (
         (len(suite.scenarios), "scenario"), (len(suite.tracks), "track"),
-        (len(suite.entries), "navigator"), (len(suite.seeds), "seed"),
+        (len(suite.contestants), "navigator"), (len(suite.seeds), "seed"),
     )  # fmt: skip
     product = " × ".join(counted(n, what) for n, what in sizes)
     some = f" (in {len(suite.blocks)} blocks of cells)" if suite.blocks else ""

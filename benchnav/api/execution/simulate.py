@@ -7,8 +7,8 @@ from benchnav.api.records.episode import Episode
 from benchnav.api.records.world import World
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.processes.main_module import stop_import_of_main
-from benchnav.runner.plan.contestant import Meeting
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.contestant import ContestantFactory
+from benchnav.runner.plan.job import Job
 from benchnav.runner.rollouts.rehearsal import perform
 from benchnav.runner.rollouts.seeding import check_salt, draw_salt
 from benchnav.scenario.terms import TRACKS
@@ -38,12 +38,12 @@ def simulate(
             f"{did_you_mean(track, TRACKS)}"
         )
     scenario = world.scenario.record
-    meeting = Meeting((world.record.sensing,), isolate=False, here=True)
-    entry = meeting.entry(navigator_spec(navigator), "navigator")
-    cell = Cell(scenario, world.split, track, entry)
-    if cell.reason:
-        raise UsageError(f"{entry.label!r} cannot be run here: {cell.reason}.")
-    assignment = replace(cell.assignment, salt=_salt(salt))
+    factory = ContestantFactory((world.record.sensing,), isolate=False, here=True)
+    contestant = factory.create(navigator_spec(navigator), "navigator")
+    job = Job(scenario, world.split, track, contestant)
+    if job.reason:
+        raise UsageError(f"{contestant.label!r} cannot be run here: {job.reason}.")
+    assignment = replace(job.assignment, salt=_salt(salt))
     (batch,) = perform(assignment, [(world.seed, world.record)])
     return Episode(batch[0].episode)
 

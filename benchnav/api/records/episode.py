@@ -1,5 +1,6 @@
 """An episode: the record of one run of one navigator in one world."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -17,6 +18,8 @@ from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
     import pandas as pd
+
+    from benchnav.api.records.replay import Replay
 
 
 class Episode:
@@ -107,6 +110,16 @@ class Episode:
         from benchnav.viewer.svg import episode_svg
 
         return episode_svg(self.record)
+
+    def replay(self, agents: "Sequence[int] | None" = None) -> "Replay":
+        """Return a replay: it shows itself in a notebook, and `save` writes it to a file.
+
+        Args:
+            agents: whose senses and charts it holds; None: up to four, failed ones first.
+        """
+        from benchnav.api.records.replay import Replay
+
+        return Replay([self.record], agents)
 
     def _members(self, role: str | None) -> BoolArray:
         """(A,) the agents that are scored in a role."""

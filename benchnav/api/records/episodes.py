@@ -15,6 +15,8 @@ from benchnav.text.plural import counted
 if TYPE_CHECKING:
     import pandas as pd
 
+    from benchnav.api.records.replay import Replay
+
 _SHOWN = 20  # rows in a notebook
 
 
@@ -34,6 +36,11 @@ class Episodes(Sequence[Episode]):
     def __init__(self, places: Sequence[Place], owner: object = None) -> None:
         self._places = tuple(places)
         self._owner = owner  # the run, whose files stay there as long as it does
+
+    @property
+    def places(self) -> tuple[Place, ...]:
+        """The place of each episode: nothing is read for it."""
+        return self._places
 
     def __len__(self) -> int:
         return len(self._places)
@@ -76,6 +83,17 @@ class Episodes(Sequence[Episode]):
         if not frames:
             return pd.DataFrame(columns=[*_KEYS, *_STATES])
         return pd.concat(frames, ignore_index=True)[[*_KEYS, *_STATES]]
+
+    def replay(self, agents: "Sequence[int] | None" = None) -> "Replay":
+        """Return a replay of all of them side by side: at most nine.
+
+        Args:
+            agents: whose senses and charts it holds; None: up to four, failed ones first.
+        """
+        from benchnav.api.records.replay import Replay
+
+        require_few(len(self))
+        return Replay([episode.record for episode in self], agents)
 
     def __repr__(self) -> str:
         navigators = dict.fromkeys(place.navigator for place in self._places)
@@ -139,6 +157,17 @@ def _read(places: Sequence[Place]) -> Iterator[Episode]:
         place = wanted.get(record.identity.seed)
         if place is not None:
             yield Episode(replace(record, identity=replace(record.identity, track=place.track)))
+
+
+def require_few(count: int) -> None:
+    """Raise UsageError unless so many episodes fit side by side."""
+    from benchnav.viewer.replay.page import MOST
+
+    if not 1 <= count <= MOST:
+        raise UsageError(
+            f"A replay shows 1 to {MOST} episodes side by side. Got {count}: name a navigator,"
+            " a scenario, a track or a seed."
+        )
 
 
 def _require(what: str, name: str | None, known: Sequence[str]) -> None:

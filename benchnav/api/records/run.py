@@ -55,7 +55,7 @@ def merge(
     say = silent if quiet else message
     say(f"{counted(merged.copied, 'episode')} copied{again}")
     run = open_run(out)
-    run.tell_missing(say)
+    run.report_missing(say)
     return run
 
 
@@ -220,14 +220,34 @@ class Run:
         scenario: str | None = None,
         track: str | None = None,
         seed: int | None = None,
+        *,
+        failed: bool = False,
+        worst: str | None = None,
     ) -> "Episodes":
         """Return the stored episodes, or those of one navigator, scenario, track or seed.
 
         A scenario may be named with or without version and parameters.
+
+        Args:
+            navigator: its label.
+            scenario: its name.
+            track: the knowledge track.
+            seed: of the world.
+            failed: only those in which an evaluated agent did not succeed.
+            worst: a metric: they come in its order, worst first.
         """
         from benchnav.api.records.episodes import stored_episodes
 
-        return stored_episodes(self.folder, navigator, scenario, track, seed, owner=self)
+        found = stored_episodes(self.folder, navigator, scenario, track, seed, owner=self)
+        if failed:
+            from benchnav.api.records.episode_choice import failed_episodes
+
+            found = failed_episodes(self.folder, found.places, owner=self)
+        if worst is not None:
+            from benchnav.api.records.episode_choice import worst_episodes
+
+            found = worst_episodes(self.folder, found.places, worst, owner=self)
+        return found
 
     def pack(self, out: "str | PathLike[str] | None" = None, *, quiet: bool = False) -> Path:
         """Write the run into one file, with everything that verifying it needs.
@@ -246,7 +266,7 @@ class Run:
             message(f"{size:.1f} MB, content {content_digest(self.folder)}")
         return target
 
-    def tell_missing(self, notify: Any = message) -> None:
+    def report_missing(self, notify: Any = message) -> None:
         """Print which episodes are missing; nothing for a complete run."""
         from benchnav.store.runs.completeness import missing_episodes
 
@@ -262,7 +282,7 @@ class Run:
             )
             every = [self, *others]
             for run in every:
-                run.tell_missing()
+                run.report_missing()
             yield [run.folder for run in every]
 
     def _facts(self) -> list[tuple[str, str]]:

@@ -1,8 +1,11 @@
 """A world: the geometry and the agents of one episode, before it starts."""
 
+from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from benchnav.arena.world import World as Record
+from benchnav.errors import UsageError
 from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
@@ -26,6 +29,19 @@ class World:
         from benchnav.viewer.svg import world_svg
 
         return world_svg(self.record)
+
+    def plot(self, path: "str | PathLike[str]") -> None:
+        """Write a figure of it to ``path``, which ends in .png, .svg or .pdf.
+
+        Raises UsageError for another ending, MissingExtraError if matplotlib is not installed.
+        """
+        from benchnav.viewer.picture import SUFFIXES, is_picture, save
+        from benchnav.viewer.scene_figure import world_figure
+
+        target = Path(path)
+        if not is_picture(target):
+            raise UsageError(f"A picture must end in {', '.join(SUFFIXES)}. Got {target} instead.")
+        save(world_figure(self.record), target)
 
     def __repr__(self) -> str:
         sizes = (

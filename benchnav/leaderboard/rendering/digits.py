@@ -63,7 +63,7 @@ def figures(
     if grid is None:
         text = number(value, whole)
         return text, text, text
-    if not grid.tells_apart(numbers):
+    if not grid.distinguishes(numbers):
         grid = replace(grid, places=grid.places + 1)
     texts = [text if text == "0" else text + suffix for text in grid.texts(numbers)]
     return texts[0], texts[1], texts[2]
@@ -134,7 +134,7 @@ class _Grid:
     places: int
     whole: float | None
 
-    def tells_apart(self, numbers: Sequence[float]) -> bool:
+    def distinguishes(self, numbers: Sequence[float]) -> bool:
         """Whether (value, low, high) stay distinct when rounded."""
         value, low, high = map(self._steps, numbers)
         ends = any(self.hides_end(x) for x in numbers[1:])

@@ -9,9 +9,9 @@ from benchnav.navigation.plugin.plugin_process import (
     CONFIG,
     TIMEOUT,
     Plugin,
-    Stepping,
-    ask_plugins,
-    tell,
+    StepCallback,
+    query_plugins,
+    serve,
 )
 from benchnav.plugins import NAVIGATORS
 from benchnav.processes.channel import Channel
@@ -29,7 +29,7 @@ def check_drivers(*scenarios: Scenario, timeout: float = TIMEOUT) -> None:
     drivers = [list(_drivers(scenario)) for scenario in scenarios]
     away = [driver for group in drivers for driver in group if not _is_known_here(driver)]
     groups = [[d for d in away if d.name == name] for name in dict.fromkeys(d.name for d in away)]
-    answers = ask_plugins(f"{__name__}:tell_drivers", groups, timeout)
+    answers = query_plugins(f"{__name__}:serve_drivers", groups, timeout)
     found = {
         id(driver): answer
         for group, answered in zip(groups, answers, strict=True)
@@ -42,14 +42,14 @@ def check_drivers(*scenarios: Scenario, timeout: float = TIMEOUT) -> None:
             raise ScenarioError("\n".join(complaints))
 
 
-def tell_drivers(channel: Channel, notes: "memoryview[float]") -> None:
+def serve_drivers(channel: Channel, notes: "memoryview[float]") -> None:
     """Check the drivers that the channel requests. Runs in a separate process."""
-    tell(channel, notes, _check)
+    serve(channel, notes, _check)
 
 
-def _check(question: Any, stepping: Stepping) -> None:
+def _check(question: Any, on_step: StepCallback) -> None:
     places = question["places"]
-    stepping(CONFIG)
+    on_step(CONFIG)
     configure(NAVIGATORS, question["spec"], where=lambda key: places.get(key, places[""]))
 
 

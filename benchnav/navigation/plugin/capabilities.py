@@ -20,14 +20,14 @@ from benchnav.errors import BenchnavError, BrokenPluginError, MissingExtraError,
 from benchnav.navigation.command_check import exception_text, short
 from benchnav.navigation.navigator import CommandKind, Navigator, Need, Training
 from benchnav.navigation.plugin.configure import Spec, configure, make, split
-from benchnav.navigation.plugin.plugin_process import CONFIG, IMPORT, Stepping
+from benchnav.navigation.plugin.plugin_process import CONFIG, IMPORT, StepCallback
 from benchnav.navigation.plugin.trace import class_name
 from benchnav.plugins import NAVIGATORS, Source
 
 Line = Annotated[str, AfterValidator(short)]
 
 
-class Introduction(BaseModel):
+class Capabilities(BaseModel):
     """The reported properties as plain data; defaults are the most common values."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
@@ -49,59 +49,61 @@ class Introduction(BaseModel):
     made_of: tuple[Line, ...] = Field((), description="Its distributions, with versions.")
     parts: tuple[Line, ...] = Field((), description="module:attribute of each part's class.")
     unfit: tuple[Line, ...] = Field((), description='Why it cannot use each sensing; "": it can.')
-    lacks: Line = Field("", description="The error that names the missing extra, if any.")
+    missing_extra: Line = Field("", description="The error that names the missing extra, if any.")
 
 
-def introduction(spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = "") -> Introduction:
+def read_capabilities(
+    spec: Spec, sensings: Sequence[Sensing] = (), *, where: str = ""
+) -> Capabilities:
     """Return the properties of the navigator of ``spec``, which is made in this process.
 
-    Arguments and errors are those of `meet`.
+    Arguments and errors are those of `inspect_navigator`.
     """
-    return meet(spec, sensings, where=where)[1]
+    return inspect_navigator(spec, sensings, where=where)[1]
 
 
 def _ignore_step(step: str) -> None:
     """Do nothing."""
 
 
-def meet(
+def inspect_navigator(
     spec: Spec,
     sensings: Sequence[Sensing] = (),
     *,
     where: str = "",
-    stepping: Stepping = _ignore_step,
-) -> tuple[Navigator | None, Introduction]:
+    on_step: StepCallback = _ignore_step,
+) -> tuple[Navigator | None, Capabilities]:
     """Return the navigator of ``spec`` and its properties.
 
     Args:
         spec: a name or ``{type: name, …parameters}``.
         sensings: to check whether it can drive agents with each of them.
         where: the place of the spec, for messages.
-        stepping: called with the name of each step before the step begins.
+        on_step: called with the name of each step before the step begins.
 
     Raises what `make` raises, except for a missing extra: then the navigator is None, and
-    ``lacks`` names the extra. Raises BrokenPluginError also for an invalid property.
+    ``missing_extra`` names it. Raises BrokenPluginError also for an invalid property.
     """
     name, _ = split(NAVIGATORS, spec, where=where)
-    stepping(IMPORT)
+    on_step(IMPORT)
     with suppress(PluginError):  # `configure` raises it with a better message
         NAVIGATORS.load(name)
-    stepping(CONFIG)
+    on_step(CONFIG)
     _, config = configure(NAVIGATORS, spec, where=where)
     full = {"type": name, **config.model_dump(mode="json")}
     source = NAVIGATORS.source(name).distribution
-    stepping("__init__")
+    on_step("__init__")
     try:
         navigator: Navigator = make(NAVIGATORS, spec, where=where)
     except MissingExtraError as error:
-        return None, Introduction(spec=full, made_of=(source,), lacks=str(error))
+        return None, Capabilities(spec=full, made_of=(source,), missing_extra=str(error))
     broken = f"{where + ': ' if where else ''}The navigator {name!r} cannot be used: "
     if not isinstance(navigator, Navigator):
         raise BrokenPluginError(f"{broken}its class makes a {class_name(navigator)}.")
-    reader = _PropertyReader(navigator, broken, stepping)
+    reader = _PropertyReader(navigator, broken, on_step)
     parts = reader.get("parts", _parts)
     try:
-        return navigator, Introduction(
+        return navigator, Capabilities(
             needs=reader.get("required", _needs),
             command=reader.get("command"),
             uses_map=reader.get("uses_map"),
@@ -126,14 +128,14 @@ class _PropertyReader:
 
     navigator: Navigator
     broken: str  # the beginning of messages
-    stepping: Stepping
+    on_step: StepCallback
 
     def get(self, name: str, plain: Callable[[Any], Any] = lambda value: value) -> Any:
         """Return the attribute ``name``, converted by ``plain``.
 
         Raises BrokenPluginError if that fails.
         """
-        self.stepping(name)
+        self.on_step(name)
         try:
             return plain(getattr(self.navigator, name))
         except BenchnavError:

@@ -10,9 +10,19 @@ from pydantic import TypeAdapter, ValidationError
 
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import BenchnavError, PluginError
-from benchnav.navigation.plugin.capabilities import Introduction, invalid_property, meet
+from benchnav.navigation.plugin.capabilities import (
+    Capabilities,
+    inspect_navigator,
+    invalid_property,
+)
 from benchnav.navigation.plugin.configure import Spec, split
-from benchnav.navigation.plugin.plugin_process import TIMEOUT, Plugin, Stepping, ask_plugins, tell
+from benchnav.navigation.plugin.plugin_process import (
+    TIMEOUT,
+    Plugin,
+    StepCallback,
+    query_plugins,
+    serve,
+)
 from benchnav.plugins import NAVIGATORS
 from benchnav.processes.channel import Channel
 from benchnav.source.parts import places_of
@@ -20,16 +30,16 @@ from benchnav.source.parts import places_of
 _SENSINGS = TypeAdapter(list[Sensing])
 
 
-def introductions(
+def read_guarded_capabilities(
     specs: Sequence[tuple[Spec, str]], sensings: Sequence[Sensing], timeout: float = TIMEOUT
-) -> list[Introduction | BenchnavError]:
-    """Return the properties of navigators, or the errors of `meet` for those that fail.
+) -> list[Capabilities | BenchnavError]:
+    """Return the properties of each navigator, or the error of `inspect_navigator`.
 
     Navigators with code of the same modules share a process, which imports the modules once.
 
     Args:
         specs: (spec, its place for messages) of each navigator.
-        sensings: as in `meet`.
+        sensings: as in `inspect_navigator`.
         timeout: [s] that a call of a navigator may last.
     """
     fields = [asdict(sensing) for sensing in sensings]
@@ -46,7 +56,7 @@ def introductions(
     groups: dict[frozenset[str], list[Plugin]] = {}
     for plugin in plugins:
         groups.setdefault(_authors(plugin), []).append(plugin)
-    answers = ask_plugins(f"{__name__}:introduce", list(groups.values()), timeout)
+    answers = query_plugins(f"{__name__}:serve_capabilities", list(groups.values()), timeout)
     found = {
         id(plugin): _understood(plugin, answer)
         for group, answered in zip(groups.values(), answers, strict=True)
@@ -71,23 +81,25 @@ def _written(spec: Spec) -> str:
     return spec if isinstance(spec, str) else str(spec.get("type", ""))
 
 
-def _understood(plugin: Plugin, answer: Any) -> Introduction | BenchnavError:
+def _understood(plugin: Plugin, answer: Any) -> Capabilities | BenchnavError:
     if isinstance(answer, BenchnavError):
         return answer
     try:
-        return Introduction.model_validate_json(answer)
+        return Capabilities.model_validate_json(answer)
     except ValidationError as error:
         return plugin.broken(invalid_property(error).removesuffix("."))
 
 
-def introduce(channel: Channel, notes: "memoryview[float]") -> None:
+def serve_capabilities(channel: Channel, notes: "memoryview[float]") -> None:
     """Send the properties of navigators to the channel. Runs in a separate process."""
-    tell(channel, notes, _properties)
+    serve(channel, notes, _properties)
 
 
-def _properties(question: Any, stepping: Stepping) -> str:
+def _properties(question: Any, on_step: StepCallback) -> str:
     os.environ.clear()  # a navigator that is not in a worker sees the user's environment
     os.environ.update(question["environment"])
     sensings = _SENSINGS.validate_python(question["sensings"])
-    _, introduction = meet(question["spec"], sensings, where=question["where"], stepping=stepping)
-    return introduction.model_dump_json(exclude_defaults=True)
+    _, capabilities = inspect_navigator(
+        question["spec"], sensings, where=question["where"], on_step=on_step
+    )
+    return capabilities.model_dump_json(exclude_defaults=True)

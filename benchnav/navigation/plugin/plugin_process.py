@@ -24,10 +24,10 @@ _STEPS = (
     IMPORT, CONFIG, "__init__", "required", "command", "uses_map", "reproducible", "rehearsal",
     "leader", "training", "fingerprint", "parts", "unfit", "remarks", MEASURING,
 )  # fmt: skip
-Stepping = Callable[[str], None]
+StepCallback = Callable[[str], None]
 """Called with the step of `_STEPS` that begins."""
-Answering = Callable[[Any, Stepping], Any]
-"""(question, stepping) -> answer; question and answer are JSON data."""
+Answerer = Callable[[Any, StepCallback], Any]
+"""(question, on_step) -> answer; question and answer are JSON data."""
 
 
 @dataclass(frozen=True)
@@ -45,13 +45,13 @@ class Plugin:
         return BrokenPluginError(f"{at}The {self.kind} {self.name!r} cannot be used: {cause}.")
 
 
-def ask_plugins(
+def query_plugins(
     target: str, groups: Sequence[Sequence[Plugin]], timeout: float = TIMEOUT
 ) -> list[list[Any]]:
     """Return the answer of each plugin of each group, or a BenchnavError with the reason.
 
     Args:
-        target: "module:function", which calls `tell`.
+        target: "module:function", which calls `serve`.
         groups: each gets one process, which continues after a plugin that raises.
         timeout: [s] that a call of a plugin may last.
     """
@@ -83,14 +83,14 @@ def _understood(plugin: Plugin, answer: Any) -> Any:
     return error
 
 
-def tell(channel: Channel, notes: "memoryview[float]", answering: Answering) -> None:
+def serve(channel: Channel, notes: "memoryview[float]", answerer: Answerer) -> None:
     """Answer the questions of a channel, one by one. Runs in the plugin's process."""
     try:
         folder = Path.cwd()
         for question in channel.receive():
             os.chdir(folder)
             notes[0] = 0.0
-            channel.send(_answer_to(answering, question, lambda step: _note(notes, step)))
+            channel.send(_answer_to(answerer, question, lambda step: _note(notes, step)))
     except (EOFError, ChannelError):
         return  # no more questions
 
@@ -99,9 +99,9 @@ def _note(notes: "memoryview[float]", step: str) -> None:
     notes[0] = float(_STEPS.index(step))
 
 
-def _answer_to(answering: Answering, question: Any, stepping: Stepping) -> dict[str, Any]:
+def _answer_to(answerer: Answerer, question: Any, on_step: StepCallback) -> dict[str, Any]:
     try:
-        return {"answer": answering(question, stepping)}
+        return {"answer": answerer(question, on_step)}
     except BenchnavError as error:
         return {"error": type(error).__name__, "text": plain(error), "trace": trace(error)}
     except BaseException as error:

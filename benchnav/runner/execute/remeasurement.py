@@ -17,9 +17,9 @@ from benchnav.navigation.plugin.plugin_process import (
     IMPORT,
     MEASURING,
     Plugin,
-    Stepping,
-    ask_plugins,
-    tell,
+    StepCallback,
+    query_plugins,
+    serve,
 )
 from benchnav.plugins import METRICS
 from benchnav.processes.channel import Channel
@@ -58,7 +58,7 @@ def recomputed(run: RunFolder, metrics: Sequence[Metric]) -> pa.Table:
         ]
         for name in away
     ]
-    answers = ask_plugins(f"{__name__}:tell_values", groups, _TIMEOUT)
+    answers = query_plugins(f"{__name__}:serve_values", groups, _TIMEOUT)
     for group, answered in zip(groups, answers, strict=True):
         for plugin, answer, batch_rows in zip(group, answered, like, strict=True):
             rows += _rows(plugin, answer, batch_rows)
@@ -93,14 +93,14 @@ def _rows(plugin: Plugin, answer: Any, like: Sequence[_Row]) -> list[_Row]:
     ]  # fmt: skip
 
 
-def tell_values(channel: Channel, notes: "memoryview[float]") -> None:
+def serve_values(channel: Channel, notes: "memoryview[float]") -> None:
     """Run as a separate process: measure the episodes that the channel requests."""
     kept: dict[str, Any] = {"next": 0}
 
-    def values(question: Any, stepping: Stepping) -> list[tuple[float, int, str]]:
-        stepping(IMPORT)
+    def values(question: Any, on_step: StepCallback) -> list[tuple[float, int, str]]:
+        on_step(IMPORT)
         metric = load_metric(question["name"])
-        stepping(MEASURING)
+        on_step(MEASURING)
         batches = kept.setdefault("batches", _batches(RunFolder.open(Path(question["run"]))))
         while kept["next"] <= question["batch"]:
             batch = next(batches)
@@ -108,4 +108,4 @@ def tell_values(channel: Channel, notes: "memoryview[float]") -> None:
         rows = [row for episode in batch for row in measure(episode, [metric])]
         return [(row["value"], row["defined"], row["missing"]) for row in rows]
 
-    tell(channel, notes, values)
+    serve(channel, notes, values)

@@ -53,7 +53,7 @@ def _answer(
     beat()
     try:
         if not task.forced_failure:
-            check.require_same(task.cell.entry)
+            check.require_same(task.job.contestant)
             if registrations:
                 with calling("__init__"):
                     adopt(registrations)

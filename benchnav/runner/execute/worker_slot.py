@@ -123,7 +123,7 @@ class WorkerSlot:
         return task
 
     def _start_worker(self, task: Task) -> None:
-        places = (*task.cell.places, *(value for _, _, value in self._registrations))
+        places = (*task.job.places, *(value for _, _, value in self._registrations))
         self._worker = start_process(
             "benchnav.runner.execute.worker:serve", main=is_of_main(places)
         )
@@ -171,8 +171,8 @@ class WorkerSlot:
                 yield self._failure(f"wrote episodes that cannot be measured: {fields['text']}")
             elif not measuring and kind == "played" and not self._timer.twice:
                 played = _PLAYED.validate_python(fields)
-                if played.lacks:
-                    yield Outcome(0, 0, lacks=played.lacks)
+                if played.missing_extra:
+                    yield Outcome(0, 0, missing_extra=played.missing_extra)
                 else:
                     self._measure(played)
             elif kind in ("refused", "crashed"):

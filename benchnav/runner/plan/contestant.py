@@ -9,9 +9,9 @@ from benchnav.errors import BenchnavError, BrokenPluginError, NavigatorError, Sc
 from benchnav.isolation import isolated
 from benchnav.isolation.subprocess_host import PROCESS
 from benchnav.navigation.navigator import Need, Training
-from benchnav.navigation.plugin.capabilities import Introduction, introduction
+from benchnav.navigation.plugin.capabilities import Capabilities, read_capabilities
 from benchnav.navigation.plugin.configure import Spec, split
-from benchnav.navigation.plugin.guarded_capabilities import introductions
+from benchnav.navigation.plugin.guarded_capabilities import read_guarded_capabilities
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.limits import Limits
 from benchnav.source.digest import FoundSource, find_source
@@ -21,18 +21,18 @@ from benchnav.store.runs.navigator_hash import navigator_hash
 
 
 @dataclass(frozen=True)
-class Entry:
-    """A navigator of a suite."""
+class Contestant:
+    """A navigator of a suite, with its parameters, and the properties that it reports."""
 
     label: str
     spec: Mapping[str, Any]  # {type: name, …every parameter}
     source: str  # distributions and versions of the navigator and its parts
     required: frozenset[Need]
-    lacks: str = ""  # the missing extra that it needs; "" if none is missing
+    missing_extra: str = ""  # the missing extra that it needs; "" if none is missing
     training: Training | None = None
     fingerprint: str = ""  # of the files that it reads
     rehearsal: int = 0  # rehearsals before each episode
-    leader: "Entry | None" = None  # the navigator of the leaders in rehearsals
+    leader: "Contestant | None" = None  # the navigator of the leaders in rehearsals
     uses_map: bool = True
     unfit: Mapping[Sensing, str] = field(default_factory=dict)  # why it cannot use these sensors
     mode: Mode = IN_PROCESS
@@ -51,8 +51,8 @@ class Entry:
 
 
 @dataclass(frozen=True)
-class Meeting:
-    """Asks navigators for their properties, each in a separate process.
+class ContestantFactory:
+    """Creates contestants from specs. Reads the properties of each navigator in a separate process.
 
     Navigators that only this process knows are constructed in this process.
     """
@@ -62,62 +62,66 @@ class Meeting:
     timeout: float = Limits.timeout  # [s] that a call of a navigator may last
     here: bool = False  # whether to construct all in this process, which will run them
 
-    def entry(self, spec: Spec, where: str) -> Entry:
-        """Return the entry that ``spec`` describes; ``where`` is its place, for messages."""
-        return self.entries([(spec, where)])[0]
+    def create(self, spec: Spec, where: str) -> Contestant:
+        """Return the contestant that ``spec`` describes; ``where`` is its place, for messages."""
+        return self.create_all([(spec, where)])[0]
 
-    def entries(self, wanted: Sequence[tuple[Spec, str]]) -> tuple[Entry, ...]:
-        """Return the entries of (spec, place for messages) pairs; navigators run in parallel."""
+    def create_all(self, wanted: Sequence[tuple[Spec, str]]) -> tuple[Contestant, ...]:
+        """Return the contestants of (spec, place for messages) pairs, read in parallel."""
         specs = [(_without_label(spec, where), where) for spec, where in wanted]
-        met = self._introductions(specs)
+        capabilities = self._read_capabilities(specs)
         return tuple(
-            self._entry(label_of(spec), met[k], where) for k, (spec, where) in enumerate(wanted)
+            self._contestant(label_of(spec), capabilities[k], where)
+            for k, (spec, where) in enumerate(wanted)
         )
 
-    def _introductions(self, specs: Sequence[tuple[Spec, str]]) -> dict[int, Introduction]:
+    def _read_capabilities(self, specs: Sequence[tuple[Spec, str]]) -> dict[int, Capabilities]:
         """Return the properties by index. Raises for the first navigator that cannot be used."""
-        found: dict[int, Introduction | BenchnavError] = {}
-        away = []
+        found: dict[int, Capabilities | BenchnavError] = {}
+        separate = []
         for k, (spec, where) in enumerate(specs):
             name, parameters = split(NAVIGATORS, spec, where=where)
             if self.isolate and name != PROCESS:
                 found[k] = _isolated(spec, self.sensings, where)
             elif self.here or local_names({"type": name, **parameters}):
-                found[k] = introduction(spec, self.sensings, where=where)
+                found[k] = read_capabilities(spec, self.sensings, where=where)
             else:
-                away.append(k)
-        answers = introductions([specs[k] for k in away], self.sensings, self.timeout)
-        found.update(zip(away, answers, strict=True))
-        met = {}
+                separate.append(k)
+        answers = read_guarded_capabilities(
+            [specs[k] for k in separate], self.sensings, self.timeout
+        )
+        found.update(zip(separate, answers, strict=True))
+        capabilities = {}
         for k in range(len(specs)):
             reported = found[k]
             if isinstance(reported, NavigatorError):  # raised by the program of a process
                 raise _broken(*specs[k], reported)
             if isinstance(reported, BenchnavError):
                 raise reported
-            met[k] = reported
-        return met
+            capabilities[k] = reported
+        return capabilities
 
-    def _entry(self, label: str, reported: Introduction, where: str) -> Entry:
+    def _contestant(self, label: str, reported: Capabilities, where: str) -> Contestant:
         led = self._leader(reported, where)
         places = tuple(
             sorted({*places_of(reported.spec, reported.parts), *(led.places if led else ())})
         )
         program = reported.spec["type"] == PROCESS
         separate = self.isolate or (program and (led is None or led.mode == ISOLATED))
-        entry = Entry(
-            label, reported.spec, ", ".join(reported.made_of), reported.needs, reported.lacks,
+        contestant = Contestant(
+            label, reported.spec, ", ".join(reported.made_of), reported.needs,
+            missing_extra=reported.missing_extra,
             training=reported.training or (led.training if led else None),
             fingerprint=reported.fingerprint, rehearsal=reported.rehearsal, leader=led,
             unfit=dict(zip(self.sensings, reported.unfit, strict=False)),
             uses_map=reported.uses_map, mode=ISOLATED if separate else IN_PROCESS, places=places,
         )  # fmt: skip
-        if entry.lacks:
-            return entry
-        source = source_of(entry)
-        return replace(entry, source_hash=source.hash, edited=source.edited)
+        if contestant.missing_extra:
+            return contestant
+        source = source_of(contestant)
+        return replace(contestant, source_hash=source.hash, edited=source.edited)
 
-    def _leader(self, reported: Introduction, where: str) -> Entry | None:
+    def _leader(self, reported: Capabilities, where: str) -> Contestant | None:
         """Return the leaders' navigator in rehearsals; None if there are none."""
         if not reported.rehearsal:
             return None
@@ -125,7 +129,7 @@ class Meeting:
             raise ScenarioError(
                 f"{where}: A navigator that asks for rehearsals must name the leaders' navigator."
             )
-        led = self.entry(reported.leader, f"{where} leader")
+        led = self.create(reported.leader, f"{where} leader")
         if led.rehearsal:
             raise ScenarioError(
                 f"{where}: The leaders' navigator must not ask for rehearsals itself."
@@ -144,9 +148,9 @@ def _without_label(spec: Spec, where: str) -> Spec:
     return {key: value for key, value in spec.items() if key != "label"}
 
 
-def _isolated(spec: Spec, sensings: Sequence[Sensing], where: str) -> Introduction:
+def _isolated(spec: Spec, sensings: Sequence[Sensing], where: str) -> Capabilities:
     try:
-        return isolated.introduction(spec, sensings, where=where)
+        return isolated.read_capabilities(spec, sensings, where=where)
     except NavigatorError as error:
         raise _broken(spec, where, error) from None
 
@@ -155,10 +159,10 @@ def _broken(spec: Spec, where: str, error: NavigatorError) -> BrokenPluginError:
     return BrokenPluginError(f"{where}: The navigator {label_of(spec)!r} cannot be used: {error}.")
 
 
-def source_of(entry: Entry) -> FoundSource:
-    """Return the current source of ``entry`` on this machine."""
-    specs = [entry.spec, *([entry.leader.spec] if entry.leader else [])]
-    return find_source(entry.places, specs)
+def source_of(contestant: Contestant) -> FoundSource:
+    """Return the current source of ``contestant`` on this machine."""
+    specs = [contestant.spec, *([contestant.leader.spec] if contestant.leader else [])]
+    return find_source(contestant.places, specs)
 
 
 def label_of(spec: Spec) -> str:
@@ -168,28 +172,28 @@ def label_of(spec: Spec) -> str:
     return str(spec.get("label", spec.get("type", "")))
 
 
-def sources_of(entries: Iterable[Entry]) -> dict[str, dict[str, Any]]:
+def sources_of(contestants: Iterable[Contestant]) -> dict[str, dict[str, Any]]:
     """Return the source of each navigator whose source is known, by label, for the manifest."""
     return {
-        entry.label: {"hash": entry.source_hash, "places": list(entry.places)}
-        for entry in entries
-        if entry.source_hash
+        contestant.label: {"hash": contestant.source_hash, "places": list(contestant.places)}
+        for contestant in contestants
+        if contestant.source_hash
     }
 
 
-def resolved(entry: Entry) -> dict[str, Any]:
-    """Return all properties of an entry, for the manifest."""
+def resolved(contestant: Contestant) -> dict[str, Any]:
+    """Return all properties of a contestant, for the manifest."""
     fields: dict[str, Any] = {
-        "label": entry.label, "says": dict(entry.spec), "source": entry.source,
+        "label": contestant.label, "config": dict(contestant.spec), "source": contestant.source,
     }  # fmt: skip
-    if entry.mode != IN_PROCESS:
-        fields["mode"] = entry.mode
-    if entry.leader:
-        fields["rehearsal"], fields["leader"] = entry.rehearsal, resolved(entry.leader)
-    if entry.training:
-        fields["training"] = asdict(entry.training)
-    if not entry.uses_map:
+    if contestant.mode != IN_PROCESS:
+        fields["mode"] = contestant.mode
+    if contestant.leader:
+        fields["rehearsal"], fields["leader"] = contestant.rehearsal, resolved(contestant.leader)
+    if contestant.training:
+        fields["training"] = asdict(contestant.training)
+    if not contestant.uses_map:
         fields["uses_map"] = False
-    if entry.fingerprint:
-        fields["fingerprint"] = entry.fingerprint
+    if contestant.fingerprint:
+        fields["fingerprint"] = contestant.fingerprint
     return fields

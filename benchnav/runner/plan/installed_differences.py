@@ -76,7 +76,7 @@ def _of_scenario(identity: str, found: str) -> Iterator[Caveat]:
 
 
 def _of_navigator(entry: Mapping[str, Any]) -> Iterator[Caveat]:
-    label, kind = str(entry["label"]), str(entry["says"].get("type"))
+    label, kind = str(entry["label"]), str(entry["config"].get("type"))
     if label in NAVIGATORS.names() and kind != label:
         yield Caveat(
             f"The label {_short(label)} stands for the navigator {_short(kind)}, not for the one of"
@@ -126,7 +126,7 @@ def _members(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
     """Yield the scenarios, tracks and navigators that are missing, added or changed."""
     suite = manifest.suite
     own = {label_of(spec): spec for spec in here.navigators}
-    entries = {str(e["label"]): e["says"] for e in suite.get("navigators", ())}
+    entries = {str(e["label"]): e["config"] for e in suite.get("navigators", ())}
     changed = {label for label in own if label in entries and not _fits(own[label], entries[label])}
     for what, run, installed in (
         ("scenario", {_named(e["scenario"]) for e in suite["scenarios"]},

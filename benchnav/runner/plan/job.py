@@ -1,4 +1,4 @@
-"""A cell of a suite: one scenario, track and navigator, for all seeds."""
+"""Jobs: the cells of a suite, each with one scenario, track and navigator, for all seeds."""
 
 import hashlib
 import json
@@ -10,7 +10,7 @@ from benchnav.generation.build import sensing_of
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner.plan.contestant import Entry
+from benchnav.runner.plan.contestant import Contestant
 from benchnav.runner.rollouts.rollout import Assignment
 from benchnav.scenario.sampling.sampler import support
 from benchnav.scenario.scenario import Scenario
@@ -19,49 +19,49 @@ from benchnav.store.runs.manifest import ISOLATED
 
 
 @dataclass(frozen=True)
-class Cell:
-    """One scenario × track × navigator."""
+class Job:
+    """A cell of a suite to run: one scenario × track × navigator, with all seeds."""
 
     scenario: Scenario
     split: str
     track: str
-    entry: Entry
+    contestant: Contestant
     also: tuple[str, ...] = ()  # other tracks with the same episodes, as no map is used
 
     @property
     def assignment(self) -> Assignment:
         """The navigator, the scenario and the track."""
-        scenario, entry = self.scenario, self.entry
+        scenario, contestant = self.scenario, self.contestant
         return Assignment(
-            scenario.identity, scenario.hash, self.split, self.track, entry.label, entry.spec,
-            scenario.driver_specs,
-            navigator_hash=entry.hash, source_hash=entry.source_hash, rehearsals=entry.rehearsal,
-            leader=entry.leader.spec if entry.leader else None,
-            isolated=entry.mode == ISOLATED,
+            scenario.identity, scenario.hash, self.split, self.track, contestant.label,
+            contestant.spec, scenario.driver_specs, navigator_hash=contestant.hash,
+            source_hash=contestant.source_hash, rehearsals=contestant.rehearsal,
+            leader=contestant.leader.spec if contestant.leader else None,
+            isolated=contestant.mode == ISOLATED,
         )  # fmt: skip
 
     @property
     def places(self) -> tuple[str, ...]:
         """The places, module:attribute, of the classes of all its navigators and their parts."""
         others = (place for spec in self.scenario.driver_specs for place in places_of(_full(spec)))
-        return (*self.entry.places, *others)
+        return (*self.contestant.places, *others)
 
     @property
     def once(self) -> bool:
         """Whether all tracks of the scenario have the same episodes."""
-        return not self.entry.uses_map and self.track in self.scenario.granted_tracks
+        return not self.contestant.uses_map and self.track in self.scenario.granted_tracks
 
     @property
     def contest(self) -> tuple[str, str]:
         """The scenario, and the navigator's label."""
-        return self.scenario.identity, self.entry.label
+        return self.scenario.identity, self.contestant.label
 
     @property
     def key(self) -> str:
         """The name of its folder: readable, with a hash of its scenario, track and navigator."""
         a = self.assignment
         text = json.dumps(
-            [a.scenario, a.scenario_hash, a.split, a.track, a.label, dict(self.entry.spec)]
+            [a.scenario, a.scenario_hash, a.split, a.track, a.label, dict(self.contestant.spec)]
         )
         parts = (_slug(a.scenario), a.track, _slug(a.label))
         return ".".join(parts) + "." + hashlib.sha256(text.encode()).hexdigest()[:10]
@@ -69,32 +69,32 @@ class Cell:
     @property
     def reason(self) -> str:
         """The reason why it is n/a; "" if it can run."""
-        if self.entry.lacks:
-            return self.entry.lacks
+        if self.contestant.missing_extra:
+            return self.contestant.missing_extra
         if self.track not in self.scenario.granted_tracks:
             return f"the scenario has no track {self.track!r}"
-        led = self.entry.leader
-        why = self._unfit(self.entry)
+        led = self.contestant.leader
+        why = self._unfit(self.contestant)
         if why or led is None:
             return why
-        why = led.lacks or self._unfit(led)
+        why = led.missing_extra or self._unfit(led)
         return f"its leaders' {led.label} {why}" if why else ""
 
-    def _unfit(self, entry: Entry) -> str:
+    def _unfit(self, contestant: Contestant) -> str:
         """Return why a navigator cannot use the map and the sensors; "" if it can."""
-        if Need.MAP in entry.required and self.track == "unknown":
+        if Need.MAP in contestant.required and self.track == "unknown":
             return "needs a map"
-        return entry.unfit.get(sensing_of(self.scenario), "")
+        return contestant.unfit.get(sensing_of(self.scenario), "")
 
     @property
     def effort(self) -> float:
         """The expected relative duration of an episode; the longest tasks start first."""
         agents = sum(support(team.count)[1] for team in self.scenario.teams)
-        planning = 4.0 if Need.MAP in self.entry.required else 1.0
+        planning = 4.0 if Need.MAP in self.contestant.required else 1.0
         effort = agents * self.scenario.clock.steps * planning
-        if self.entry.leader is not None:
-            led = replace(self, entry=self.entry.leader)
-            effort += self.entry.rehearsal * led.effort * self._led / agents
+        if self.contestant.leader is not None:
+            led = replace(self, contestant=self.contestant.leader)
+            effort += self.contestant.rehearsal * led.effort * self._led / agents
         return effort
 
     @property

@@ -8,7 +8,7 @@ from typing import Any
 from benchnav.errors import RunConflictError, UsageError
 from benchnav.processes.process_tree import memory_is_known
 from benchnav.runner.plan.contestant import sources_of
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.shard import Shard
 from benchnav.runner.plan.suite import Suite
@@ -30,16 +30,16 @@ def refuse_limits(workers: int | None, timeout: float | None, memory: float | No
 
 
 def planned(
-    suite: Suite, cells: list[Cell], wanted: Mapping[str, set[int]], shard: Shard | None
+    suite: Suite, jobs: list[Job], wanted: Mapping[str, set[int]], shard: Shard | None
 ) -> Manifest:
     """Return the manifest of a new run of the seeds ``wanted`` of each cell, without limits."""
-    stored_cells: list[dict[str, Any]] = [_cell_fields(cell) for cell in cells]
+    stored_cells: list[dict[str, Any]] = [_fields_of_cell(job) for job in jobs]
     if shard is not None:
-        for cell in stored_cells:
-            cell["seeds"] = spans(wanted.get(cell["key"], ()))
+        for fields in stored_cells:
+            fields["seeds"] = spans(wanted.get(fields["key"], ()))
     return Manifest(
         suite.resolved(), tuple(stored_cells), suite.salt or draw_salt(), shard=str(shard or ""),
-        sources=sources_of(suite.entries), provenance=provenance(),
+        sources=sources_of(suite.contestants), provenance=provenance(),
     )  # fmt: skip
 
 
@@ -94,12 +94,12 @@ def _limits(otherwise: Limits, timeout: float | None, memory: float | None) -> L
         raise UsageError(f"The limit {error}.") from None
 
 
-def _cell_fields(cell: Cell) -> dict[str, Any]:
+def _fields_of_cell(job: Job) -> dict[str, Any]:
     return {
-        "key": cell.key,
-        "scenario": cell.scenario.identity,
-        "track": cell.track,
-        "navigator": cell.entry.label,
-        "reason": cell.reason,
-        **({"also": list(cell.also)} if cell.also else {}),
+        "key": job.key,
+        "scenario": job.scenario.identity,
+        "track": job.track,
+        "navigator": job.contestant.label,
+        "reason": job.reason,
+        **({"also": list(job.also)} if job.also else {}),
     }

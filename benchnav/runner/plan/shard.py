@@ -5,7 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from heapq import heapify, heapreplace
 
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.task import chunks
 
 MOST = 10_000
@@ -31,17 +31,17 @@ class Shard:
     def __str__(self) -> str:
         return f"{self.index}/{self.count}"
 
-    def seeds(self, cells: Iterable[Cell], seeds: Sequence[int]) -> dict[str, set[int]]:
+    def seeds(self, jobs: Iterable[Job], seeds: Sequence[int]) -> dict[str, set[int]]:
         """Return the seeds of this share for each cell, by key.
 
         Whole tasks are assigned, the longest first, to the share with the least work. Cells that
         are n/a are left out.
         """
         tasks = [
-            (cell.effort * (stop - first), cell.key, first, stop)
-            for cell in cells
-            if not cell.reason
-            for first, stop in chunks(seeds, cell.effort)
+            (job.effort * (stop - first), job.key, first, stop)
+            for job in jobs
+            if not job.reason
+            for first, stop in chunks(seeds, job.effort)
         ]
         tasks.sort(key=lambda task: (-task[0], *task[1:]))
         loads = [(0.0, index) for index in range(1, self.count + 1)]

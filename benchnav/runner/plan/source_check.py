@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from benchnav.errors import RunConflictError
-from benchnav.runner.plan.contestant import Entry, source_of
+from benchnav.runner.plan.contestant import Contestant, source_of
 from benchnav.source.parts import live_object
 
 
@@ -13,16 +13,16 @@ class SourceCheck:
 
     _checked: set[str] = field(default_factory=set)  # hashes
 
-    def require_same(self, entry: Entry) -> None:
+    def require_same(self, contestant: Contestant) -> None:
         """Raise RunConflictError if the code of ``entry`` was edited since the run began."""
-        known = not entry.source_hash or entry.source_hash in self._checked
-        if known or any(live_object(place) is not None for place in entry.places):
+        known = not contestant.source_hash or contestant.source_hash in self._checked
+        if known or any(live_object(place) is not None for place in contestant.places):
             return
-        found = source_of(entry).hash
-        if found != entry.source_hash:
+        found = source_of(contestant).hash
+        if found != contestant.source_hash:
             raise RunConflictError(
-                f"The source of {entry.label!r} must stay as it is until a worker process has"
-                f" imported it. It was {entry.source_hash} when the run began, and is {found}"
+                f"The source of {contestant.label!r} must stay as it is until a worker process has"
+                f" imported it. It was {contestant.source_hash} when the run began, and is {found}"
                 " where this worker runs. All stored episodes are safe; run the same suite again."
             )
-        self._checked.add(entry.source_hash)
+        self._checked.add(contestant.source_hash)

@@ -16,8 +16,8 @@ from benchnav.errors import (
 from benchnav.generation.build import sensing_of
 from benchnav.navigation.plugin.background_navigators import check_drivers
 from benchnav.navigation.plugin.configure import Spec
-from benchnav.runner.plan.contestant import Entry, Meeting, label_of, resolved
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.contestant import Contestant, ContestantFactory, label_of, resolved
+from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.labels import labelled
 from benchnav.runner.plan.limits import patience
 from benchnav.runner.plan.suite_file import SuiteFile, is_scenario, parse_seeds, suite_path
@@ -50,11 +50,11 @@ class Block:
     tracks: tuple[str, ...]
     navigators: tuple[str, ...]  # labels
 
-    def __contains__(self, cell: Cell) -> bool:
+    def __contains__(self, job: Job) -> bool:
         return (
-            cell.scenario.identity in self.scenarios
-            and cell.track in self.tracks
-            and cell.entry.label in self.navigators
+            job.scenario.identity in self.scenarios
+            and job.track in self.tracks
+            and job.contestant.label in self.navigators
         )
 
 
@@ -68,33 +68,33 @@ class Suite:
     seeds: range
     scenarios: tuple[Scenario, ...]
     tracks: tuple[str, ...]
-    entries: tuple[Entry, ...]
+    contestants: tuple[Contestant, ...]
     salt: str = ""  # of navigators' randomness; empty: each new run draws its own
     blocks: tuple[Block, ...] = ()  # the parts of the product to run; empty: all of it
 
-    def cells(self) -> Iterator[Cell]:
+    def jobs(self) -> Iterator[Job]:
         """Yield all cells, also n/a ones, by scenario, track and navigator.
 
         A navigator that uses no map runs once for all tracks, in the last track of a scenario.
         """
         whole = [
-            cell
+            job
             for scenario in self.scenarios
             for track in self.tracks
-            for entry in self.entries
-            if (cell := Cell(scenario, self.split, track, entry)) in self
+            for contestant in self.contestants
+            if (job := Job(scenario, self.split, track, contestant)) in self
         ]
         shared: dict[tuple[str, str], list[str]] = {}  # tracks with the same episodes
-        for cell in whole:
-            if cell.once:
-                shared.setdefault(cell.contest, []).append(cell.track)
-        for cell in whole:
-            tracks = shared[cell.contest] if cell.once else [cell.track]
-            if cell.track == tracks[-1]:
-                yield replace(cell, also=tuple(tracks[:-1]))
+        for job in whole:
+            if job.once:
+                shared.setdefault(job.contest, []).append(job.track)
+        for job in whole:
+            tracks = shared[job.contest] if job.once else [job.track]
+            if job.track == tracks[-1]:
+                yield replace(job, also=tuple(tracks[:-1]))
 
-    def __contains__(self, cell: Cell) -> bool:
-        return not self.blocks or any(cell in block for block in self.blocks)
+    def __contains__(self, job: Job) -> bool:
+        return not self.blocks or any(job in block for block in self.blocks)
 
     def resolved(self) -> dict[str, Any]:
         """Return all that affects results except the salt, as plain data for the manifest."""
@@ -107,13 +107,13 @@ class Suite:
                 {
                     "scenario": s.identity,
                     "hash": s.hash,
-                    "says": s.model_dump(mode="json"),
+                    "config": s.model_dump(mode="json"),
                     "files": {name: sha256_of(path) for name, path in s.named_files().items()},
                 }
                 for s in self.scenarios
             ],
             "tracks": list(self.tracks),
-            "navigators": [resolved(entry) for entry in self.entries],
+            "navigators": [resolved(contestant) for contestant in self.contestants],
             **({"blocks": [asdict(block) for block in self.blocks]} if self.blocks else {}),
         }
 
@@ -153,10 +153,10 @@ def _selected(
     else:
         scenarios = tuple(find(name, folder) for name in file.scenarios)
     check_drivers(*scenarios, timeout=patience(timeout))
-    meeting = Meeting(
+    factory = ContestantFactory(
         tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate, patience(timeout)
     )
-    entries = meeting.entries(
+    contestants = factory.create_all(
         [
             (spec, "navigators" if i is None else document.where(("navigators", i)))
             for i, spec in wanted
@@ -167,12 +167,12 @@ def _selected(
     for key, names, selected in (
         ("scenarios", [s.identity for s in scenarios], selection.scenarios),
         ("tracks", tracks, selection.tracks),
-        ("navigators", [e.label for e in entries], selection.navigators),
+        ("navigators", [e.label for e in contestants], selection.navigators),
     ):
         _refuse_twice(key, names, selected, document)
     seeds = _seeds(selection.seeds or str(file.seeds))
     salt = _salt(selection.salt)
-    suite = Suite(file.name, file.version, file.split, seeds, scenarios, tracks, entries, salt)
+    suite = Suite(file.name, file.version, file.split, seeds, scenarios, tracks, contestants, salt)
     return replace(suite, blocks=_blocks(file, suite, document, folder)) if file.blocks else suite
 
 
@@ -192,7 +192,9 @@ def _blocks(file: SuiteFile, suite: Suite, document: Document, folder: Path) -> 
     added = (
         tuple(s.identity for s in suite.scenarios if s.identity not in identities.values()),
         tuple(track for track in suite.tracks if track not in file.tracks),
-        tuple(entry.label for entry in suite.entries if entry.label not in labels),
+        tuple(
+            contestant.label for contestant in suite.contestants if contestant.label not in labels
+        ),
     )
     blocks = []
     for i, block in enumerate(file.blocks):

@@ -17,7 +17,7 @@ from benchnav.plugins import Registration
 from benchnav.runner.execute.call_timer import beat
 from benchnav.runner.execute.measurement import failed_metrics, measured, tracebacks_of
 from benchnav.runner.plan.estimate import Load
-from benchnav.runner.plan.job import Cell
+from benchnav.runner.plan.job import Job
 from benchnav.runner.rollouts.latency import latency, peak_memory
 from benchnav.runner.rollouts.rehearsal import Performance, perform
 from benchnav.runner.rollouts.rollout import Assignment, Seeded
@@ -27,14 +27,14 @@ from benchnav.store.parts.staged import check_rehearsals, staged_episodes
 
 Tick = Callable[[int], None]
 CHUNK = 64  # seeds of a task: many for a fast lockstep, few because an interruption loses them
-EFFORT = 4_000_000  # agent-decisions of a task, as estimated by `Cell.effort`
+EFFORT = 4_000_000  # agent-decisions of a task, as estimated by `Job.effort`
 
 
 @dataclass(frozen=True)
 class Task:
     """Runs seeds first … stop - 1 of a cell and stores them as one part."""
 
-    cell: Cell
+    job: Job
     folder: Path  # of the cell
     first: int
     stop: int
@@ -47,7 +47,7 @@ class Task:
     @property
     def assignment(self) -> Assignment:
         """The navigator, the scenario and the track, with the salt of the run."""
-        return replace(self.cell.assignment, salt=self.salt)
+        return replace(self.job.assignment, salt=self.salt)
 
     @property
     def seeds(self) -> range:
@@ -57,21 +57,21 @@ class Task:
     @property
     def process_key(self) -> str:
         """A key that is equal for tasks of the same navigators, which may share a process."""
-        entry = self.cell.entry
-        return repr((entry.label, entry.hash, entry.source_hash, self.cell.scenario.driver_specs))
+        job, own = self.job, self.job.contestant
+        return repr((own.label, own.hash, own.source_hash, job.scenario.driver_specs))
 
     @property
     def load(self) -> Load:
         """Its load, for the estimate of the remaining time."""
-        return Load(self.cell.entry.label, self.cell.effort * len(self.seeds))
+        return Load(self.job.contestant.label, self.job.effort * len(self.seeds))
 
     @property
     def max_calls(self) -> int:
         """The largest possible number of calls of navigators and of built worlds."""
-        cell, seeds = self.cell, len(self.seeds)
-        drivers = 1 + len(cell.scenario.driver_specs)
-        passes = (1 + cell.entry.rehearsal) * seeds * (seeds.bit_length() + 2) + 1
-        return drivers * passes * (cell.scenario.clock.steps + 10) + 10 * seeds + 100
+        job, seeds = self.job, len(self.seeds)
+        drivers = 1 + len(job.scenario.driver_specs)
+        passes = (1 + job.contestant.rehearsal) * seeds * (seeds.bit_length() + 2) + 1
+        return drivers * passes * (job.scenario.clock.steps + 10) + 10 * seeds + 100
 
     def one_by_one(self) -> list["Task"]:
         """Return one task for each seed."""
@@ -90,7 +90,7 @@ class Outcome:
     )  # (seed, team): its leader never succeeded
     remarks: tuple[tuple[int, str], ...] = field(default=())  # (seed, remark of the navigator)
     missing: tuple[tuple[str, str], ...] = field(default=())  # (metric, reason), for each value
-    lacks: str = ""  # the missing extra, and its installation; if given, nothing was stored
+    missing_extra: str = ""  # the missing extra, and its installation; if given, nothing was stored
     tracebacks: Mapping[str, str] = field(default_factory=dict)  # one for each kind of reason
 
 
@@ -112,7 +112,7 @@ class Played:
     """The facts about written episodes that the episodes do not contain."""
 
     unled: tuple[tuple[int, str], ...] = ()
-    lacks: str = ""
+    missing_extra: str = ""
 
 
 @dataclass(frozen=True)
@@ -139,8 +139,8 @@ def work(task: Task, tick: Tick = lambda _: None) -> Outcome:
         StoreError: the disk cannot be written.
     """
     played = play(task)
-    if played.lacks:
-        return Outcome(0, 0, lacks=played.lacks)
+    if played.missing_extra:
+        return Outcome(0, 0, missing_extra=played.missing_extra)
     return measure_part(task, played, lambda episodes: _measured_here(episodes, tick))
 
 
@@ -149,14 +149,14 @@ def play(task: Task) -> Played:
     try:
         return _play(task)
     except MissingExtraError as error:
-        return Played(lacks=str(error))
+        return Played(missing_extra=str(error))
 
 
 def _play(task: Task) -> Played:
-    cell = task.cell
+    job = task.job
     if task.assignment.isolated:
         sandbox.hide_memory()  # before the memory holds salt and seeds
-    worlds = [(seed, _built(cell, seed)) for seed in task.seeds]
+    worlds = [(seed, _built(job, seed)) for seed in task.seeds]
     unled: list[tuple[int, str]] = []
     with EpisodeFiles(Part(task.folder, task.first, task.stop)) as files:
         for batch in perform(task.assignment, worlds, task.forced_failure):
@@ -168,9 +168,9 @@ def _play(task: Task) -> Played:
     return Played(tuple(sorted(unled)))
 
 
-def _built(cell: Cell, seed: int) -> World:
+def _built(job: Job, seed: int) -> World:
     beat()
-    return build(cell.scenario, cell.split, seed)
+    return build(job.scenario, job.split, seed)
 
 
 def measure_part(

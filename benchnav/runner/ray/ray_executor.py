@@ -142,12 +142,12 @@ class _RayJobs:
         self.ray.kill(actor)
         if task is not None:
             self.progress.drop(id(actor))
-            key = task.cell.key, task.first
+            key = task.job.key, task.first
             self.losses[key] += 1
             if self.losses[key] > MAX_LOSSES:
                 raise BenchnavError(
                     f"{MAX_LOSSES + 1} machines failed while they ran seeds {task.first} to"
-                    f" {task.stop - 1} of {task.cell.key}. Message of Ray: {error}"
+                    f" {task.stop - 1} of {task.job.key}. Message of Ray: {error}"
                 )
             self.pending.appendleft(task)
         if self.pending and self.idle:  # a new actor may not get a core
@@ -157,7 +157,7 @@ class _RayJobs:
 
     def _files(self, task: Task) -> Any:
         """Return the files of its scenario, by name; each is sent to a machine once."""
-        scenario = task.cell.scenario
+        scenario = task.job.scenario
         if scenario.hash not in self.files:
             found = {name: path.read_bytes() for name, path in scenario.named_files().items()}
             self.files[scenario.hash] = self.ray.put(found)

@@ -60,7 +60,7 @@ class RayWorker:
     def work(self, task: Task, files: Mapping[str, bytes]) -> list[Delivery] | Refusal:
         """Run a task. ``files`` are those of its scenario, for machines that do not have them."""
         try:
-            here = replace(task, folder=self._home.path / "parts" / task.cell.key)
+            here = replace(task, folder=self._home.path / "parts" / task.job.key)
             finished = self._pool.run([self._staged(here, files)])
             return [self._delivery(task, piece, outcome) for piece, outcome in finished]
         except BenchnavError as error:
@@ -77,12 +77,12 @@ class RayWorker:
             if path.exists():
                 files[path.name.removeprefix(part.stem)] = path.read_bytes()
                 path.unlink()
-        done = replace(piece, folder=original.folder, cell=original.cell)
+        done = replace(piece, folder=original.folder, job=original.job)
         return Delivery(done, outcome, files)
 
     def _staged(self, task: Task, files: Mapping[str, bytes]) -> Task:
         """Return the task with a scenario whose files exist on this machine."""
-        scenario = task.cell.scenario
+        scenario = task.job.scenario
         if all((scenario.folder / name).is_file() for name in files):
             return task
         home = self._home.path
@@ -93,4 +93,4 @@ class RayWorker:
                 (home / FOLDER / shas[name]).write_bytes(content)
             self._folders[scenario.hash] = stage_files(home, shas, Path(mkdtemp(dir=home)))
         moved = scenario.moved_to(self._folders[scenario.hash])
-        return replace(task, cell=replace(task.cell, scenario=moved))
+        return replace(task, job=replace(task.job, scenario=moved))

@@ -16,11 +16,12 @@ from benchnav.errors import CorruptPartError, NoRunError, ScenarioError, StoreEr
 from benchnav.navigation.command_check import short
 from benchnav.store.bounded import bounded_json
 from benchnav.store.runs import checked_json
+from benchnav.store.runs.config_key import RENAMED_IN, new_form, old_form
 from benchnav.store.runs.manifest_schema import ManifestSchema
 from benchnav.store.runs.run_path import RunPath, run_path
 
-SCHEMA = 5  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source;
-#            5: provenance
+SCHEMA = 6  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source;
+#            5: provenance; 6: key `config`
 MANIFEST = "manifest.json"
 MAX_BYTES = 64 << 20  # of a manifest
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
@@ -58,8 +59,11 @@ class Manifest:
 
     @property
     def suite_hash(self) -> str:
-        """The sha256 of the resolved suite; only runs with equal hashes may share a folder."""
-        text = json.dumps(self.suite, sort_keys=True, separators=(",", ":"))
+        """The sha256 of the resolved suite; only runs with equal hashes may share a folder.
+
+        It is computed with the old name of the key `config`, so that old runs keep their hash.
+        """
+        text = json.dumps(old_form(self.suite), sort_keys=True, separators=(",", ":"))
         return hashlib.sha256(text.encode()).hexdigest()
 
     @property
@@ -92,7 +96,10 @@ class Manifest:
 
     def dump(self) -> str:
         """Return the JSON text of `MANIFEST`."""
-        return checked_json.dump({**asdict(self), "suite_hash": self.suite_hash})
+        fields = {**asdict(self), "suite_hash": self.suite_hash}
+        if self.schema < RENAMED_IN:
+            fields["suite"] = old_form(fields["suite"])
+        return checked_json.dump(fields)
 
 
 def versions() -> dict[str, str]:
@@ -134,6 +141,8 @@ def parse_manifest(text: str, path: Path) -> Manifest:
     try:
         fields = checked_json.load(text)
         _refuse_newer(path, fields)
+        if _is_old(fields.get("schema")):
+            fields["suite"] = new_form(fields.get("suite"))
         validate(ManifestSchema, Document(str(path), fields, Place(1)))
         manifest = Manifest(
             fields["suite"], tuple(fields["cells"]), fields.get("salt", ""),
@@ -162,6 +171,10 @@ def _refuse_newer(path: Path, fields: Mapping[str, Any]) -> None:
         f"{path}: schema must be at most {SCHEMA}. Got {shown(schema)} instead:"
         f" benchnav {shown(version)} wrote it; install that version."
     )
+
+
+def _is_old(schema: object) -> bool:
+    return type(schema) is int and schema < RENAMED_IN
 
 
 def _without_files(entry: Mapping[str, Any]) -> dict[str, Any]:

@@ -45,7 +45,7 @@ class _ScenarioConfig(BaseModel):
 class _Scenario(_Part):
     scenario: Identity
     hash: Short
-    says: _ScenarioConfig
+    config: _ScenarioConfig
     files: dict[Annotated[str, Field(max_length=500)], Hex64] = {}
 
 
@@ -56,7 +56,7 @@ class _Training(_Part):
 
 class _Entry(_Part):
     label: Label
-    says: dict[str, Any]
+    config: dict[str, Any]
     source: Text
     mode: Literal["in-process", "isolated"] = "in-process"
     training: _Training | None = None

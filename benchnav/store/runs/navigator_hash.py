@@ -27,6 +27,6 @@ def hash_of_entry(entry: Mapping[str, Any]) -> str:
     """Return the hash of a navigator from its manifest entry."""
     leader = hash_of_entry(entry["leader"]) if "leader" in entry else ""
     return navigator_hash(
-        entry["says"], str(entry["source"]), str(entry.get("fingerprint", "")), leader,
+        entry["config"], str(entry["source"]), str(entry.get("fingerprint", "")), leader,
         str(entry.get("mode", IN_PROCESS)),
     )  # fmt: skip

@@ -16,7 +16,7 @@ def sampled(checks: Sequence[PartCheck], count: int) -> list[list[int]]:
     waiting: dict[str, list[tuple[int, int, int]]] = defaultdict(list)
     for i, check in enumerate(checks):
         for turn, seed in enumerate(check.part.seeds):
-            waiting[check.cell.scenario.identity].append((turn, i, seed))
+            waiting[check.job.scenario.identity].append((turn, i, seed))
     queues = [sorted(queue) for _, queue in sorted(waiting.items())]
     for round_ in range(max(map(len, queues), default=0)):
         for queue in queues:

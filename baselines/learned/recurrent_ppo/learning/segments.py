@@ -69,7 +69,7 @@ class Training:
             progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
         else:
             checkpoint.save(self.folder, self.learner, progress)
-        self._tell()
+        self._report()
         curve = Curve(self.folder, progress.decisions)
         try:
             while progress.stage < len(self.recipe.stages):
@@ -88,7 +88,7 @@ class Training:
         if resume and not there:
             raise UsageError(f"{self.folder} must hold a checkpoint to resume from. It does not.")
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         """Write everything that is needed to repeat the training."""
         fields = {
             "recipe": self.recipe.model_dump(mode="json"), "hash": self.recipe.hash,

@@ -7,8 +7,8 @@ import pytest
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import BrokenPluginError
 from benchnav.navigation.plugin import plugin_process
-from benchnav.navigation.plugin.capabilities import Introduction
-from benchnav.navigation.plugin.guarded_capabilities import introductions
+from benchnav.navigation.plugin.capabilities import Capabilities
+from benchnav.navigation.plugin.guarded_capabilities import read_guarded_capabilities
 from benchnav.processes.fork_server import fork_server
 
 HEAD = """
@@ -82,7 +82,7 @@ def asked(folder, monkeypatch, modules, specs, timeout=1.0):
         (folder / f"{name}.py").write_text(HEAD + code)
     monkeypatch.syspath_prepend(folder)
     fork_server()  # its start does not count
-    return introductions([(spec, "here") for spec in specs], SENSINGS, timeout)
+    return read_guarded_capabilities([(spec, "here") for spec in specs], SENSINGS, timeout)
 
 
 def is_broken(answer, spec, cause):
@@ -113,8 +113,8 @@ def test_what_misbehaves_is_broken_and_the_others_are_met(place, tmp_path, monke
             specs.append(f"hostile:C{k}")
     modules["good"] = ""
     *answers, good, orca = asked(tmp_path, monkeypatch, modules, [*specs, "good:Good", "orca"])
-    assert isinstance(good, Introduction)
-    assert isinstance(orca, Introduction)
+    assert isinstance(good, Capabilities)
+    assert isinstance(orca, Capabilities)
     for spec, answer, (_, cause) in zip(specs, answers, MISDEEDS.values(), strict=True):
         assert is_broken(answer, spec, cause)
 
@@ -132,11 +132,11 @@ def test_a_lie_is_named(tmp_path, monkeypatch):
 
 def test_an_import_has_more_time_than_a_call(tmp_path, monkeypatch):
     (answer,) = asked(tmp_path, monkeypatch, {"slow": "time.sleep(0.5)"}, ["slow:Good"], 0.2)
-    assert isinstance(answer, Introduction)
+    assert isinstance(answer, Capabilities)
 
 
 def test_what_a_plugin_prints_never_reaches_stdout(tmp_path, monkeypatch, capfd):
     code = "print('printed')\nos.write(1, b'written')"
     (answer,) = asked(tmp_path, monkeypatch, {"loud": code}, ["loud:Good"])
-    assert isinstance(answer, Introduction)
+    assert isinstance(answer, Capabilities)
     assert capfd.readouterr().out == ""

@@ -1,0 +1,129 @@
+"""A replay: episodes that a browser plays side by side and in step."""
+
+import os
+import webbrowser
+from collections.abc import Sequence
+from functools import cached_property
+from html import escape
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchnav.api.output.text_table import written
+from benchnav.arrays import IntArray
+from benchnav.episode.episode import Episode as Record
+from benchnav.errors import UsageError, did_you_mean
+
+PAGE, GIF, FILM = ".html", ".gif", ".mp4"
+MCAP, RERUN = ".mcap", ".rrd"
+FIGURES = (".png", ".svg", ".pdf")
+SUFFIXES = (PAGE, *FIGURES, GIF, FILM, RERUN, MCAP)
+
+
+class Replay:
+    """One page with everything in it: it opens from disk without a network."""
+
+    def __init__(self, records: Sequence[Record], agents: Sequence[int] | None = None) -> None:
+        """Take 1 to 9 episodes; ``agents`` are those whose senses and charts are held."""
+        self._records = tuple(records)
+        self._agents = agents
+
+    @cached_property
+    def scenes(self) -> list[dict[str, Any]]:
+        """The content of the page, one entry an episode."""
+        from benchnav.viewer.replay.scene import scene
+
+        return [scene(record, self._chosen_agents(record)) for record in self._records]
+
+    @cached_property
+    def html(self) -> str:
+        """The page."""
+        from benchnav.viewer.replay.page import replay_page
+
+        return replay_page(self.scenes)
+
+    def save(self, path: "str | PathLike[str]", times: Sequence[float] = ()) -> Path:
+        """Write the replay to a file, in the format of its ending, and return its path.
+
+        Args:
+            path: ends in .html (a page), .gif or .mp4 (a moving picture), .png, .svg or .pdf (a
+                figure), .rrd (for the Rerun viewer) or .mcap (for Foxglove).
+            times: [s] of a figure with snapshots in a row; none: one picture with trails.
+
+        Raises UsageError for another ending or a wrong time, StoreError if the file cannot be
+        written, MissingExtraError if a picture is wanted and matplotlib is not installed.
+        """
+        target = Path(path)
+        suffix = target.suffix.lower()
+        if suffix not in SUFFIXES:
+            raise UsageError(
+                f"The file of a replay must end in {', '.join(SUFFIXES)}."
+                f" Got {target} instead.{did_you_mean(suffix, SUFFIXES)}"
+            )
+        if times and suffix not in FIGURES:
+            raise UsageError(f"Times are for a figure: .png, .svg or .pdf. Got {target} instead.")
+        if suffix == PAGE:
+            written(self.html, target)
+        elif suffix in (GIF, FILM):
+            from benchnav.viewer.animation import save_gif, save_mp4
+
+            (save_gif if suffix == GIF else save_mp4)(self._records, target)
+        elif suffix in (MCAP, RERUN):
+            self._save_recording(target, suffix)
+        else:
+            from benchnav.viewer.picture import save
+            from benchnav.viewer.scene_figure import episode_figure
+
+            save(episode_figure(self._records, times), target)
+        return target
+
+    def _save_recording(self, path: Path, suffix: str) -> None:
+        """Write one episode for a 3-D viewer."""
+        from benchnav.viewer.recordings.mcap_log import save_mcap
+        from benchnav.viewer.recordings.rerun_log import save_rerun
+
+        if len(self._records) > 1:
+            raise UsageError(
+                f"A {suffix} file holds one episode. Got {len(self._records)}: name one navigator."
+            )
+        (record,) = self._records
+        save = save_mcap if suffix == MCAP else save_rerun
+        save(record, self._chosen_agents(record), path)
+
+    def _chosen_agents(self, record: Record) -> IntArray:
+        """Return the agents (n,) whose senses are shown."""
+        from benchnav.viewer.replay.scene import interesting
+
+        _require_agents(self._agents, len(record.world.agents))
+        return interesting(record) if self._agents is None else np.array(self._agents, np.int64)
+
+    def __repr__(self) -> str:
+        names = ", ".join(record.identity.navigator for record in self._records)
+        first = self._records[0].identity
+        return f"Replay({names} in {first.scenario!r}, track={first.track!r}, seed={first.seed})"
+
+    def _repr_html_(self) -> str:
+        return (
+            f'<iframe srcdoc="{escape(self.html)}" style="width: 100%; height: 640px; border: 0"'
+            ' title="replay"></iframe>'
+        )
+
+
+def page_name(*words: str) -> str:
+    """Return a file name made of ``words``, in letters that every system allows."""
+    text = "-".join(words)
+    return "".join(c if c.isalnum() or c in "-_." else "-" for c in text)[:120] + PAGE
+
+
+def open_in_browser(path: Path) -> bool:
+    """Open a page if this session has a display; return whether a browser took it."""
+    has_display = os.name == "nt" or any(os.environ.get(n) for n in ("DISPLAY", "WAYLAND_DISPLAY"))
+    return has_display and webbrowser.open(path.resolve().as_uri())
+
+
+def _require_agents(agents: Sequence[int] | None, count: int) -> None:
+    wrong = [agent for agent in agents or () if not 0 <= agent < count]
+    if wrong:
+        raise UsageError(f"Agents are numbered from 0 to {count - 1} here. Got {wrong[0]} instead.")

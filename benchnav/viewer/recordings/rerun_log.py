@@ -1,0 +1,118 @@
+"""An episode as a recording for the Rerun viewer: a 3-D scene and charts over time.
+
+Entities: ``arena`` and ``bodies/M`` (meshes), ``agents`` (cylinders), ``trails/A``, ``hits/A`` (ray
+hits) and ``charts/collision_probability/A`` of the agents whose senses are recorded. x and y lie
+on the floor [m], z is up; the timeline ``time`` is that of the episode [s].
+"""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchnav.arena.solid import Kind
+from benchnav.arrays import IntArray
+from benchnav.episode.episode import Episode
+from benchnav.errors import MissingExtraError, StoreError
+from benchnav.metrics.quantities.trajectory import cut
+from benchnav.system.plain_file import require_writable
+from benchnav.viewer.recordings.extrusion import AGENT_HEIGHT, extrude
+from benchnav.viewer.recordings.palette import Color, color_of_kind, color_of_team
+from benchnav.viewer.replay.senses import Senses, sensed
+
+_FLOOR = 0.02  # [m] trails are drawn so far above the floor
+_EYE = 0.3  # [m] height of rays
+
+
+def save_rerun(episode: Episode, agents: IntArray, path: Path) -> None:
+    """Write an episode, with the senses of ``agents`` (n,), to a Rerun file. No viewer is started.
+
+    Raises MissingExtraError without the library, StoreError if the file cannot be written.
+    """
+    try:
+        import rerun
+    except ImportError as error:
+        raise MissingExtraError("A Rerun file", "rerun") from error
+    try:
+        require_writable(path)
+        path.open("wb").close()
+    except OSError as error:
+        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+    identity = episode.identity
+    stream = rerun.RecordingStream(
+        "benchnav",
+        recording_id=f"{identity.navigator}-{identity.scenario}-{identity.track}-{identity.seed}",
+    )
+    stream.save(str(path))
+    _log_arena(rerun, stream, episode)
+    _log_motion(rerun, stream, episode)
+    found = sensed(episode, agents)
+    if found is not None:
+        _log_senses(rerun, stream, episode, found)
+    stream.flush()
+    stream.disconnect()
+
+
+def _log_arena(rerun: Any, stream: Any, episode: Episode) -> None:
+    world = episode.world
+    stream.log("/", rerun.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+    for n, solid in enumerate(world.solids):
+        mesh = _mesh(rerun, extrude(solid, world.bounds), color_of_kind(Kind(solid.kind)))
+        stream.log(f"arena/{n}", mesh, static=True)
+    for m, body in enumerate(world.bodies):
+        mesh = _mesh(rerun, extrude(body.solid, world.bounds), color_of_kind(Kind(body.solid.kind)))
+        stream.log(f"bodies/{m}", mesh, static=True)
+
+
+def _mesh(rerun: Any, mesh: Any, color: Color) -> Any:
+    return rerun.Mesh3D(
+        vertex_positions=mesh.vertices, triangle_indices=mesh.triangles,
+        albedo_factor=[*color, 1.0],
+    )  # fmt: skip
+
+
+def _log_motion(rerun: Any, stream: Any, episode: Episode) -> None:
+    agents, leaves = episode.world.agents, cut(episode).leaves
+    colors = np.array([color_of_team(int(team)) for team in agents.team])
+    for t, time in enumerate(episode.times):
+        stream.set_time("time", duration=float(time))
+        for m, place in enumerate(episode.body_position[t]):
+            stream.log(f"bodies/{m}", rerun.Transform3D(translation=[*place, 0.0]))
+        here = np.flatnonzero(t < leaves)
+        centers = np.column_stack(
+            [episode.position[t, here], np.full(len(here), 0.5 * AGENT_HEIGHT)]
+        )
+        discs = rerun.Cylinders3D(
+            lengths=np.full(len(here), AGENT_HEIGHT), radii=agents.radius[here], centers=centers,
+            colors=(255 * colors[here]).astype(np.uint8), fill_mode="solid",
+            labels=[str(a) for a in here], show_labels=False,
+        )  # fmt: skip
+        stream.log("agents", discs)
+        stream.log("trails", _trails(rerun, episode, t, here, colors))
+
+
+def _trails(rerun: Any, episode: Episode, t: int, here: IntArray, colors: Any) -> Any:
+    first = max(0, t - round(6.0 / episode.world.clock.dt))
+    lines = [
+        np.column_stack([episode.position[first : t + 1, a], np.full(t + 1 - first, _FLOOR)])
+        for a in here
+    ]
+    return rerun.LineStrips3D(lines, colors=(255 * colors[here]).astype(np.uint8), radii=0.03)
+
+
+def _log_senses(rerun: Any, stream: Any, episode: Episode, found: Senses) -> None:
+    for t, time in enumerate(episode.times):
+        stream.set_time("time", duration=float(time))
+        for n, agent in enumerate(found.agents):
+            if found.probability is not None:
+                scalar = rerun.Scalars(float(found.probability[t, n]))
+                stream.log(f"charts/collision_probability/{agent}", scalar)
+            if found.distance is None or found.kind is None:
+                continue
+            hit = found.kind[t, n] != int(Kind.NOTHING)
+            angle = episode.heading[t, agent] + found.angle[hit]
+            ends = episode.position[t, agent] + found.distance[t, n, hit, None] * np.column_stack(
+                [np.cos(angle), np.sin(angle)]
+            )
+            points = np.column_stack([ends, np.full(len(ends), _EYE)])
+            stream.log(f"hits/{agent}", rerun.Points3D(points, radii=0.06, colors=[204, 0, 51]))

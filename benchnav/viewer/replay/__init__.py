@@ -1,0 +1,1 @@
+"""Replays: episodes as pages that a browser plays from disk, without a network."""

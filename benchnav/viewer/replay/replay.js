@@ -1,0 +1,649 @@
+"use strict";
+// Plays the episodes in the element #scenes, side by side and in step, on one canvas each.
+
+/** @typedef {{shape: number[], quantum: number, data: string}} Packed */
+
+const TEAMS = ["#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d00", "#7a5195", "#4d4d4d"];
+const ACTIVE = 0, ARRIVED = 1;
+const TRAIL = 6; // [s] length of the trail behind an agent
+const FLASH = 0.6; // [s] that a contact stays marked after its end
+const CROWD = 200; // with more agents, trails are short and headings are not drawn
+
+const colours = getComputedStyle(document.documentElement);
+const colour = (name) => colours.getPropertyValue(`--${name}`).trim();
+
+/** @param {Packed} packed @return {Promise<Float32Array>} values, time is the last axis */
+async function unpack(packed) {
+  const bytes = Uint8Array.from(atob(packed.data), (c) => c.charCodeAt(0));
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const planes = new Uint8Array(await new Response(stream).arrayBuffer());
+  const size = planes.length / 4;
+  const times = packed.shape[0];
+  const out = new Float32Array(size);
+  let sum = 0;
+  for (let i = 0; i < size; i++) {
+    const z = (planes[i] | (planes[i + size] << 8) | (planes[i + 2 * size] << 16) | (planes[i + 3 * size] << 24)) >>> 0;
+    const step = z & 1 ? -(z >>> 1) - 1 : z >>> 1;
+    sum = i % times === 0 ? step : sum + step;
+    out[i] = sum * packed.quantum;
+  }
+  return out;
+}
+
+/** @param {object} object @return {Promise<object>} the same with arrays for packed values */
+async function unpackAll(object) {
+  const entries = Object.entries(object).map(async ([key, value]) => {
+    const isPacked = value && typeof value === "object" && "data" in value && "quantum" in value;
+    if (isPacked) return [key, Object.assign(await unpack(value), { shape: value.shape })];
+    const nested = value && typeof value === "object" && !Array.isArray(value);
+    return [key, nested ? await unpackAll(value) : value];
+  });
+  return Object.fromEntries(await Promise.all(entries));
+}
+
+/** @return {HTMLElement} an element with attributes and children; text is never read as HTML */
+function element(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else made.setAttribute(name, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+/** The area of loops, as a path that is filled by the even-odd rule. */
+function outline(shape, bounds, margin) {
+  const path = new Path2D();
+  if (shape.disc) {
+    path.arc(shape.disc[0], shape.disc[1], shape.disc[2], 0, 2 * Math.PI);
+    return path;
+  }
+  let area = 0;
+  for (const loop of shape.loops) {
+    for (let i = 0; i < loop.length; i += 2) {
+      const j = (i + 2) % loop.length;
+      area += loop[i] * loop[j + 1] - loop[j] * loop[i + 1];
+      if (i === 0) path.moveTo(loop[0], loop[1]);
+      else path.lineTo(loop[i], loop[i + 1]);
+    }
+    path.closePath();
+  }
+  // A negative area is the outside of a walled arena: fill it up to a frame.
+  if (area < 0) path.rect(bounds[0] - margin, bounds[1] - margin, bounds[2] - bounds[0] + 2 * margin, bounds[3] - bounds[1] + 2 * margin);
+  return path;
+}
+
+/** One episode: its data, its canvas, and how to draw it at a time. */
+class View {
+  constructor(scene, replay) {
+    this.scene = scene;
+    this.replay = replay;
+    this.times = scene.position.shape[0];
+    this.count = scene.position.shape[1];
+    this.canvas = element("canvas", { tabindex: "0", "aria-label": `Top view: ${scene.navigator} in ${scene.scenario}` });
+    this.context = this.canvas.getContext("2d");
+    this.caption = element("div", { class: "caption" });
+    this.node = element("div", { class: "view" }, this.canvas, this.caption);
+    const [x0, y0, x1, y1] = scene.bounds;
+    this.margin = 0.015 * Math.max(x1 - x0, y1 - y0);
+    this.solids = scene.solids.map((s) => [s.kind, outline(s, scene.bounds, this.margin)]);
+    this.bodies = scene.bodies.map((s) => [s.kind, outline(s, scene.bounds, this.margin)]);
+    this.map = scene.map && scene.map.map((s) => outline(s, scene.bounds, this.margin));
+    this.laws = this.motionPaths();
+    this.reset();
+    this.listen();
+  }
+
+  get duration() { return (this.times - 1) * this.scene.dt; }
+
+  motionPaths() {
+    return this.scene.bodies.map((_, m) => {
+      const path = new Path2D();
+      for (let k = 0; k < this.times; k++) {
+        const [x, y] = this.bodyAt(m, k);
+        if (k === 0) path.moveTo(x, y); else path.lineTo(x, y);
+      }
+      return path;
+    });
+  }
+
+  reset() { this.zoom = 1; this.shift = [0, 0]; }
+
+  /** Value of a series (…, row, time) between two states. */
+  value(array, row, k) {
+    const low = Math.min(Math.floor(k), this.times - 1), high = Math.min(low + 1, this.times - 1);
+    const at = row * this.times;
+    return array[at + low] + (array[at + high] - array[at + low]) * (k - low);
+  }
+  at(a, k) { return [this.value(this.scene.position, 2 * a, k), this.value(this.scene.position, 2 * a + 1, k)]; }
+  bodyAt(m, k) { return [this.value(this.scene.body_position, 2 * m, k), this.value(this.scene.body_position, 2 * m + 1, k)]; }
+  /** The exact value at the last state, for what must not be interpolated. */
+  exact(array, row, k) { return array[row * this.times + Math.min(Math.floor(k + 1e-6), this.times - 1)]; }
+  status(a, k) { return this.exact(this.scene.status, a, k); }
+  present(a, k) { return k < this.scene.agents.leaves[a]; }
+  teamColour(a) { return TEAMS[this.scene.agents.team[a] % TEAMS.length]; }
+
+  /** Scale [pixels per metre] and origin of the picture. */
+  frame() {
+    const [x0, y0, x1, y1] = this.scene.bounds, m = 2 * this.margin;
+    const wide = this.canvas.clientWidth, high = this.canvas.clientHeight;
+    const scale = this.zoom * Math.min(wide / (x1 - x0 + 2 * m), (high - 30) / (y1 - y0 + 2 * m));
+    const x = wide / 2 - scale * (0.5 * (x0 + x1) - this.shift[0]);
+    const y = (high + 26) / 2 + scale * (0.5 * (y0 + y1) - this.shift[1]);
+    return { scale, x, y };
+  }
+  toWorld(event) {
+    const { scale, x, y } = this.frame();
+    return [(event.offsetX - x) / scale, (y - event.offsetY) / scale];
+  }
+
+  listen() {
+    const pointers = new Map();
+    let moved = 0;
+    this.canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.zoomAt(event, Math.exp(-event.deltaY * 0.0015));
+    }, { passive: false });
+    this.canvas.addEventListener("pointerdown", (event) => {
+      this.canvas.setPointerCapture(event.pointerId);
+      pointers.set(event.pointerId, event);
+      moved = 0;
+    });
+    this.canvas.addEventListener("pointermove", (event) => {
+      const before = pointers.get(event.pointerId);
+      if (!before) return;
+      const others = [...pointers.values()].filter((p) => p.pointerId !== event.pointerId);
+      if (others.length) {
+        const gap = (p) => Math.hypot(p.offsetX - others[0].offsetX, p.offsetY - others[0].offsetY);
+        this.zoomAt(event, gap(event) / Math.max(1, gap(before)));
+      } else {
+        const { scale } = this.frame();
+        this.shift[0] += (event.offsetX - before.offsetX) / scale;
+        this.shift[1] -= (event.offsetY - before.offsetY) / scale;
+      }
+      moved += Math.abs(event.offsetX - before.offsetX) + Math.abs(event.offsetY - before.offsetY);
+      pointers.set(event.pointerId, event);
+      this.replay.draw();
+    });
+    const release = (event) => {
+      if (pointers.delete(event.pointerId) && event.type === "pointerup" && moved < 6) this.click(event);
+    };
+    this.canvas.addEventListener("pointerup", release);
+    this.canvas.addEventListener("pointercancel", release);
+  }
+
+  zoomAt(event, factor) {
+    const before = this.toWorld(event);
+    this.zoom = Math.min(80, Math.max(0.5, this.zoom * factor));
+    const after = this.toWorld(event);
+    this.shift[0] += after[0] - before[0];
+    this.shift[1] += after[1] - before[1];
+    this.replay.draw();
+  }
+
+  click(event) {
+    const [x, y] = this.toWorld(event), k = this.replay.time / this.scene.dt;
+    let found = -1, least = Infinity;
+    for (let a = 0; a < this.count; a++) {
+      const [ax, ay] = this.at(a, k);
+      const gap = Math.hypot(ax - x, ay - y);
+      if (gap < least && gap < this.scene.agents.radius[a] + 10 / this.frame().scale) [found, least] = [a, gap];
+    }
+    this.replay.select(this, found);
+  }
+
+  draw(time) {
+    const k = Math.min(time / this.scene.dt, this.times - 1);
+    const ratio = window.devicePixelRatio || 1, c = this.context;
+    const wide = Math.round(this.canvas.clientWidth * ratio), high = Math.round(this.canvas.clientHeight * ratio);
+    if (this.canvas.width !== wide || this.canvas.height !== high) [this.canvas.width, this.canvas.height] = [wide, high];
+    const { scale, x, y } = this.frame();
+    c.setTransform(1, 0, 0, 1, 0, 0);
+    c.clearRect(0, 0, wide, high);
+    c.setTransform(ratio * scale, 0, 0, -ratio * scale, ratio * x, ratio * y);
+    const pixel = 1 / scale, show = this.replay.show;
+    this.drawSolids(c, pixel, k);
+    if (show.map && this.map) this.drawMap(c, pixel);
+    if (show.trails) this.drawTrails(c, pixel, k);
+    if (show.goals) this.drawGoals(c, pixel, k);
+    if (show.senses) this.drawSenses(c, pixel, k);
+    this.drawAgents(c, pixel, k);
+    this.drawContacts(c, pixel, time);
+    this.describe(k);
+  }
+
+  drawSolids(c, pixel, k) {
+    for (const [kind, path] of this.solids) {
+      c.fillStyle = c.strokeStyle = colour(kind === "wall" ? "wall" : "static");
+      c.lineWidth = 1.2 * pixel;
+      c.fill(path, "evenodd");
+      c.stroke(path); // a thin wall has no area
+    }
+    c.lineWidth = pixel;
+    c.strokeStyle = colour("mover");
+    c.setLineDash([3 * pixel, 4 * pixel]);
+    c.globalAlpha = 0.6;
+    for (const path of this.laws) c.stroke(path);
+    c.globalAlpha = 1;
+    c.setLineDash([]);
+    this.bodies.forEach(([kind, path], m) => {
+      const [x, y] = kind === "static" ? [this.exact(this.scene.body_position, 2 * m, k), this.exact(this.scene.body_position, 2 * m + 1, k)] : this.bodyAt(m, k);
+      c.save();
+      c.translate(x, y);
+      c.fillStyle = colour(kind === "static" ? "static" : "mover");
+      c.fill(path, "evenodd");
+      c.restore();
+    });
+  }
+
+  drawMap(c, pixel) {
+    c.strokeStyle = "#e6c300";
+    c.lineWidth = 2.5 * pixel;
+    for (const path of this.map) c.stroke(path);
+  }
+
+  /** One path for each team: a crowd of a thousand stays fast. */
+  drawTrails(c, pixel, k) {
+    const seconds = this.count > CROWD ? 1 : TRAIL;
+    const first = Math.max(0, Math.floor(k - seconds / this.scene.dt));
+    const stride = this.count > CROWD ? 2 : 1;
+    this.byTeam((team, members) => {
+      c.beginPath();
+      for (const a of members) {
+        if (!this.present(a, k)) continue;
+        const [sx, sy] = this.at(a, first);
+        c.moveTo(sx, sy);
+        for (let j = first + stride; j < k; j += stride) {
+          const row = 2 * a * this.times + j;
+          c.lineTo(this.scene.position[row], this.scene.position[row + this.times]);
+        }
+        const [x, y] = this.at(a, k);
+        c.lineTo(x, y);
+      }
+      c.strokeStyle = TEAMS[team % TEAMS.length];
+      c.globalAlpha = 0.5;
+      c.lineWidth = 2 * pixel;
+      c.stroke();
+      c.globalAlpha = 1;
+    });
+  }
+
+  drawGoals(c, pixel, k) {
+    const { goal, radius } = this.scene.agents;
+    this.byTeam((team, members) => {
+      c.beginPath();
+      for (const a of members) {
+        const r = Math.max(radius[a], 4 * pixel), [x, y] = goal[a];
+        if (this.count > CROWD && this.status(a, k) !== ACTIVE) continue;
+        c.moveTo(x + r, y);
+        c.arc(x, y, r, 0, 2 * Math.PI);
+      }
+      c.strokeStyle = TEAMS[team % TEAMS.length];
+      c.lineWidth = 1.3 * pixel;
+      c.globalAlpha = this.count > CROWD ? 0.3 : 0.9;
+      if (this.count <= CROWD) c.setLineDash([4 * pixel, 3 * pixel]); // dashes are slow
+      c.stroke();
+      c.setLineDash([]);
+      c.globalAlpha = 1;
+    });
+  }
+
+  drawAgents(c, pixel, k) {
+    const { radius } = this.scene.agents;
+    this.byTeam((team, members) => {
+      const discs = new Path2D(), headings = new Path2D(), still = new Path2D();
+      for (const a of members) {
+        if (!this.present(a, k)) continue;
+        const [x, y] = this.at(a, k), r = radius[a];
+        const over = this.status(a, k) !== ACTIVE;
+        const path = over ? still : discs;
+        path.moveTo(x + r, y);
+        path.arc(x, y, r, 0, 2 * Math.PI);
+        if (this.count > CROWD) continue;
+        const heading = this.value(this.scene.heading, a, k);
+        headings.moveTo(x, y);
+        headings.lineTo(x + 1.6 * r * Math.cos(heading), y + 1.6 * r * Math.sin(heading));
+      }
+      c.fillStyle = c.strokeStyle = TEAMS[team % TEAMS.length];
+      c.fill(discs);
+      c.lineWidth = 1.5 * pixel;
+      c.stroke(still);
+      c.strokeStyle = colour("ink");
+      c.stroke(headings);
+    });
+    const chosen = this.replay.selected;
+    if (chosen && chosen.agent < this.count && this.replay.sameWorld(chosen.view, this)) {
+      const [x, y] = this.at(chosen.agent, k);
+      c.beginPath();
+      c.arc(x, y, radius[chosen.agent] + 4 * pixel, 0, 2 * Math.PI);
+      c.strokeStyle = colour("ink");
+      c.lineWidth = 2 * pixel;
+      c.stroke();
+    }
+  }
+
+  drawSenses(c, pixel, k) {
+    const chosen = this.replay.selected, senses = this.scene.senses;
+    if (!senses || !chosen || chosen.view !== this) return;
+    const agents = this.scene.charts.agents, n = agents.indexOf(chosen.agent);
+    if (n < 0 || this.status(chosen.agent, k) !== ACTIVE) return;
+    const [x, y] = this.at(chosen.agent, Math.floor(k));
+    if (senses.distance) {
+      const rays = senses.angle.length, heading = this.exact(this.scene.heading, chosen.agent, k);
+      c.lineWidth = pixel;
+      for (let r = 0; r < rays; r++) {
+        const length = this.exact(senses.distance, n * rays + r, k), angle = heading + senses.angle[r];
+        const hit = this.exact(senses.hit, n * rays + r, k) > 0;
+        const ex = x + length * Math.cos(angle), ey = y + length * Math.sin(angle);
+        c.strokeStyle = colour("soft");
+        c.beginPath(); c.moveTo(x, y); c.lineTo(ex, ey); c.stroke();
+        if (!hit) continue;
+        c.fillStyle = colour("hit");
+        c.beginPath(); c.arc(ex, ey, 3 * pixel, 0, 2 * Math.PI); c.fill();
+      }
+    }
+    if (senses.edges) {
+      const slots = senses.edges.shape[2];
+      c.strokeStyle = colour("accent");
+      c.lineWidth = 3 * pixel;
+      c.beginPath();
+      for (let e = 0; e < slots; e++) {
+        const row = this.exact(senses.edges, n * slots + e, k);
+        if (row < 0) continue;
+        const [ax, ay, bx, by] = senses.edge_table[row];
+        c.moveTo(ax, ay); c.lineTo(bx, by);
+      }
+      c.stroke();
+    }
+    if (senses.neighbours) {
+      const slots = senses.neighbours.shape[2];
+      c.strokeStyle = colour("accent");
+      c.lineWidth = 1.5 * pixel;
+      c.setLineDash([2 * pixel, 3 * pixel]);
+      c.beginPath();
+      for (let s = 0; s < slots; s++) {
+        const who = this.exact(senses.neighbours, n * slots + s, k);
+        if (who < 0) continue;
+        const [nx, ny] = who < this.count ? this.at(who, Math.floor(k)) : this.bodyAt(who - this.count, Math.floor(k));
+        c.moveTo(x, y); c.lineTo(nx, ny);
+      }
+      c.stroke();
+      c.setLineDash([]);
+    }
+  }
+
+  drawContacts(c, pixel, time) {
+    for (const event of this.scene.events) {
+      if (event.kind !== "contact" || time < event.time || time > event.end + FLASH) continue;
+      const fade = Math.max(0, 1 - Math.max(0, time - event.end) / FLASH), k = time / this.scene.dt;
+      const [x, y] = this.at(event.agent, k);
+      c.globalAlpha = 0.25 + 0.75 * fade;
+      c.strokeStyle = colour("hit");
+      c.lineWidth = 3 * pixel;
+      c.beginPath();
+      c.arc(x, y, this.scene.agents.radius[event.agent] + 6 * pixel, 0, 2 * Math.PI);
+      if (event.with === "agent" || event.partner < 0) {
+        const [px, py] = event.with === "agent" ? this.at(event.partner, k) : this.bodyAt(-1 - event.partner, k);
+        c.moveTo(x, y); c.lineTo(px, py);
+      }
+      c.stroke();
+      c.globalAlpha = 1;
+    }
+  }
+
+  describe(k) {
+    const { evaluated } = this.scene.agents;
+    let total = 0, arrived = 0;
+    for (let a = 0; a < this.count; a++) {
+      if (!evaluated[a]) continue;
+      total++;
+      if (this.status(a, k) === ARRIVED) arrived++;
+    }
+    const { navigator, scenario, track, seed } = this.scene;
+    const text = `${arrived} of ${total} arrived`;
+    if (this.caption.dataset.text === text) return;
+    this.caption.dataset.text = text;
+    const where = this.replay.views.length > 1 && this.replay.views[0] !== this && this.replay.sameWorld(this.replay.views[0], this)
+      ? ` · ${text}` : ` · ${scenario} · ${track} · seed ${seed} · ${text}`;
+    this.caption.replaceChildren(element("b", {}, navigator), element("span", {}, where));
+  }
+
+  byTeam(action) {
+    if (!this.members) {
+      this.members = new Map();
+      this.scene.agents.team.forEach((team, a) => {
+        if (!this.members.has(team)) this.members.set(team, []);
+        this.members.get(team).push(a);
+      });
+    }
+    this.members.forEach((members, team) => action(team, members));
+  }
+}
+
+/** The page: views, time, controls, events and charts. */
+class Replay {
+  constructor(scenes, root) {
+    this.time = 0;
+    this.speed = 1;
+    this.playing = false;
+    this.selected = null;
+    this.show = { trails: true, goals: true, senses: true, map: false };
+    this.views = scenes.map((scene) => new View(scene, this));
+    this.duration = Math.max(...this.views.map((view) => view.duration));
+    this.dt = this.views[0].scene.dt;
+    this.build(root);
+    const first = this.views[0].scene.charts.agents[0];
+    this.select(this.views[0], first === undefined ? -1 : first);
+    this.readAddress();
+    new ResizeObserver(() => this.draw()).observe(this.grid);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
+    document.addEventListener("keydown", (event) => this.key(event));
+    this.draw();
+  }
+
+  /** The part of the address after #, such as t=4.2&agent=3: where to begin. */
+  readAddress() {
+    const words = new URLSearchParams(location.hash.slice(1));
+    const agent = Number.parseInt(words.get("agent"), 10), time = Number.parseFloat(words.get("t"));
+    if (agent >= 0 && agent < this.views[0].count) this.select(this.views[0], agent);
+    if (Number.isFinite(time)) this.seek(time);
+  }
+
+  sameWorld(one, other) {
+    return one === other || (one.scene.scenario === other.scene.scenario && one.scene.seed === other.scene.seed);
+  }
+
+  build(root) {
+    const columns = Math.ceil(Math.sqrt(this.views.length));
+    this.grid = element("div", { class: "views", style: `--columns: ${columns}` });
+    this.grid.append(...this.views.map((view) => view.node));
+    this.side = element("aside", { class: "side" });
+    root.append(this.grid, this.side, this.bar());
+    this.panel = element("div", { class: "panel" });
+    this.side.append(this.panel, this.toggles(), ...this.eventList());
+  }
+
+  bar() {
+    this.playButton = element("button", { class: "play", title: "Space", onclick: () => this.toggle() }, "Play");
+    this.slider = element("input", {
+      type: "range", min: "0", max: String(this.duration), step: String(this.dt / 4), value: "0", "aria-label": "Time",
+      oninput: () => { this.pause(); this.seek(Number(this.slider.value)); },
+    });
+    this.clock = element("span", { class: "clock" });
+    const speeds = element("select", { "aria-label": "Speed", onchange: (e) => { this.speed = Number(e.target.value); } },
+      ...[0.25, 0.5, 1, 2, 4, 8].map((s) => element("option", s === 1 ? { value: s, selected: "" } : { value: s }, `${s} ×`)));
+    const button = (text, title, action) => element("button", { title, onclick: action }, text);
+    return element("div", { class: "bar" }, this.playButton,
+      button("−1", "Step back (left arrow)", () => this.step(-1)), button("+1", "Step (right arrow)", () => this.step(1)),
+      button("Previous", "Previous event (p)", () => this.jump(-1)), button("Next", "Next contact, arrival or timeout (n)", () => this.jump(1)),
+      speeds, element("div", { class: "track" }, this.slider, this.marks()), this.clock,
+      button("Whole arena", "Reset the view (0)", () => this.resetViews()));
+  }
+
+  marks() {
+    const marks = this.events().slice(0, 400).map(({ event }) => element("i", {
+      class: event.kind, style: `left: ${(100 * event.time) / Math.max(this.duration, 1e-9)}%` }));
+    return element("div", { class: "marks" }, ...marks);
+  }
+
+  toggles() {
+    const names = { trails: "trails", goals: "goals", senses: "senses of the chosen agent", map: "granted map" };
+    const boxes = Object.entries(names).map(([key, text]) => {
+      const box = element("input", { type: "checkbox", onchange: () => { this.show[key] = box.checked; this.draw(); } });
+      box.checked = this.show[key];
+      if (key === "map") box.disabled = this.views.every((view) => !view.map);
+      return element("label", {}, box, ` ${text}`);
+    });
+    return element("div", { class: "toggles" }, ...boxes);
+  }
+
+  events() {
+    if (!this.sorted) {
+      this.sorted = this.views.flatMap((view) => view.scene.events.map((event) => ({ view, event })));
+      this.sorted.sort((one, other) => one.event.time - other.event.time);
+    }
+    return this.sorted;
+  }
+
+  eventList() {
+    const MOST = 300, all = this.events();
+    const items = all.slice(0, MOST).map(({ view, event }) => element("li", {}, element("button", {
+      onclick: () => { this.pause(); this.seek(event.time); this.select(view, event.agent ?? event.agents[0]); },
+    }, element("time", {}, `${event.time.toFixed(1)} s`), element("span", {}, this.sentence(view, event)))));
+    const title = element("h2", {}, "Events");
+    const parts = [title, element("ol", {}, ...items)];
+    if (all.length > MOST) parts.push(element("p", {}, `${all.length - MOST} more events are not listed.`));
+    if (!all.length) parts.push(element("p", {}, "No contact, arrival or timeout."));
+    for (const view of this.views) if (view.scene.failure) parts.push(element("p", {}, `${view.scene.navigator} failed: ${view.scene.failure}`));
+    return parts;
+  }
+
+  sentence(view, event) {
+    const name = this.views.length > 1 ? `${view.scene.navigator}: ` : "";
+    if (event.kind === "arrival") return `${name}agent ${event.agent} arrives`;
+    if (event.kind === "failure") return `${name}the navigator of agent ${event.agent} fails`;
+    if (event.kind === "timeout") return `${name}time is over for ${event.agents.length === 1 ? "agent" : "agents"} ${event.agents.slice(0, 6).join(", ")}${event.agents.length > 6 ? ", …" : ""}`;
+    const partner = { agent: `agent ${event.partner}`, wall: "a wall", static: "a static obstacle", dynamic: `moving obstacle ${-1 - event.partner}` }[event.with];
+    return `${name}agent ${event.agent} hits ${partner}${event.charged ? "" : " (not charged)"}`;
+  }
+
+  select(view, agent) {
+    this.selected = agent === undefined || agent < 0 ? null : { view, agent };
+    this.panel.replaceChildren();
+    this.charts = [];
+    if (!this.selected) {
+      this.panel.append(element("h2", {}, "No agent chosen"), element("p", {}, "Click an agent to see its senses and charts."));
+    } else this.describeAgent(view, agent);
+    this.draw();
+  }
+
+  describeAgent(view, agent) {
+    const { agents, charts, senses } = view.scene, n = charts.agents.indexOf(agent);
+    const result = agents.evaluated[agent] ? (agents.success[agent] ? "succeeds" : "does not succeed") : "is not scored";
+    const name = this.views.length > 1 ? ` of ${view.scene.navigator}` : "";
+    this.panel.append(element("h2", {}, `Agent ${agent}${name}`), element("p", {}, `Team ${agents.teams[agents.team[agent]]}. It ${result}.`));
+    if (n < 0) {
+      this.panel.append(element("p", {}, `This file holds charts and senses of ${charts.agents.length === 1 ? "agent" : "agents"} ${charts.agents.join(", ")}.`));
+      return;
+    }
+    const add = (title, unit, array, digits) => {
+      const output = element("output"), canvas = element("canvas");
+      this.panel.append(element("div", { class: "chart" }, element("div", {}, element("span", {}, title), output), canvas));
+      this.charts.push({ view, array, row: n, unit, digits, output, canvas });
+    };
+    add("speed", "m/s", charts.speed, 2);
+    add("turn rate", "rad/s", charts.turn, 2);
+    add("clearance", "m", charts.clearance, 2);
+    if (senses && senses.probability) add("collision probability (Eq. 24)", "", senses.probability, 2);
+    if (!senses) this.panel.append(element("p", {}, "This episode cannot be simulated again, so its senses are unknown."));
+  }
+
+  drawChart(chart) {
+    const { view, array, row, canvas, output, unit, digits } = chart, times = view.times;
+    const ratio = window.devicePixelRatio || 1, wide = canvas.clientWidth, high = canvas.clientHeight;
+    if (!wide) return;
+    canvas.width = wide * ratio; canvas.height = high * ratio;
+    const c = canvas.getContext("2d"), values = array.subarray(row * times, (row + 1) * times);
+    if (!chart.range) {
+      let low = Infinity, top = -Infinity;
+      for (const v of values) { low = Math.min(low, v); top = Math.max(top, v); }
+      chart.range = [Math.min(0, low), Math.max(top, low + 1e-6, 0.1)];
+    }
+    const [low, top] = chart.range, x = (k) => (k / Math.max(1, times - 1)) * (wide - 2) + 1;
+    const y = (v) => high - 4 - ((v - low) / (top - low)) * (high - 10);
+    c.setTransform(ratio, 0, 0, ratio, 0, 0);
+    c.clearRect(0, 0, wide, high);
+    c.strokeStyle = colour("line");
+    c.beginPath(); c.moveTo(0, y(0)); c.lineTo(wide, y(0)); c.stroke();
+    c.strokeStyle = colour("accent");
+    c.lineWidth = 1.4;
+    c.beginPath();
+    for (let k = 0; k < times; k++) if (k === 0) c.moveTo(x(0), y(values[0])); else c.lineTo(x(k), y(values[k]));
+    c.stroke();
+    const k = Math.min(this.time / view.scene.dt, times - 1);
+    c.strokeStyle = colour("ink");
+    c.beginPath(); c.moveTo(x(k), 0); c.lineTo(x(k), high); c.stroke();
+    const now = values[Math.floor(k + 1e-6)];
+    output.textContent = `${(Math.abs(now) < 0.5 * 10 ** -digits ? 0 : now).toFixed(digits)} ${unit}`;
+  }
+
+  toggle() { if (this.playing) this.pause(); else this.play(); }
+  play() {
+    if (this.time >= this.duration - 1e-9) this.time = 0;
+    this.playing = true;
+    this.playButton.textContent = "Pause";
+    this.last = null;
+    requestAnimationFrame((now) => this.tick(now));
+  }
+  pause() { this.playing = false; this.playButton.textContent = "Play"; }
+  tick(now) {
+    if (!this.playing) return;
+    if (this.last !== null) this.time = Math.min(this.duration, this.time + (this.speed * (now - this.last)) / 1000);
+    this.last = now;
+    if (this.time >= this.duration) this.pause();
+    this.draw();
+    requestAnimationFrame((next) => this.tick(next));
+  }
+  seek(time) { this.time = Math.min(this.duration, Math.max(0, time)); this.draw(); }
+  step(by) { this.pause(); this.seek((Math.round(this.time / this.dt) + by) * this.dt); }
+  jump(way) {
+    this.pause();
+    const ordered = way > 0 ? this.events() : [...this.events()].reverse();
+    const next = ordered.find(({ event }) => way * (event.time - this.time) > 1e-6);
+    if (!next) return;
+    this.time = next.event.time;
+    this.select(next.view, next.event.agent ?? next.event.agents[0]);
+  }
+  resetViews() { this.views.forEach((view) => view.reset()); this.draw(); }
+
+  key(event) {
+    if (event.target.matches("input, select, button") && event.key === " ") return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const actions = { " ": () => this.toggle(), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), n: () => this.jump(1), p: () => this.jump(-1), 0: () => this.resetViews() };
+    if (event.target.matches("input[type=range]") && event.key.startsWith("Arrow")) return;
+    if (!actions[event.key]) return;
+    event.preventDefault();
+    actions[event.key]();
+  }
+
+  draw() {
+    if (!this.charts) return;
+    for (const view of this.views) view.draw(this.time);
+    for (const chart of this.charts) this.drawChart(chart);
+    this.slider.value = String(this.time);
+    this.clock.textContent = `${this.time.toFixed(1)} / ${this.duration.toFixed(1)} s`;
+  }
+}
+
+async function start() {
+  const root = document.getElementById("replay");
+  if (typeof DecompressionStream === "undefined") {
+    root.textContent = "This browser is too old to read the replay. Use a browser from 2023 or later.";
+    return;
+  }
+  const scenes = JSON.parse(document.getElementById("scenes").textContent);
+  window.replay = new Replay(await Promise.all(scenes.map(unpackAll)), root);
+  document.documentElement.dataset.ready = "true";
+}
+start();

@@ -1,0 +1,161 @@
+"""The content of a replay: one episode as JSON, as `replay.js` reads it."""
+
+from typing import Any
+
+import numpy as np
+
+from benchnav.arena.solid import Kind, Solid
+from benchnav.arena.world import World
+from benchnav.arrays import FloatArray, IntArray
+from benchnav.episode.episode import Episode, Status
+from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.navigation.tracks import granted_map
+from benchnav.viewer.replay.clearance import clearance
+from benchnav.viewer.replay.packing import packed
+from benchnav.viewer.replay.senses import Senses, sensed
+
+SENSED = 4  # agents whose readings a replay holds, unless it is asked for others
+MILLIMETRE = 0.001
+FAR = 100.0  # [m] a larger clearance is shown as this
+
+
+def scene(episode: Episode, agents: IntArray) -> dict[str, Any]:
+    """Return the content of the replay of one episode.
+
+    ``agents`` (n,) are the indices of the agents whose sensor readings and charts are held.
+    """
+    world, identity = episode.world, episode.identity
+    return {
+        "navigator": identity.navigator, "scenario": identity.scenario, "track": identity.track,
+        "seed": identity.seed, "failure": episode.failure, "dt": world.clock.dt,
+        "horizon": world.clock.horizon, "bounds": list(world.bounds),
+        "solids": [_shape(solid) for solid in world.solids],
+        "bodies": [_shape(body.solid) for body in world.bodies],
+        "map": _map(world, identity.track),
+        "agents": _agents(episode),
+        "position": packed(episode.position, MILLIMETRE),
+        "heading": packed(_unwrapped(episode.heading), MILLIMETRE),
+        "status": packed(episode.status),
+        "body_position": packed(episode.body_position, MILLIMETRE),
+        "events": events(episode),
+        "charts": _charts(episode, agents),
+        "senses": _senses(sensed(episode, agents), len(agents)),
+    }  # fmt: skip
+
+
+def interesting(episode: Episode) -> IntArray:
+    """Return up to four evaluated agents: the failed ones first, in the order of their failure."""
+    evaluated = np.flatnonzero(episode.world.agents.evaluated)
+    found = analyse(episode)
+    order = np.lexsort((found.trajectories.end[evaluated], found.success[evaluated]))
+    chosen: IntArray = evaluated[order][:SENSED]
+    return chosen
+
+
+def events(episode: Episode) -> list[dict[str, Any]]:
+    """Return contacts, arrivals, failures and the timeout, sorted by time [s].
+
+    A contact between two agents is one event, although each of them has a record of it.
+    """
+    contacts, world = episode.contacts, episode.world
+    last = len(episode.position) - 1
+    out: list[dict[str, Any]] = []
+    for n in range(len(contacts)):
+        agent, partner = int(contacts.agent[n]), int(contacts.partner[n])
+        kind = Kind(int(contacts.kind[n]))
+        if kind == Kind.AGENT and partner < agent and _mirrored(episode, n):
+            continue
+        out.append({
+            "kind": "contact",
+            "time": _rounded(contacts.start[n]), "end": _rounded(contacts.end[n]),
+            "agent": agent, "with": kind.name.lower(), "partner": partner,
+            "charged": bool(contacts.charged[n]),
+        })  # fmt: skip
+    for agent in range(len(world.agents)):
+        if np.isfinite(episode.arrival[agent]):
+            out.append(
+                {"kind": "arrival", "time": _rounded(episode.arrival[agent]), "agent": agent}
+            )
+        failed = np.flatnonzero(episode.status[:, agent] == int(Status.FAILED))
+        if len(failed):
+            time = _rounded(failed[0] * world.clock.dt)
+            out.append({"kind": "failure", "time": time, "agent": agent})
+    active = world.agents.evaluated & (episode.status[-1] == int(Status.ACTIVE))
+    if active.any() and last >= world.clock.steps:
+        late = [int(agent) for agent in np.flatnonzero(active)]
+        out.append({"kind": "timeout", "time": _rounded(last * world.clock.dt), "agents": late})
+    return sorted(out, key=lambda event: float(event["time"]))
+
+
+def _mirrored(episode: Episode, n: int) -> bool:
+    """Whether the partner has a record of the same contact."""
+    c = episode.contacts
+    same = (c.agent == c.partner[n]) & (c.partner == c.agent[n]) & (c.kind == int(Kind.AGENT))
+    return bool((same & (np.abs(c.start - c.start[n]) < 1e-9)).any())
+
+
+def _agents(episode: Episode) -> dict[str, Any]:
+    agents, names = episode.world.agents, episode.world.teams
+    success = analyse(episode).success
+    return {
+        "radius": _numbers(agents.radius), "team": agents.team.tolist(), "teams": list(names),
+        "goal": _numbers(agents.goal), "evaluated": agents.evaluated.tolist(),
+        "success": success.tolist(),
+        "leaves": analyse(episode).trajectories.leaves.tolist(),
+    }  # fmt: skip
+
+
+def _shape(solid: Solid) -> dict[str, Any]:
+    kind = Kind(solid.kind).name.lower()
+    if solid.is_disc:
+        return {"kind": kind, "disc": [*map(_rounded, solid.center), _rounded(solid.radius)]}
+    return {"kind": kind, "loops": [_numbers(loop.ravel()) for loop in solid.loops]}
+
+
+def _map(world: World, track: str) -> list[dict[str, Any]] | None:
+    """Return the solids on the granted map at the start; None: there is no map."""
+    granted = granted_map(world, track)
+    return None if granted is None else [_shape(solid) for solid in granted.solids]
+
+
+def _charts(episode: Episode, agents: IntArray) -> dict[str, Any]:
+    """Return the speed, turn rate and clearance of agents at all times."""
+    dt = episode.world.clock.dt
+    place, heading = episode.position[:, agents], _unwrapped(episode.heading)[:, agents]
+    speed, turn = np.zeros(heading.shape), np.zeros(heading.shape)
+    speed[:-1] = np.linalg.norm(np.diff(place, axis=0), axis=-1) / dt
+    turn[:-1] = np.diff(heading, axis=0) / dt
+    gaps = [np.minimum(clearance(episode, int(agent)), FAR) for agent in agents]
+    gap = np.stack(gaps, axis=1) if gaps else np.zeros(heading.shape)
+    return {
+        "agents": agents.tolist(), "speed": packed(speed, MILLIMETRE),
+        "turn": packed(turn, MILLIMETRE), "clearance": packed(gap, MILLIMETRE),
+    }  # fmt: skip
+
+
+def _senses(found: Senses | None, agents: int) -> dict[str, Any] | None:
+    """Return the readings as JSON; None: the episode cannot be simulated again."""
+    if found is None or not agents:
+        return None
+    out: dict[str, Any] = {"angle": _numbers(found.angle), "edge_table": _numbers(found.edge_table)}
+    if found.distance is not None and found.kind is not None:
+        out["distance"] = packed(found.distance, 0.01)
+        out["hit"] = packed(found.kind)
+    for name, rows in (("neighbours", found.neighbours), ("edges", found.edges)):
+        if rows is not None:
+            out[name] = packed(rows)
+    if found.probability is not None:
+        out["probability"] = packed(found.probability, 0.01)
+    return out
+
+
+def _unwrapped(heading: FloatArray) -> FloatArray:
+    return np.unwrap(heading, axis=0)
+
+
+def _numbers(array: FloatArray) -> Any:
+    return np.asarray(array, np.float64).round(3).tolist()
+
+
+def _rounded(value: float) -> float:
+    return round(float(value), 3)

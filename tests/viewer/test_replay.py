@@ -1,0 +1,155 @@
+"""Replays: what a page holds equals what was stored."""
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import array_shapes, arrays
+
+import benchnav
+from benchnav.arena.solid import Kind
+from benchnav.episode.episode import Status
+from benchnav.errors import StoreError, UsageError
+from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.viewer.replay.clearance import clearance
+from benchnav.viewer.replay.packing import packed, unpacked
+from benchnav.viewer.replay.page import replay_page
+from benchnav.viewer.replay.scene import events, interesting, scene
+from benchnav.viewer.replay.senses import sensed
+
+
+@pytest.fixture(scope="module")
+def episode():
+    """Four agents among static and moving obstacles; one of them stands still until the end."""
+    world = benchnav.load_scenario("leaders/dynamic").world(seed=7)
+    return benchnav.simulate(world, "orca", track="unknown", salt="00").record
+
+
+@given(
+    arrays(
+        np.float64, array_shapes(min_dims=1, max_dims=3, max_side=7),
+        elements=st.floats(-1e5, 1e5, width=32),
+    )
+)  # fmt: skip
+def test_packed_arrays_come_back(array):
+    assert np.allclose(unpacked(packed(array, 0.001)), array, atol=0.0005 + 1e-9, rtol=0)
+
+
+def test_a_scene_holds_the_stored_motion(episode):
+    content = json.loads(json.dumps(scene(episode, interesting(episode)), allow_nan=False))
+    for name in ("position", "body_position"):
+        stored = getattr(episode, name)
+        assert np.allclose(unpacked(content[name]), stored, atol=0.0005 + 1e-9)
+    turned = unpacked(content["heading"]) - episode.heading
+    assert np.abs(np.exp(1j * turned) - 1.0).max() < 0.001
+    assert (unpacked(content["status"]) == episode.status).all()
+    assert len(content["solids"]) == len(episode.world.solids)
+
+
+def test_failed_agents_are_chosen_first(episode):
+    success = analyse(episode).success
+    chosen = interesting(episode)
+    assert not success[chosen[0]]
+    assert success[chosen].tolist() == sorted(success[chosen].tolist())
+
+
+def test_the_smallest_clearance_is_that_of_the_metric(episode):
+    expected = analyse(episode).encounters.clearance
+    last = analyse(episode).trajectories.last
+    for agent in range(len(expected)):
+        least = clearance(episode, agent)[: last[agent] + 1].min()
+        # the metric also looks between states, where an agent moves at most 0.4 m
+        assert expected[agent] - 1e-9 <= least <= expected[agent] + 0.4
+
+
+def test_senses_are_those_of_the_navigator(episode):
+    """A slow twin for rays that hit nothing else: their end is within an obstacle's reach."""
+    agents = interesting(episode)
+    found = sensed(episode, agents)
+    active = episode.status[:, agents] == int(Status.ACTIVE)
+    assert (found.distance[~active] == episode.world.sensing.rays.range).all()
+    hits = found.kind == int(Kind.AGENT)
+    for t, n, ray in np.argwhere(hits & active[..., None]):
+        angle = episode.heading[t, agents[n]] + found.angle[ray]
+        end = episode.position[t, agents[n]]
+        end = end + found.distance[t, n, ray] * np.array([math.cos(angle), math.sin(angle)])
+        others = np.delete(np.arange(len(episode.world.agents)), agents[n])
+        radius = episode.world.agents.radius
+        gap = np.linalg.norm(episode.position[t, others] - end, axis=1) - radius[others]
+        assert abs(gap.min() - radius[agents[n]]) < 1e-6  # thick rays stop at contact
+
+
+def test_neighbours_are_named(episode):
+    agents = interesting(episode)
+    found = sensed(episode, agents).neighbours
+    count, bodies = len(episode.world.agents), len(episode.world.bodies)
+    assert ((found >= -1) & (found < count + bodies)).all()
+    for n, agent in enumerate(agents):
+        assert not (found[:, n] == agent).any()
+        for row in found[:, n]:
+            held = row[row >= 0]
+            assert len(set(held)) == len(held)
+
+
+def test_events_tell_every_contact_once(episode):
+    contacts = episode.contacts
+    both = {(int(a), int(p), float(s)) for a, k, p, s in zip(
+        contacts.agent, contacts.kind, contacts.partner, contacts.start, strict=True
+    ) if k == int(Kind.AGENT)}  # fmt: skip
+    once = {(min(a, p), max(a, p), round(s, 3)) for a, p, s in both}
+    shown = [e for e in events(episode) if e["kind"] == "contact" and e["with"] == "agent"]
+    found = {
+        (min(e["agent"], e["partner"]), max(e["agent"], e["partner"]), e["time"]) for e in shown
+    }
+    assert found == once
+    assert len(shown) == len(once)
+    times = [event["time"] for event in events(episode)]
+    assert times == sorted(times)
+    arrived = {e["agent"] for e in events(episode) if e["kind"] == "arrival"}
+    assert arrived == set(np.flatnonzero(np.isfinite(episode.arrival)).tolist())
+    assert [e["kind"] for e in events(episode)][-1] == "timeout"
+
+
+def test_an_old_episode_without_kinds_of_commands_is_shown_without_senses(episode):
+    assert scene(replace(episode, twist=None), interesting(episode))["senses"] is None
+
+
+def test_text_of_strangers_is_escaped(episode):
+    name = "</script><script>alert(1)</script>"
+    odd = replace(episode, identity=replace(episode.identity, navigator=name), failure="<b>")
+    page = replay_page([scene(odd, interesting(odd))])
+    assert "<script>alert" not in page
+    assert "<b>" not in page
+
+
+def test_a_page_asks_for_nothing_and_is_small(episode):
+    page = replay_page([scene(episode, interesting(episode))])
+    assert "http://" not in page
+    assert "https://" not in page
+    assert len(page) <= 150_000
+
+
+def test_a_page_shows_one_to_nine(episode):
+    content = scene(episode, np.zeros(0, np.int64))
+    assert replay_page([content] * 9)
+    for count in (0, 10):
+        with pytest.raises(UsageError, match="1 to 9"):
+            replay_page([content] * count)
+
+
+def test_saving(episode, tmp_path):
+    from benchnav.api.records.episode import Episode
+
+    handle = Episode(episode).replay(agents=[0])
+    assert handle.save(tmp_path / "a.html").read_text(encoding="utf-8") == handle.html
+    assert "<iframe srcdoc=" in handle._repr_html_()
+    with pytest.raises(UsageError, match="must end in"):
+        handle.save(tmp_path / "a.mp5")
+    with pytest.raises(StoreError, match="must be writable"):
+        handle.save(tmp_path / "missing" / "a.html")
+    with pytest.raises(UsageError, match="0 to 3"):
+        Episode(episode).replay(agents=[4]).save(tmp_path / "b.html")

@@ -1,0 +1,110 @@
+"""The page of a replay in a real browser: it loads, plays, is scrubbed and jumps."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import benchnav
+from benchnav.viewer.replay.page import replay_page
+from benchnav.viewer.replay.scene import interesting, scene
+from tests.viewer.browser import DESKTOP, PHONE, in_browser, needs_chromium
+from tests.worlds import agents, world
+
+pytestmark = [needs_chromium, pytest.mark.slow]
+READY = 'await until(() => document.documentElement.dataset.ready === "true");'
+
+
+@pytest.fixture(scope="module")
+def page():
+    """Two navigators side by side."""
+    drawn = benchnav.load_scenario("leaders/dynamic").world(seed=7)
+    both = [benchnav.simulate(drawn, name, track="known") for name in ("orca", "straight-line")]
+    return replay_page([scene(episode.record, interesting(episode.record)) for episode in both])
+
+
+def test_it_plays_is_scrubbed_and_jumps(page, tmp_path):
+    result = in_browser(page, READY + """
+      const out = {};
+      const buttons = [...document.querySelectorAll("button")];
+      const button = (text) => buttons.find((b) => b.textContent === text);
+      button("Play").click();
+      await until(() => replay.time > 0.3);
+      button("Pause").click();
+      const stopped = replay.time;
+      await wait(0.2);
+      out.stays = replay.time === stopped;
+      const slider = document.querySelector("input[type=range]");
+      slider.value = "10"; slider.dispatchEvent(new Event("input"));
+      out.scrubbed = replay.time;
+      button("+1").click();
+      out.stepped = replay.time;
+      replay.seek(0);
+      button("Next").click();
+      out.jumped = replay.time === replay.events()[0].event.time;
+      out.events = document.querySelectorAll(".side li").length === replay.events().length;
+      const painted = replay.views[0].context.getImageData(0, 0, 400, 400).data;
+      out.colours = new Set(new Uint32Array(painted.buffer)).size;
+      replay.select(replay.views[1], 2);
+      out.title = document.querySelector(".side h2").textContent;
+      return out;
+    """, tmp_path)  # fmt: skip
+    assert result["stays"]
+    assert result["scrubbed"] == 10
+    assert result["stepped"] == pytest.approx(10.2)
+    assert result["jumped"]
+    assert result["events"]
+    assert result["colours"] > 5
+    assert result["title"] == "Agent 2 of straight-line"
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE])
+def test_nothing_sticks_out(page, tmp_path, size):
+    result = in_browser(page, READY + """
+      const narrow = [...document.querySelectorAll("button, canvas, select, input")].filter((e) => {
+        const box = e.getBoundingClientRect();
+        return box.width && (box.left < 0 || box.right > innerWidth + 0.5);
+      }).map((e) => e.outerHTML);
+      return { wide: document.documentElement.scrollWidth - innerWidth, narrow };
+    """, tmp_path, size)  # fmt: skip
+    assert result["wide"] <= 0
+    assert result["narrow"] == []
+
+
+def test_positions_are_those_of_the_episode(tmp_path):
+    drawn = benchnav.load_scenario("trap/u").world(seed=0)
+    record = benchnav.simulate(drawn, "straight-line").record
+    result = in_browser(replay_page([scene(record, interesting(record))]), READY + """
+      const view = replay.views[0];
+      return [0, 1, 2, 3].map((a) => view.at(a, 5).concat(view.value(view.scene.heading, a, 5)));
+    """, tmp_path)  # fmt: skip
+    expected = np.column_stack([record.position[5], record.heading[5]])
+    assert np.allclose(result, expected, atol=0.001)
+
+
+@pytest.mark.long
+def test_a_crowd_of_a_thousand_is_small_and_plays(tmp_path):
+    """1,000 agents and 600 steps: at most 8 MB, and every frame is drawn."""
+    rng = np.random.default_rng(0)
+    start = rng.uniform(1, 99, (1000, 2))
+    crew = agents(start, 100.0 - start, radius=0.3, speed=1.4, team=rng.integers(0, 4, 1000))
+    drawn = world(crew, side=100.0, steps=600)
+    from benchnav.api.records.episode import Episode
+    from tests.viewer.made_episode import straight_episode
+
+    record = straight_episode(drawn, 600)
+    page = Episode(replace(record)).replay().html
+    assert len(page) <= 8_000_000
+    frames = in_browser(page, READY + """
+      let frames = 0;
+      const draw = replay.draw.bind(replay);
+      replay.draw = () => { frames += 1; draw(); };
+      replay.speed = 8;
+      const began = performance.now();
+      replay.play();
+      await wait(2);
+      replay.pause();
+      return { rate: frames / ((performance.now() - began) / 1000) };
+    """, tmp_path)  # fmt: skip
+    print("frames a second:", frames["rate"])
+    assert frames["rate"] > 2

@@ -1,0 +1,88 @@
+"""Figures and moving pictures of episodes, read off before and after they are written."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import benchnav
+from benchnav.errors import StoreError, UsageError
+from benchnav.viewer.animation import frame_times
+from benchnav.viewer.scene_figure import TEAMS, episode_figure, world_figure
+
+pytest.importorskip("matplotlib")
+
+
+@pytest.fixture(scope="module")
+def episode():
+    world = benchnav.load_scenario("leaders/dynamic").world(seed=7)
+    return benchnav.simulate(world, "straight-line", track="unknown")
+
+
+def test_the_arena_is_not_painted_over():
+    """The outer wall is a loop that runs clockwise: its inside is free."""
+    figure = world_figure(benchnav.load_scenario("trap/u").world(seed=0).record)
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3]
+    assert (pixels == 255).all(axis=-1).mean() > 0.8
+
+
+def test_trails_marks_and_crosses(episode):
+    (axes,) = episode_figure([episode.record]).axes
+    record = episode.record
+    crosses = [line for line in axes.lines if line.get_marker() == "x"]
+    lost = np.flatnonzero(~np.isfinite(record.arrival))
+    assert len(crosses) == len(lost)
+    for cross, agent in zip(crosses, lost, strict=True):
+        assert cross.get_color() == TEAMS[agent]
+    assert axes.get_title() == f"straight-line: {4 - len(lost)} of 4 arrived"
+
+
+def test_snapshots_stand_in_a_row(episode):
+    axes = episode_figure([episode.record] * 2, [0.0, 1.0, 2.0]).axes
+    assert [a.get_title() for a in axes[:3]] == ["straight-line, 0 s", "1 s", "2 s"]
+    assert len(axes) == 6
+    for times, sentence in (([99.0], "from 0 to"), ([0.1] * 9, "8 times at most")):
+        with pytest.raises(UsageError, match=sentence):
+            episode_figure([episode.record], times)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
+def test_equal_episodes_give_equal_figures(episode, tmp_path, suffix):
+    files = [episode.replay().save(tmp_path / f"{n}{suffix}") for n in range(2)]
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
+@pytest.mark.slow
+def test_a_gif_moves(episode, tmp_path):
+    path = episode.replay().save(tmp_path / "a.gif")
+    with Image.open(path) as picture:
+        assert picture.n_frames == len(frame_times([episode.record], 100))
+        first = np.asarray(picture.convert("RGB")).copy()
+        picture.seek(picture.n_frames - 1)
+        assert (np.asarray(picture.convert("RGB")) != first).any()
+
+
+@pytest.mark.slow
+def test_a_film_has_a_frame_for_each_state(episode, tmp_path):
+    ffmpeg = pytest.importorskip("imageio_ffmpeg")
+    path = episode.replay().save(tmp_path / "a.mp4")
+    assert ffmpeg.count_frames_and_secs(str(path))[0] == len(episode.record.position)
+    with pytest.raises(StoreError, match="must be writable"):
+        episode.replay().save(tmp_path / "missing" / "a.mp4")
+
+
+def test_times_are_for_figures(episode, tmp_path):
+    with pytest.raises(UsageError, match="Times are for a figure"):
+        episode.replay().save(tmp_path / "a.gif", [1.0])
+
+
+def test_a_world_is_plotted(tmp_path):
+    world = benchnav.load_scenario("leaders/dynamic").world(seed=0)
+    world.plot(tmp_path / "w.png")
+    with Image.open(tmp_path / "w.png") as picture:
+        assert min(picture.size) > 300
+    with pytest.raises(UsageError, match="must end in"):
+        world.plot(tmp_path / "w.txt")
