@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from benchnav.api.records.replay import page_name
 from benchnav.cli.console import put, say
 from benchnav.errors import UsageError
 
@@ -148,6 +147,8 @@ def _print_list(found: "Episodes") -> None:
 
 def _file_name(places: "tuple[Place, ...]") -> str:
     """Return the default name of the page."""
+    from benchnav.api.records.replay import page_name
+
     first = places[0]
     names = dict.fromkeys(place.navigator for place in places)
     return page_name("replay", *names, first.scenario.split("@")[0], first.track, str(first.seed))
