@@ -1,4 +1,4 @@
-"""Names, docstrings, comments and messages are plain English: they contain no banned words."""
+"""Names, docstrings, comments, messages and documents contain no banned words."""
 
 import ast
 import io
@@ -16,6 +16,16 @@ NAMES = frozenset(
 )
 PROSE = re.compile(r"\b(whom|whoever|nobody|everybody|somebody|anybody)\b", re.IGNORECASE)
 HEADLESS = re.compile(r"(?:^|[.:;!?]\s+)(Who|What)\b[^.?!]*(?P<end>[.?!]|$)")
+
+IN_DOCUMENTS = re.compile(
+    r"\b(?:whom|whoever|told|somebody|nobody|everybody|anybody)\b"
+    r"|(?:[;:(]|\b(?:and|but|or|for|to|of|with|by)) who\b",
+    re.IGNORECASE,
+)
+FENCE = re.compile(r"^(```|~~~|:::).*?^\1\s*$", re.MULTILINE | re.DOTALL)
+QUOTED = re.compile(r"`[^`]*`|(?<!\*)\*\w+\*(?!\*)")  # code, and words in italics
+NOT_PROSE = re.compile(r"\s*(?:\||#|!\[|---+$)")  # tables, headings, pictures, lines
+NEW_PARAGRAPH = re.compile(r"^\s*(?:[-*] |\d+\. )")
 
 
 def modules() -> list[Path]:
@@ -63,6 +73,36 @@ def violations(source: str) -> list[tuple[int, str]]:
     return sorted(found)
 
 
+def documents() -> list[Path]:
+    """Return all documents that the rules apply to."""
+    return [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted(ROOT.glob("docs/**/*.md"))]
+
+
+def paragraphs(text: str) -> Iterator[tuple[int, str]]:
+    """Yield (line, text) of paragraphs and list items, without code, headings and tables."""
+    text = FENCE.sub(lambda found: "\n" * found[0].count("\n"), text)
+    start, words = 1, list[str]()
+    for number, line in enumerate([*text.splitlines(), ""], 1):
+        ends = not line.strip() or NOT_PROSE.match(line)
+        if words and (ends or NEW_PARAGRAPH.match(line)):
+            yield start, " ".join(words)
+            words = []
+        if not ends:
+            start = start if words else number
+            words.append(NEW_PARAGRAPH.sub("", line, count=1).strip())
+
+
+def violations_in_document(text: str) -> list[tuple[int, str]]:
+    """Return (line of the paragraph, problem) of each violation in a Markdown document."""
+    found = []
+    for line, paragraph in paragraphs(text):
+        prose = QUOTED.sub("…", paragraph).replace("*", "")
+        words = [match[0] for match in IN_DOCUMENTS.finditer(prose)]
+        words += [m[1] for m in HEADLESS.finditer(prose) if m["end"] != "?"]
+        found += [(line, f"the word {word!r}") for word in words]
+    return found
+
+
 @pytest.mark.parametrize(
     "source",
     [
@@ -87,5 +127,39 @@ def test_code_is_written_in_plain_english() -> None:
         f"{path.relative_to(ROOT)}:{line}: {problem}"
         for path in modules()
         for line, problem in violations(path.read_text(encoding="utf-8"))
+    ]
+    assert not lines, "Rewrite these by the rules in CONTRIBUTING.md:\n" + "\n".join(lines)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "The run is told.", "Nobody reads it.", "- Who arrives\n  ends.",
+        "It ends. What is left stays.", "The goal of who arrives.",
+        "# Title\n\nA line,\n**Whoever** reads.",
+        "It stops; who lacks values has no rank.",
+    ],
+)  # fmt: skip
+def test_a_violation_in_a_document_is_found(text: str) -> None:
+    assert violations_in_document(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "**What happens to old results?**\nThey stay.", "Agents who arrive vanish.",
+        "## What it does", "| who | what |", "```text\nnobody\n```\nText.", "Run `told`.",
+        "No *who*.", "It shows what is missing.",
+    ],
+)  # fmt: skip
+def test_a_document_in_plain_english_passes(text: str) -> None:
+    assert not violations_in_document(text)
+
+
+def test_documents_are_written_in_plain_english() -> None:
+    lines = [
+        f"{path.relative_to(ROOT)}:{line}: {problem}"
+        for path in documents()
+        for line, problem in violations_in_document(path.read_text(encoding="utf-8"))
     ]
     assert not lines, "Rewrite these by the rules in CONTRIBUTING.md:\n" + "\n".join(lines)

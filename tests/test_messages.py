@@ -22,9 +22,11 @@ def messages(tree):
         if isinstance(body, list) and body and isinstance(body[0], ast.Expr)
     }
     for node in ast.walk(tree):
-        text = node.value if isinstance(node, ast.Constant) and id(node) not in docs else None
-        if isinstance(text, str) and " " in text:
-            yield node.lineno, text
+        is_text = isinstance(node, ast.Constant) and isinstance(node.value, str)
+        if not is_text or id(node) in docs:
+            continue
+        if " " in node.value or node.value.endswith("--"):
+            yield node.lineno, node.value
 
 
 def test_no_message_outside_of_the_command_names_an_option():

@@ -15,9 +15,9 @@ class Map:
     """The static geometry that a knowledge track grants."""
 
     bounds: Extent  # xmin, ymin, xmax, ymax [m]
-    solids: tuple[Solid, ...]
+    solids: tuple[Solid, ...]  # walls and static obstacles
     revision: int = 0  # rises when geometry moves within an episode (track `known` only)
-    meshes: tuple[Mesh, ...] = ()
+    meshes: tuple[Mesh, ...] = ()  # the 3D meshes of solids that were cut from a mesh
 
     @cached_property
     def capsules(self) -> FloatArray:

@@ -34,7 +34,7 @@ class Rays(Rows):
     """The first object that each ray hits; the goal is on a separate layer."""
 
     angle: FloatArray  # (R,) [rad] from the agent's heading
-    distance: FloatArray  # (B, A, R) [m] of the ray or of its disc; the range if nothing is hit
+    distance: FloatArray  # (B, A, R) [m] until the ray or its disc hits; the range if it does not
     kind: ByteArray  # (B, A, R) of Kind: NOTHING, AGENT, WALL, STATIC, DYNAMIC
     approach: FloatArray  # (B, A, R) [m/s] of the hit dynamic obstacle, towards the agent, else 0
     goal: FloatArray  # (B, A, R) [m] along the ray to the own goal's disc; inf if missed or hidden

@@ -26,7 +26,7 @@ def test_the_keys_of_motion_laws_are_listed():
 def test_fields_have_shape_unit_and_meaning():
     text = MAKER.observations()
     assert (
-        "| `distance` | (B, A, R) [m] of the ray or of its disc; the range if nothing is hit |"
+        "| `distance` | (B, A, R) [m] until the ray or its disc hits; the range if it does not |"
         in text
     )
     assert "| `row` | number of the world from `reset` to the end of its episode |" in text

@@ -37,7 +37,11 @@ _EXTRAS = {
     },
     "view": {"matplotlib": "matplotlib"},
     "video": {"imageio-ffmpeg": "imageio_ffmpeg"},
-    "mcap": {"mcap": "mcap"},
+    "mcap": {
+        "mcap": "mcap",
+        "mcap-protobuf-support": "mcap_protobuf",
+        "foxglove-schemas-protobuf": "foxglove_schemas_protobuf",
+    },
     "rerun": {"rerun-sdk": "rerun"},
     "ray": {"ray": "ray"},
 }  # extra → package → module

@@ -96,7 +96,7 @@ def _suite(name: str) -> Iterator[str]:
         ("is", "a suite"),
         ("scenarios", ", ".join(s.identity for s in suite.scenarios)),
         ("tracks", ", ".join(suite.tracks)),
-        ("navigators", ", ".join(e.label for e in suite.contestants)),
+        ("navigators", ", ".join(each.label for each in suite.contestants)),
         ("seeds", f"{suite.seeds.start} … {suite.seeds.stop - 1} of split {suite.split}"),
     ]
     yield f"{suite.name}@{suite.version}\n" + columns([("  " + k, v) for k, v in facts])

@@ -111,12 +111,6 @@ class Replay:
         )
 
 
-def page_name(*words: str) -> str:
-    """Return a file name made of ``words``, in letters that every system allows."""
-    text = "-".join(words)
-    return "".join(c if c.isalnum() or c in "-_." else "-" for c in text)[:120] + PAGE
-
-
 def open_in_browser(path: Path) -> bool:
     """Open a page if this session has a display; return whether a browser took it."""
     has_display = os.name == "nt" or any(os.environ.get(n) for n in ("DISPLAY", "WAYLAND_DISPLAY"))

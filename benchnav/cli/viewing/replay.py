@@ -7,6 +7,7 @@ import typer
 
 from benchnav.cli.console import put, say
 from benchnav.errors import UsageError
+from benchnav.text.file_name import file_name
 
 if TYPE_CHECKING:
     from benchnav.api.records.episodes import Episodes, Place
@@ -147,8 +148,7 @@ def _print_list(found: "Episodes") -> None:
 
 def _file_name(places: "tuple[Place, ...]") -> str:
     """Return the default name of the page."""
-    from benchnav.api.records.replay import page_name
-
     first = places[0]
     names = dict.fromkeys(place.navigator for place in places)
-    return page_name("replay", *names, first.scenario.split("@")[0], first.track, str(first.seed))
+    scenario = first.scenario.split("@")[0]
+    return file_name("replay", *names, scenario, first.track, str(first.seed), suffix=".html")

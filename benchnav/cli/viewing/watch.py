@@ -6,6 +6,7 @@ from typing import Annotated
 import typer
 
 from benchnav.cli.console import put, say
+from benchnav.text.file_name import file_name
 
 
 def watch(
@@ -38,14 +39,14 @@ def watch(
     Nothing is stored beside the page.
     """
     from benchnav.api.execution.simulate import simulate
-    from benchnav.api.records.replay import Replay, open_in_browser, page_name
+    from benchnav.api.records.replay import Replay, open_in_browser
     from benchnav.api.records.scenario import load_scenario
 
     world = load_scenario(scenario).world(seed=seed)
     episodes = [simulate(world, navigator, track=track) for navigator in navigators]
     for episode in episodes:
         say(f"{episode!r}")
-    path = out or Path(page_name("watch", *navigators, scenario, str(seed)))
+    path = out or Path(file_name("watch", *navigators, scenario, str(seed), suffix=".html"))
     Replay([episode.record for episode in episodes]).save(path)
     put(str(path))
     if show and not open_in_browser(path):
