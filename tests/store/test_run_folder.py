@@ -184,6 +184,6 @@ def test_a_disk_that_refuses_is_an_error_that_says_how_to_go_on(tools, run):
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
     assert "is not writable, or the disk is full" in str(refused.value)
-    assert f"--out {run}" in str(refused.value)
+    assert f"again into {run} to continue" in str(refused.value)
     assert folder.done("cell") == {0, 1}
     assert len(list(folder.cell("cell").iterdir())) == 3
