@@ -20,7 +20,7 @@ from benchnav.navigation import (
 from benchnav.threads import run_rows
 
 from ...common.kernel_inputs import bodies_of, flat, sensed
-from .kernel import choose
+from .kernel import Search, choose
 
 
 class DynamicWindowConfig(PluginConfig):
@@ -67,6 +67,12 @@ class DynamicWindow(Controller):
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
         self._table = RowTable()
+        c = self.config
+        self._search = Search(
+            acceleration=c.acceleration, turn_acceleration=c.turn_acceleration, heading=c.heading,
+            distance=c.distance, speed=c.speed, margin=c.margin, far=c.far, horizon=c.horizon,
+            hold=c.hold, predict=c.predict, speeds=c.speeds, turns=c.turns,
+        )  # fmt: skip
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):
@@ -75,7 +81,7 @@ class DynamicWindow(Controller):
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
         worlds, agents = observation.active.shape
-        rows, c = worlds * agents, self.config
+        rows = worlds * agents
         body, turn = (self._table.take(name, observation.rows, agents) for name in ("body", "turn"))
         speed = np.sqrt(
             np.sum(observation.velocity**2, axis=-1)
@@ -87,11 +93,7 @@ class DynamicWindow(Controller):
             position, velocity, radius, count, start, end, edges,
         )  # fmt: skip
         answer = np.zeros((rows, 2))
-        run_rows(
-            choose, rows, *flat(rows, arrays), np.array([c.acceleration, c.turn_acceleration]),
-            np.array([c.heading, c.distance, c.speed]), c.margin, c.far, c.horizon, c.hold,
-            c.predict, c.speeds, c.turns, answer,
-        )  # fmt: skip
+        run_rows(choose, rows, *flat(rows, arrays), self._search, answer)
         twist = answer.reshape(worlds, agents, 2)
         self._table.write("turn", observation.rows, twist[..., 1])
         return twist

@@ -6,6 +6,7 @@ Robotics & Automation Magazine 4(1):23–33. Comments mark additions to the pape
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -13,6 +14,24 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.kernels import kernel
 
 from .clearance import arc_clearance, meeting_time, room
+
+
+class Search(NamedTuple):
+    """Parameters of the search: plain numbers, which cost a kernel nothing to hold in a tuple."""
+
+    acceleration: float  # [m/s²]
+    turn_acceleration: float  # [rad/s²]
+    heading: float  # α, weight of the heading
+    distance: float  # β, weight of the distance
+    speed: float  # γ, weight of the velocity
+    margin: float  # [m] kept from all obstacles
+    far: float  # [m] clearance that counts as free
+    horizon: float  # [s] of the prediction of neighbours
+    hold: float  # [s] after which a turning agent is predicted to go straight
+    predict: bool  # neighbours keep their velocities (not from the paper); else they stand still
+    speeds: int  # samples of v
+    turns: int  # samples of w
+
 
 LEAST = 0.01  # [m] of the margin that is kept even if the agent is closer than the margin
 
@@ -84,8 +103,7 @@ def choose(
     last: FloatArray, target: FloatArray, remaining: FloatArray, body: FloatArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, count: IntArray,
     start: FloatArray, end: FloatArray, edges: IntArray,
-    accelerations: FloatArray, weights: FloatArray, margin: float, far: float, horizon: float,
-    hold: float, predict: bool, speeds: int, turns: int, answer: FloatArray,
+    search: Search, answer: FloatArray,
 ) -> None:  # fmt: skip
     """Write twists [m/s, rad/s] into rows low … high - 1 of ``answer`` (N, 2).
 
@@ -106,26 +124,20 @@ def choose(
         start: (N, E, 2) of edges [m].
         end: (N, E, 2) [m].
         edges: (N,) valid edges.
-        accelerations: (2,) [m/s²], [rad/s²].
-        weights: (3,) α of heading, β of distance, γ of velocity.
-        margin: [m] kept from all obstacles.
-        far: [m] clearance that counts as free.
-        horizon: [s] of the prediction of neighbours.
-        hold: [s] after which a turning agent is predicted to go straight.
-        predict: neighbours keep their velocities (not from the paper); otherwise they stand still.
-        speeds: samples of v.
-        turns: samples of w.
+        search: parameters of the search.
         answer: (N, 2).
     """
+    speeds, turns, margin, far = search.speeds, search.turns, search.margin, search.far
+    horizon, hold = search.horizon, search.hold
     score, free = np.empty((speeds, turns)), np.empty((speeds, turns))
     meets = np.empty((speeds, turns))
     vs, ws = np.empty(speeds), np.empty(turns)
-    brake, turn_brake = accelerations[0], accelerations[1]
+    brake, turn_brake = search.acceleration, search.turn_acceleration
     for i in range(low, high):
         if not active[i]:
             continue
         x, y, size, dt = here[i, 0], here[i, 1], body[i, 0], body[i, 4]
-        standing = 0 if predict else count[i]
+        standing = 0 if search.predict else count[i]
         moving = count[i] - standing
         top = min(body[i, 2], remaining[i] / dt) if dt > 0.0 else body[i, 2]
         now = last[i, 0]
@@ -170,7 +182,9 @@ def choose(
                     x, y, heading[i], v, w, target[i, 0], target[i, 1], brake, turn_brake, dt
                 )
                 score[a, b] = (
-                    weights[0] * ahead + weights[1] * free_share + weights[2] * v / body[i, 2]
+                    search.heading * ahead
+                    + search.distance * free_share
+                    + search.speed * v / body[i, 2]
                 )  # fmt: skip
         answer[i, 0], answer[i, 1] = _best(score, free, meets, vs, ws, allowed > 0)
         if answer[i, 0] < 0.0:  # no arc is free: brake along the arc that was free before

@@ -21,7 +21,7 @@ from benchnav.navigation import (
 from benchnav.threads import run_rows
 
 from ...common.kernel_inputs import bodies_of, flat, sensed
-from .kernel import social_force
+from .kernel import Forces, social_force
 
 
 class SocialForceConfig(PluginConfig):
@@ -69,6 +69,13 @@ class SocialForce(Controller):
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
         self._table = RowTable()
+        c = self.config
+        self._forces = Forces(
+            border_body=c.border_body, relaxation=c.relaxation, pedestrians=c.pedestrians,
+            pedestrian_range=c.pedestrian_range, stride=c.stride, borders=c.borders,
+            border_range=c.border_range, cosine=math.cos(0.5 * c.sight), behind=c.behind,
+            top=c.top, tick=c.tick,
+        )  # fmt: skip
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):
@@ -79,7 +86,7 @@ class SocialForce(Controller):
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
         worlds, agents = observation.active.shape
-        rows, c = worlds * agents, self.config
+        rows = worlds * agents
         body, push = (self._table.take(name, observation.rows, agents) for name in ("body", "push"))
         position, velocity, radius, _, count, *edges = sensed(observation)
         arrays = (
@@ -87,9 +94,5 @@ class SocialForce(Controller):
             push, position, velocity, radius, count, *edges,
         )  # fmt: skip
         answer = np.zeros((rows, 2))
-        run_rows(
-            social_force, rows, *flat(rows, arrays), c.border_body, c.relaxation, c.pedestrians,
-            c.pedestrian_range, c.stride, c.borders, c.border_range, math.cos(0.5 * c.sight),
-            c.behind, c.top, c.tick, answer,
-        )  # fmt: skip
+        run_rows(social_force, rows, *flat(rows, arrays), self._forces, answer)
         return answer.reshape(worlds, agents, 2)
