@@ -1,11 +1,13 @@
 """Figures and moving pictures of episodes, read off before and after they are written."""
 
+import sys
+
 import numpy as np
 import pytest
 from PIL import Image
 
 import benchnav
-from benchnav.errors import StoreError, UsageError
+from benchnav.errors import MissingExtraError, StoreError, UsageError
 from benchnav.viewer.animation import frame_times
 from benchnav.viewer.scene_figure import TEAMS, episode_figure, world_figure
 
@@ -72,6 +74,23 @@ def test_a_film_has_a_frame_for_each_state(episode, tmp_path):
     assert ffmpeg.count_frames_and_secs(str(path))[0] == len(episode.record.position)
     with pytest.raises(StoreError, match="must be writable"):
         episode.replay().save(tmp_path / "missing" / "a.mp4")
+
+
+@pytest.mark.parametrize(
+    ("module", "suffix", "extra"),
+    [
+        ("matplotlib.figure", ".png", "view"), ("matplotlib.figure", ".gif", "view"),
+        ("imageio_ffmpeg", ".mp4", "video"), ("mcap_protobuf.writer", ".mcap", "mcap"),
+        ("rerun", ".rrd", "rerun"),
+    ],
+)  # fmt: skip
+def test_a_missing_library_is_named_with_its_extra(
+    episode, tmp_path, monkeypatch, module, suffix, extra
+):
+    monkeypatch.setitem(sys.modules, module, None)
+    with pytest.raises(MissingExtraError, match=rf"benchnav\[{extra}\]"):
+        episode.replay().save(tmp_path / f"a{suffix}")
+    assert not list(tmp_path.iterdir())
 
 
 def test_times_are_for_figures(episode, tmp_path):

@@ -18,6 +18,7 @@ def replay_page(scenes: Sequence[dict[str, Any]], title: str = "") -> str:
     """
     if not 1 <= len(scenes) <= MOST:
         raise UsageError(f"A replay shows 1 to {MOST} episodes side by side. Got {len(scenes)}.")
+    # Stored numbers are finite: the simulator and the reader of runs refuse others.
     content = json.dumps(list(scenes), separators=(",", ":"), allow_nan=False)
     return _PAGE.format(
         title=escape(title or _title(scenes)), style=asset("replay.css"),
