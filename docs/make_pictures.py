@@ -13,12 +13,13 @@ import matplotlib
 import numpy as np
 from matplotlib import pyplot
 
+from benchnav.drawing.top_view import INK
 from benchnav.episode.episode import Episode
 from benchnav.generation.build import build
 from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
 from benchnav.viewer.animation import save_gif
-from benchnav.viewer.scene_figure import INK, aspect, draw_episode
+from benchnav.viewer.scene_figure import aspect, draw_episode
 
 IMAGES = Path(__file__).parent / "images"
 NAVIGATOR = "ompl-orca"

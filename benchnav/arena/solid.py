@@ -83,3 +83,9 @@ def edge_chain(solid: Solid) -> tuple[IntArray, IntArray]:
         after.append(first + np.roll(index, -1))
         first += len(loop)
     return np.concatenate(before), np.concatenate(after)
+
+
+def signed_area(loop: FloatArray) -> float:
+    """Return the area [m²] of a loop (V, 2), negative if it runs clockwise."""
+    x, y = loop.T
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

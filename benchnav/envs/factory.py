@@ -1,6 +1,6 @@
 """Make the decision process of an environment from names and numbers."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -103,9 +103,8 @@ def drawn_index(
     return chosen
 
 
-def refuse_rendering(render_mode: str | None) -> None:
-    """Raise NoRenderingError for any mode but None."""
-    if render_mode is not None:
-        raise NoRenderingError(
-            f"The render_mode must be None: environments draw nothing. Got {render_mode!r} instead."
-        )
+def check_render_mode(render_mode: str | None, modes: Sequence[str] = ()) -> None:
+    """Raise NoRenderingError for a mode that an environment does not have."""
+    if render_mode is not None and render_mode not in modes:
+        allowed = " or ".join(["None", *map(repr, modes)])
+        raise NoRenderingError(f"The render_mode must be {allowed}. Got {render_mode!r} instead.")

@@ -6,10 +6,12 @@ import numpy as np
 from gymnasium.utils.seeding import np_random
 from pettingzoo import ParallelEnv  # type: ignore[import-untyped]
 
+from benchnav.arrays import ByteArray
 from benchnav.envs.encoders.encoder import Float32Array
-from benchnav.envs.factory import Reward, drawn_index, make_batch, refuse_rendering
+from benchnav.envs.factory import Reward, check_render_mode, drawn_index, make_batch
 from benchnav.envs.gym.spaces import Space, action_space, last_seen, observation_space, terms
 from benchnav.envs.learner_slots import LearnerSlots
+from benchnav.envs.rendering import RENDER_MODES, Renderer
 from benchnav.envs.seeding import plain_seed
 from benchnav.errors import UsageError
 
@@ -26,7 +28,9 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
     agent is terminated by arrival or contact, and truncated by time. Then it leaves.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "name": "benchnav_leaders_v0"}
+    metadata: ClassVar[dict[str, Any]] = {
+        "render_modes": list(RENDER_MODES), "render_fps": 5, "name": "benchnav_leaders_v0",
+    }  # fmt: skip
 
     def __init__(
         self,
@@ -42,8 +46,8 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
 
         Raises BenchnavError for a mistake in any of these.
         """
-        refuse_rendering(render_mode)
-        self.render_mode = render_mode
+        check_render_mode(render_mode, RENDER_MODES)
+        self.render_mode, self._renderer = render_mode, Renderer()
         self.batch = make_batch(scenario, encoder, split, worlds, reward)
         self._slots = LearnerSlots(self.batch)
         self.possible_agents = [f"leader_{a}" for a in range(self._slots.size)]
@@ -112,5 +116,13 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         self.agents = [agent for agent, a in slots.items() if not step.over[0, a]]
         return stepped
 
-    def render(self) -> None:
-        """Do nothing: there is no rendering."""
+    def render(self) -> ByteArray | None:
+        """Return the world now as a picture (H, W, 3); None without a render mode.
+
+        Raises UsageError before the first reset.
+        """
+        if self.render_mode is None:
+            return None
+        if self._rng is None:
+            raise UsageError("There is no world to draw: call reset() before render().")
+        return self._renderer.frame(self.batch.simulation)

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchnav.arena.solid import Kind, Solid
+from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
 from benchnav.arrays import Extent, FloatArray
+from benchnav.drawing.top_view import FILL, INK, TEAMS
 from benchnav.episode.episode import Episode, Status
 from benchnav.errors import UsageError
 from benchnav.metrics.quantities.trajectory import cut, positions_at, present_at
@@ -19,8 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-INK, WALL, STATIC, MOVER = "#22303c", "#36454f", "#b4bec6", "#e07a3f"
-TEAMS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d00", "#7a5195", "#4d4d4d")
+WALL, STATIC, MOVER = (FILL[kind] for kind in (Kind.WALL, Kind.STATIC, Kind.DYNAMIC))
 MARK = 5.0  # [s] between the marks on a trail
 MOST_SNAPSHOTS = 8
 _RIM = 0.012  # of the width of an arena: how thick the wall along its bounds is drawn
@@ -190,16 +190,11 @@ def _patch(solid: Solid, frame: Extent, **style: Any) -> Any:
     if solid.is_disc:
         return Circle(solid.center, solid.radius, **style)
     loops = list(solid.loops)
-    if sum(map(_area, loops)) < 0.0:
+    if sum(map(signed_area, loops)) < 0.0:
         x0, y0, x1, y1 = frame
         loops.append(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))
     closed = [Path(np.vstack([loop, loop[:1]]), closed=True) for loop in loops]
     return PathPatch(Path.make_compound_path(*closed), **style)
-
-
-def _area(loop: FloatArray) -> float:
-    x, y = loop.T
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
 
 def aspect(world: World) -> float:

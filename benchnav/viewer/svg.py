@@ -2,9 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-import numpy as np
-
-from benchnav.arena.solid import Kind, Solid
+from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode, Status
@@ -64,7 +62,7 @@ def _solid(solid: Solid) -> str:
         x, y = solid.center
         return f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{solid.radius:.3f}" fill="{color}"/>'
     path = " ".join(f"M {_points(loop)} Z" for loop in solid.loops)
-    filled = color if any(_area(loop) > 0.0 for loop in solid.loops) else "none"
+    filled = color if any(signed_area(loop) > 0.0 for loop in solid.loops) else "none"
     return (
         f'<path d="{path}" fill="{filled}" fill-rule="evenodd" stroke="{color}"'
         ' stroke-width="0.06"/>'
@@ -99,9 +97,3 @@ def _points(points: FloatArray) -> str:
 
 def _thinned(points: FloatArray, most: int = 400) -> FloatArray:
     return points[:: max(1, len(points) // most)]
-
-
-def _area(loop: FloatArray) -> float:
-    """Return twice the signed area; positive for a counter-clockwise loop."""
-    x, y = loop[:, 0], loop[:, 1]
-    return float(np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1)))

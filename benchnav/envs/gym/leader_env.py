@@ -5,10 +5,12 @@ from typing import Any, ClassVar
 import gymnasium
 import numpy as np
 
+from benchnav.arrays import ByteArray
 from benchnav.envs.background_agents import BackgroundNavigator
 from benchnav.envs.encoders.encoder import Float32Array
-from benchnav.envs.factory import Reward, drawn_index, make_batch, refuse_rendering
+from benchnav.envs.factory import Reward, check_render_mode, drawn_index, make_batch
 from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
+from benchnav.envs.rendering import RENDER_MODES, Renderer
 from benchnav.envs.seeding import plain_seed
 from benchnav.errors import UsageError
 from benchnav.navigation.plugin.configure import Spec
@@ -21,7 +23,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
     ``benchnav/Leader-v0`` by `benchnav.envs.gym.registration`.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": []}  # type: ignore[misc]
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": list(RENDER_MODES), "render_fps": 5}  # type: ignore[misc]
 
     def __init__(
         self,
@@ -43,11 +45,12 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
             worlds: number of worlds of the split.
             reward: weights that differ from the defaults of `RewardWeights`.
             others: the navigator of the other agents, by name or ``{"type": name, …}``; required.
-            render_mode: None; nothing is drawn.
+            render_mode: "rgb_array": `render` returns a picture; None: nothing is drawn.
 
         Raises BenchnavError for a mistake in any of these.
         """
-        refuse_rendering(render_mode)
+        check_render_mode(render_mode, RENDER_MODES)
+        self.render_mode, self._renderer = render_mode, Renderer()
         if others is None:
             raise UsageError(
                 'others must name the navigator of the other agents: others="NAME".'
@@ -60,7 +63,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         self._others = BackgroundNavigator(
             others, self.batch.simulation, self.batch.width - 1, "others"
         )
-        self._going = False
+        self._begun = self._going = False
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -84,7 +87,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         self.agent = int(learners[chosen])
         seen = self.batch.reset(np.array([world]))
         self._others.start(np.zeros(1, np.int64), [learners[learners != self.agent]], [others])
-        self._going = True
+        self._begun = self._going = True
         return seen[0, self.agent].copy(), {"world": world, "agent": chosen}
 
     def step(self, action: Float32Array) -> tuple[Float32Array, float, bool, bool, dict[str, Any]]:
@@ -106,3 +109,14 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
             "terms": {name: float(term[at]) for name, term in terms(step).items()},
         }
         return last_seen(step)[at], float(step.reward[at]), terminated, truncated, info
+
+    def render(self) -> ByteArray | None:
+        """Return the world now (H, W, 3), with a ring around the learning agent; None: no mode.
+
+        Raises UsageError before the first reset.
+        """
+        if self.render_mode is None:
+            return None
+        if not self._begun:
+            raise UsageError("There is no world to draw: call reset() before render().")
+        return self._renderer.frame(self.batch.simulation, 0, self.agent)

@@ -10,7 +10,7 @@ from gymnasium.vector.utils import batch_space
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.envs.agent_batch import Transition
 from benchnav.envs.encoders.encoder import Float32Array
-from benchnav.envs.factory import Reward, make_batch, refuse_rendering
+from benchnav.envs.factory import Reward, check_render_mode, make_batch
 from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
 from benchnav.envs.learner_slots import LearnerSlots
 from benchnav.envs.seeding import joint_seed, plain_seed
@@ -54,7 +54,7 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
 
         Raises BenchnavError for a mistake in any of these.
         """
-        refuse_rendering(render_mode)
+        check_render_mode(render_mode)
         if others is not None:
             raise UsageError(
                 "Every agent learns here: `others` must be None. Got"

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from benchnav.arena.solid import Kind, Solid
+from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arrays import Extent, FloatArray, IntArray
 
 HEIGHT = {Kind.WALL: 1.5, Kind.STATIC: 1.0, Kind.DYNAMIC: 1.0}  # [m]
@@ -37,15 +37,15 @@ def _polygons(solid: Solid, bounds: Extent) -> list[shapely.Polygon]:
     """Return the area of a solid; walls without area get a thickness."""
     if solid.is_disc:
         return [shapely.Point(solid.center).buffer(solid.radius, quad_segs=_SIDES // 4)]
-    rings = [loop for loop in solid.loops if abs(_area(loop)) > 0.0]
-    thin = [shapely.LineString(loop) for loop in solid.loops if _area(loop) == 0.0]
+    rings = [loop for loop in solid.loops if abs(signed_area(loop)) > 0.0]
+    thin = [shapely.LineString(loop) for loop in solid.loops if signed_area(loop) == 0.0]
     area = shapely.union_all([line.buffer(_THIN, cap_style="flat") for line in thin])
-    if sum(map(_area, rings)) < 0.0:
+    if sum(map(signed_area, rings)) < 0.0:
         x0, y0, x1, y1 = bounds
         area = area.union(shapely.box(x0 - RIM, y0 - RIM, x1 + RIM, y1 + RIM))
-    for loop in sorted(rings, key=_area, reverse=True):  # holes are cut last
+    for loop in sorted(rings, key=signed_area, reverse=True):  # holes are cut last
         ring = shapely.Polygon(loop).buffer(0.0)
-        area = area.union(ring) if _area(loop) > 0.0 else area.difference(ring)
+        area = area.union(ring) if signed_area(loop) > 0.0 else area.difference(ring)
     parts = getattr(area, "geoms", [area])
     return [part for part in parts if isinstance(part, shapely.Polygon) and part.area > 0.0]
 
@@ -68,8 +68,3 @@ def _prism(polygon: shapely.Polygon, height: float) -> Mesh:
             triangles.append(np.array([[0, 1, 2], [0, 2, 3]]) + first)
             first += 4
     return Mesh(np.vstack(vertices), np.vstack(triangles))
-
-
-def _area(loop: FloatArray) -> float:
-    x, y = loop.T
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

@@ -1,14 +1,14 @@
 """Colours of 3-D recordings: those of the pages and figures."""
 
 from benchnav.arena.solid import Kind
-from benchnav.viewer.scene_figure import MOVER, STATIC, TEAMS, WALL
+from benchnav.drawing.top_view import FILL, TEAMS
 
 Color = tuple[float, float, float]  # red, green, blue in [0, 1]
 
 
 def color_of_kind(kind: Kind) -> Color:
     """Return the colour of walls and obstacles."""
-    return _rgb({Kind.WALL: WALL, Kind.STATIC: STATIC}.get(kind, MOVER))
+    return _rgb(FILL[kind])
 
 
 def color_of_team(team: int) -> Color:
