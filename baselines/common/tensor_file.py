@@ -1,4 +1,4 @@
-"""Learned arrays on disk: safetensors with plain text about them, never pickle."""
+"""Read and write learned arrays as safetensors with JSON metadata, never as pickle."""
 
 import hashlib
 import json

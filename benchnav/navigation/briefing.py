@@ -36,7 +36,7 @@ class Briefing:
     team: IntArray  # (A,) number of the team; agents of one team share it
     map: Map | None  # as the track grants it; None in the track `unknown`
     rng: np.random.Generator  # the only source of randomness
-    rehearsals: tuple[Rehearsal, ...] = ()  # as many as the navigator declares, or none
+    rehearsals: tuple[Rehearsal, ...] = ()  # leaders' earlier runs, if the navigator requests any
 
     def __len__(self) -> int:
         return len(self.radius)

@@ -21,7 +21,7 @@ class Map:
 
     @cached_property
     def capsules(self) -> FloatArray:
-        """(P, 5) x0, y0, x1, y1, radius of all solids."""
+        """(P, 5) x0, y0, x1, y1, radius of the P capsules of all solids."""
         if not self.solids:
             return np.zeros((0, 5))
         return np.vstack([solid.capsules for solid in self.solids])

@@ -59,7 +59,7 @@ class RecordedTrack(Spec):
     """A recording in the arena's frame: a file, or points in the scenario.
 
     An obstacle stands at its first point until its first time, and at its last
-    point after its last time. The recording starts at its first frame.
+    point after its last time. The first frame of a file is at t = 0.
     """
 
     type: Literal["recorded-track"]

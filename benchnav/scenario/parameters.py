@@ -23,7 +23,7 @@ LARGEST = 1e9
 
 
 class Parameter(Spec):
-    """An open number; `NAME:key=number` sets it."""
+    """A number that users of the scenario can set with `NAME:key=number`."""
 
     default: float = Field(ge=-LARGEST, le=LARGEST, description="value if none is given")
     low: float = Field(ge=-LARGEST, le=LARGEST, description="smallest allowed value")

@@ -56,7 +56,7 @@ class Scenario(Spec):
     title: str = Field("", max_length=200, description="one line, shown in lists")
     description: str = Field("", max_length=5000, description="purpose and difficulty")
     parameters: Parameters = Field(
-        {}, max_length=20, description="open numbers, which `NAME:key=number` sets"
+        {}, max_length=20, description="numbers that users can set with `NAME:key=number`"
     )
     bounds: Bounds = Field(description="edges of the arena: [xmin, ymin, xmax, ymax] [m]")
     walled: bool = Field(True, description="whether walls close the arena at its bounds")

@@ -127,9 +127,9 @@ def _named(value: Any) -> Any:
 
 
 class Team(Spec):
-    """Agents that share a role, a body and a driver.
+    """Agents that share a role, a body and a driver (the navigator that controls them).
 
-    Two teams with one name, one for each role, form one team of leaders and followers.
+    A leader entry and a follower entry with the same name form one team.
     """
 
     name: Name = Field(description="name of the team")
@@ -156,7 +156,11 @@ class Team(Spec):
     )
     driver: Annotated[
         NavigatorChoice, BeforeValidator(_named, json_schema_input_type=str | NavigatorChoice)
-    ] = NavigatorChoice(type="evaluated")
+    ] = Field(
+        NavigatorChoice(type="evaluated"),
+        description="navigator of background agents, which are not scored; `evaluated`: the"
+        " navigator under test",
+    )
     ignores: tuple[str, ...] = Field(
         (), description="names of teams that these agents do not sense"
     )

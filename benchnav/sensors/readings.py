@@ -34,10 +34,10 @@ class Rays(Rows):
     """The first object that each ray hits; the goal is on a separate layer."""
 
     angle: FloatArray  # (R,) [rad] from the agent's heading
-    distance: FloatArray  # (B, A, R) [m] until the ray or its disc hits; the range if it does not
+    distance: FloatArray  # (B, A, R) [m] until the ray (thick: its disc) hits; else the range
     kind: ByteArray  # (B, A, R) of Kind: NOTHING, AGENT, WALL, STATIC, DYNAMIC
     approach: FloatArray  # (B, A, R) [m/s] of the hit dynamic obstacle, towards the agent, else 0
-    goal: FloatArray  # (B, A, R) [m] along the ray to the own goal's disc; inf if missed or hidden
+    goal: FloatArray  # (B, A, R) [m] along the ray to the agent's goal; inf if missed or hidden
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Neighbours(Rows):
 
     position: FloatArray  # (B, A, K, 2) [m]
     velocity: FloatArray  # (B, A, K, 2) [m/s]
-    radius: FloatArray  # (B, A, K) [m] (dynamic obstacles: circumscribed)
+    radius: FloatArray  # (B, A, K) [m]; dynamic obstacle: radius of the circumscribed circle
     kind: ByteArray  # (B, A, K) Kind.AGENT or Kind.DYNAMIC
     count: IntArray  # (B, A) valid entries
 

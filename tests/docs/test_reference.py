@@ -26,7 +26,7 @@ def test_the_keys_of_motion_laws_are_listed():
 def test_fields_have_shape_unit_and_meaning():
     text = MAKER.observations()
     assert (
-        "| `distance` | (B, A, R) [m] until the ray or its disc hits; the range if it does not |"
+        "| `distance` | (B, A, R) [m] until the ray (thick: its disc) hits; else the range |"
         in text
     )
     assert "| `row` | number of the world from `reset` to the end of its episode |" in text

@@ -1,4 +1,4 @@
-"""The table as a controller, with waypoints in place of its goal."""
+"""The controller `q-learning`: a learned Q-table drives to the waypoints of a planner."""
 
 from benchnav.navigation import PluginConfig
 

@@ -1,4 +1,4 @@
-"""The recipe of the table: scenarios, duration and exploration of the training."""
+"""The recipe of a Q-learning training: scenarios, duration, exploration and rates."""
 
 from typing import Annotated, Literal
 

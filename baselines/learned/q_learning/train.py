@@ -1,4 +1,4 @@
-"""Training of the table in worlds of split train.
+"""Train the Q-table in worlds of the split `train`.
 
 The same recipe and seed give the same table, bit for bit.
 """

@@ -1,1 +1,1 @@
-"""Handles on stored and drawn records: a run, its tables, a scenario, a world, an episode."""
+"""Objects of the Python API: a run, its tables, a scenario, a world and an episode."""
