@@ -53,9 +53,8 @@ class OrcaPpo(Controller):
     ORCA assumes that a body can execute its commands, and that others avoid it too. Therefore the
     policy of `recurrent-ppo-plus`, which learned on unicycles among obstacles that
     never yield, drives unicycles, and every agent that has just sensed a dynamic
-    obstacle; ORCA drives all others. The policy is better with goals than with waypoints
-    (`.waypoint`), and avoids obstacles itself: unless the path is a detour, its
-    target is the goal.
+    obstacle; ORCA drives all others. The policy is better with goals than with waypoints,
+    and avoids obstacles itself: unless the path is a detour, its target is the goal.
     """
 
     Config = OrcaPpoConfig

@@ -17,14 +17,17 @@ HEAD = '''# Metrics
 Generated from the registry by `python -m benchnav.metrics.page > docs/metrics.md`; a test
 compares the two.
 
-A metric is a pure function of an episode. Agents' values are averaged over the evaluated
-agents of a role for which they are defined, leaders and followers apart, then over seeds.
+A metric is a pure function of an episode. (A,) denotes one value per agent. Values are averaged
+over the evaluated agents of a role for which they are defined, leaders and followers apart, then
+over seeds. An *attempt* is the time in which an agent is on its way. A contact is *charged* to an
+agent on its way; the rule `charge` decides for an agent that stays after its attempt.
 An undefined value is NaN, never a perfect score. Every agent's trajectory is cut at its
 arrival, its end or its navigator's failure. A metric that is defined only for arrivals shows
 the number of its episodes, and never ranks. A metric without a direction does not rank.
 A value that accumulates over an attempt does not rank, because an agent that crashes has less
 time to hit or to be near anything: `check_metric` tests that no ranking metric improves by an
-early end. Timings are marked, because others cannot verify them.
+early end. (`contact_time` is undefined if a contact ends the attempt.) Timings are marked,
+because others cannot verify them.
 
 The value of every metric stays the same, except for rounding, if the world is moved or turned
 or its agents are reordered, and within 5 % if the same smooth motion is recorded at dt, dt/2
@@ -48,7 +51,7 @@ def early(episode):
 check_metric(early)
 ```
 
-A distribution names each of its metrics by an entry point of the group `benchnav.metrics`:
+A Python package registers each of its metrics by an entry point of the group `benchnav.metrics`:
 `early = "my_package.metrics:early"`. In a script, `benchnav.register_metric("early")(early)`
 registers it in this process.
 

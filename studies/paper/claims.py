@@ -38,6 +38,7 @@ def section(material: Material) -> Iterator[str]:
         f" from {100 * GOOD:.0f} % on; movers (dynamic obstacles) are avoided up to"
         f" {100 * SAFE:.0f} hit per 100 agents."
         " *Contradicted* means that the opposite holds; *not confirmed* means neither."
+        " *In part* means that only a part of the claim holds."
     )
     yield ""
     found = ((text, *judge(material)) for text, judge in CLAIMS)

@@ -28,8 +28,8 @@ def section(evidence: Evidence, found: dict[str, Behaviour], pictures: Pictures)
     yield (
         "`leaders/dynamic`, track `unknown`. An *encounter* begins when the collision"
         " probability of"
-        " Eq. 22–24 with one mover exceeds T_c = 0.6, and ends two seconds after the closest"
-        " approach;"
+        " Eq. 22–24 with one mover exceeds T_c = 0.6 (the *alarm*), and ends two seconds after the"
+        " closest approach; the *gap* is that to the mover's circumscribed circle;"
         f" changes below {SPEED} m/s in speed, or below {np.degrees(TURN):.0f}° in heading, do not"
         " count."
     )

@@ -100,8 +100,8 @@ BY_DESIGN = {
     ),
     "*.config.title, *.config.description": "texts for people; nothing follows from them",
     "manifest.suite.navigators[].config.*": (
-        "a parameter that changes no command there; any other is found by --rerun, or named as a"
-        " navigator that was not run again"
+        "a parameter that changes no command of the run. --rerun finds any other change, or"
+        " reports that it did not run the navigator"
     ),
     "manifest.suite.navigators[].source, manifest.suite.navigators[].fingerprint,"
     " manifest.suite.navigators[].mode": (
@@ -114,9 +114,10 @@ BY_DESIGN = {
     "manifest.limits, manifest.limits.*": (
         "limits depend on the author's machine; verification shows them"
     ),
-    "manifest.shard": "a key that is left out stands for no shard; another value is found",
+    "manifest.shard": "a missing key means that the run is no shard; any other change is found",
     "manifest.unguarded": (
-        "an author may leave out that a navigator ran unguarded; only --rerun tells what it does"
+        "an author may remove the note that a navigator ran unguarded; only --rerun checks its"
+        " commands"
     ),
     "manifest.versions.*, manifest.platform, manifest.created, manifest.provenance,"
     " manifest.provenance.*": (

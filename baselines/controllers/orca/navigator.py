@@ -12,9 +12,9 @@ from .avoidance import Avoidance, OrcaConfig
 class Orca(Navigator):
     """Optimal reciprocal collision avoidance with the goal as preferred direction.
 
-    Agents share the effort with agents; beside a dynamic obstacle, which never
-    yields, they make all of it. A unicycle tracks the velocity as the simulator
-    defines.
+    Each of two agents makes half of the avoidance; near a dynamic obstacle, which never
+    yields, an agent makes all of it. For a unicycle, the simulator converts the velocity
+    into forward speed and turn rate.
     """
 
     Config = OrcaConfig

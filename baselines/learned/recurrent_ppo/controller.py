@@ -9,7 +9,7 @@ from .policy_at_work import PolicyConfig, pilot_of
 
 
 class RecurrentPPOController(PilotedController):
-    """The policy of `recurrent-ppo`, with the guide's target as its goal (`..waypoint`)."""
+    """The policy of `recurrent-ppo`, with the guide's target as its goal."""
 
     Config = PolicyConfig
     shipped: ClassVar[str] = "recurrent-ppo.safetensors"
