@@ -17,4 +17,4 @@ def schema(
     """
     from benchnav.api.authoring.schema import schema as schema_of
 
-    put(json.dumps(schema_of(of), indent=2, ensure_ascii=False))
+    put(json.dumps(schema_of(of), indent=2))  # ASCII: valid JSON in every code page
