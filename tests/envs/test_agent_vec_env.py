@@ -201,9 +201,9 @@ def test_ppo_of_attempts_learns_from_decisions_only(tmp_path):
 
 def test_the_factory_of_stable_baselines_makes_single_environments():
     asked = {"scenario": "crowd/circle-crossing", "worlds": 2, "others": "orca"}
-    with pytest.warns(UserWarning, match="render_mode='rgb_array' that is not in the possible"):
-        env = make_vec_env(LEADER, 2, env_kwargs=asked, seed=0)
+    env = make_vec_env(LEADER, 2, env_kwargs=asked, seed=0)
     assert env.reset().shape == (2, 62)
+    assert env.render().shape[-1] == 3  # both worlds in one picture
     with pytest.raises(UsageError, match="AttemptMonitor wraps an AgentVecEnv"):
         AttemptMonitor(env)
 

@@ -9,9 +9,9 @@ import pytest
 from studies.interval_coverage import (
     APART,
     CORRELATIONS,
-    asked,
     cells,
     difference_coverage,
+    is_required,
     mean_coverage,
     rate_coverage,
 )
@@ -58,6 +58,6 @@ def test_what_falls_outside_is_measured_again():
     assert (seen.count(100), texts[-1]) == (1, "yes")
     assert "0.950*" in texts
     assert cells(lambda chance, tables: 0.92, 10)[-1] == "no"
-    assert asked(0.98, 0.99)
-    assert not asked(0.5, 0.99)
-    assert asked(0.05, 0.99, 0.1)
+    assert is_required(0.98, 0.99)
+    assert not is_required(0.5, 0.99)
+    assert is_required(0.05, 0.99, 0.1)
