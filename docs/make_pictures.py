@@ -13,7 +13,7 @@ import matplotlib
 import numpy as np
 from matplotlib import pyplot
 
-from benchnav.drawing.top_view import INK
+from benchnav.drawing.palette import INK
 from benchnav.episode.episode import Episode
 from benchnav.generation.build import build
 from benchnav.runner.rollouts.rollout import Assignment, rollout

@@ -8,10 +8,8 @@ from PIL import Image, ImageDraw
 from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, ByteArray, FloatArray
+from benchnav.drawing.palette import FILL, INK, PAPER, color_of
 
-PAPER, INK = "#ffffff", "#22303c"
-FILL = {Kind.WALL: "#36454f", Kind.STATIC: "#b4bec6", Kind.DYNAMIC: "#e07a3f"}
-TEAMS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d00", "#7a5195", "#4d4d4d")
 _FINER = 2  # lines are drawn so many times finer, and averaged
 _RIM = 0.015  # of the longer side: how thick the wall along the bounds is drawn
 
@@ -36,7 +34,7 @@ class TopView:
         for place, radius, team in zip(
             world.agents.goal, world.agents.radius, world.agents.team, strict=True
         ):
-            self._disc(draw, place, radius, outline=TEAMS[int(team) % len(TEAMS)])
+            self._disc(draw, place, radius, outline=color_of(int(team)))
 
     def draw(
         self, position: FloatArray, heading: FloatArray, bodies: FloatArray, present: BoolArray,
@@ -58,7 +56,7 @@ class TopView:
         agents = self.world.agents
         for a in np.flatnonzero(present[: len(agents)]):
             radius, team = float(agents.radius[a]), int(agents.team[a])
-            self._disc(draw, position[a], radius, fill=TEAMS[team % len(TEAMS)])
+            self._disc(draw, position[a], radius, fill=color_of(team))
             ahead = radius * np.array([math.cos(heading[a]), math.sin(heading[a])])
             tip = self._pixels(np.array([position[a], position[a] + ahead]))
             draw.line(tip, fill=PAPER, width=_FINER * 2)

@@ -133,7 +133,7 @@ class Scenario(Spec):
     def hash(self) -> str:
         """16 hex digits over everything that affects the worlds, including the bytes of files.
 
-        Titles, descriptions and the list of parameters are left out. `canonical` says how the
+        Titles, descriptions and the list of parameters are left out. `canonical` defines how the
         keys enter.
         """
         digest = hashlib.sha256()

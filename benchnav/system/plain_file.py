@@ -3,8 +3,12 @@
 import errno
 import os
 import stat
+from collections.abc import Iterator
+from contextlib import contextmanager
 from io import BufferedReader
 from pathlib import Path
+
+from benchnav.errors import StoreError
 
 _KINDS = {
     stat.S_IFDIR: "a folder",
@@ -43,6 +47,17 @@ def require_writable(path: Path) -> None:
     """Raise OSError if ``path`` exists and is not a regular file."""
     if path.exists():
         _refuse_other(path, path.stat().st_mode)
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Translate an OSError in the block into the StoreError that names the file to write."""
+    try:
+        require_writable(path)
+        yield
+    except OSError as error:
+        reason = error.strerror or error
+        raise StoreError(f"{path} must be writable. The system says: {reason}.") from error
 
 
 def _refuse_other(path: Path, mode: int) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -10,8 +11,8 @@ import numpy as np
 
 from benchnav.arrays import AnyArray
 from benchnav.episode.episode import Episode
-from benchnav.errors import MissingExtraError, StoreError
-from benchnav.system.plain_file import require_writable
+from benchnav.errors import MissingExtraError
+from benchnav.system.plain_file import writing
 from benchnav.viewer.picture import blank
 from benchnav.viewer.scene_figure import aspect, draw_episode
 
@@ -31,14 +32,11 @@ def save_gif(episodes: Sequence[Episode], path: Path) -> None:
     frames = [fromarray(frame) for frame in _frames(episodes, frame_times(episodes, FRAMES))]
     palette = frames[len(frames) // 2].quantize(_COLORS)
     same = [frame.quantize(palette=palette, dither=Dither.NONE) for frame in frames]
-    try:
-        require_writable(path)
+    with writing(path):
         same[0].save(
             path, save_all=True, append_images=same[1:], duration=1000 // RATE, loop=0,
             optimize=True,
         )  # fmt: skip
-    except OSError as error:
-        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
 
 
 def save_mp4(episodes: Sequence[Episode], path: Path) -> None:
@@ -54,20 +52,16 @@ def save_mp4(episodes: Sequence[Episode], path: Path) -> None:
     frames = _frames(episodes, frame_times(episodes))
     first = next(frames)
     high, wide = first.shape[0] // 2 * 2, first.shape[1] // 2 * 2  # H.264 needs even sizes
-    longest = max(episodes, key=lambda episode: len(episode.position))
-    rate = (len(longest.position) - 1) / float(longest.times[-1])
-    try:
-        require_writable(path)
-        path.open("wb").close()  # a folder that is missing shows here, not in the encoder
+    rate = 1.0 / min(episode.world.clock.dt for episode in episodes)
+    with writing(path):
+        path.open("wb").close()  # a missing folder is noticed here, not in the encoder
         encoder = write_frames(
             str(path), (wide, high), fps=rate, macro_block_size=2, ffmpeg_log_level="fatal"
         )
         encoder.send(None)
-        for frame in (first, *frames):
+        for frame in chain([first], frames):
             encoder.send(np.ascontiguousarray(frame[:high, :wide]))
         encoder.close()
-    except OSError as error:
-        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
 
 
 def frame_times(episodes: Sequence[Episode], most: int | None = None) -> list[float]:

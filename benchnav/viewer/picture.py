@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeGuard
 
-from benchnav.errors import MissingExtraError, StoreError
-from benchnav.system.plain_file import require_writable
+from benchnav.errors import MissingExtraError
+from benchnav.system.plain_file import writing
 from benchnav.system.user_folders import home_is_usable, user_cache
 
 if TYPE_CHECKING:
@@ -55,9 +55,5 @@ def save(figure: Figure, path: Path) -> None:
     """
     from matplotlib import rc_context
 
-    try:
-        require_writable(path)
-        with rc_context({"svg.hashsalt": "benchnav", "svg.fonttype": "none"}):
-            figure.savefig(path, dpi=DPI, metadata=_UNDATED[path.suffix.lower()])
-    except OSError as error:
-        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+    with writing(path), rc_context({"svg.hashsalt": "benchnav", "svg.fonttype": "none"}):
+        figure.savefig(path, dpi=DPI, metadata=_UNDATED[path.suffix.lower()])

@@ -10,10 +10,11 @@ import numpy as np
 from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
 from benchnav.arrays import Extent, FloatArray
-from benchnav.drawing.top_view import FILL, INK, TEAMS
+from benchnav.drawing.palette import FILL, INK, TEAMS
 from benchnav.episode.episode import Episode, Status
 from benchnav.errors import UsageError
-from benchnav.metrics.quantities.trajectory import cut, positions_at, present_at
+from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.metrics.quantities.trajectory import positions_at, present_at
 from benchnav.viewer.picture import blank
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ def draw_episode(axes: Axes, episode: Episode, time: float | None = None) -> Non
     if at_start:
         draw_agents(axes, world, world.agents.start, world.agents.heading)
     else:
-        here = present_at(cut(episode), np.array([time]))[:, 0]
+        here = present_at(analyse(episode).trajectories, np.array([time]))[:, 0]
         draw_agents(axes, world, episode.position[state], episode.heading[state], here)
     _tidy(axes, frame)
 
@@ -128,7 +129,7 @@ def draw_trails(axes: Axes, episode: Episode, until: float) -> None:
     from matplotlib.collections import LineCollection
     from matplotlib.colors import to_rgba
 
-    trajectories, dt = cut(episode), episode.world.clock.dt
+    trajectories, dt = analyse(episode).trajectories, episode.world.clock.dt
     arrived = episode.status[-1] == int(Status.ARRIVED)
     for a in range(len(trajectories)):
         last = min(int(trajectories.last[a]), round(until / dt))

@@ -5,12 +5,11 @@ from collections.abc import Iterator, Sequence
 from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray
+from benchnav.drawing.palette import FILL, color_of
 from benchnav.episode.episode import Episode, Status
 from benchnav.world.simulation import Simulation
 
 WIDTH = 480  # of the picture [pixels]
-_FILL = {Kind.WALL: "#555", Kind.STATIC: "#999", Kind.DYNAMIC: "#d55e00"}
-_AGENTS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#f0e442")  # by team
 
 
 def world_svg(world: World) -> str:
@@ -57,7 +56,7 @@ def _scene(world: World, bodies: FloatArray) -> Iterator[str]:
 
 
 def _solid(solid: Solid) -> str:
-    color = _FILL.get(solid.kind, "#555")
+    color = FILL[Kind(solid.kind)]
     if solid.is_disc:
         x, y = solid.center
         return f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{solid.radius:.3f}" fill="{color}"/>'
@@ -88,7 +87,7 @@ def _discs(world: World, position: FloatArray, hollow: BoolArray | None = None) 
 
 
 def _color(world: World, agent: int) -> str:
-    return _AGENTS[int(world.agents.team[agent]) % len(_AGENTS)]
+    return color_of(int(world.agents.team[agent]))
 
 
 def _points(points: FloatArray) -> str:

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 import benchnav
-from benchnav.drawing.top_view import TEAMS, TopView
+from benchnav.drawing.palette import TEAMS
+from benchnav.drawing.top_view import TopView
 from benchnav.envs.factory import NoRenderingError
 from benchnav.envs.gym.leader_env import LeaderEnv
 from benchnav.envs.parallel_env import LeadersEnv

@@ -11,10 +11,13 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
 import benchnav
+from benchnav.api.records.episode import Episode
+from benchnav.api.records.replay import Replay
 from benchnav.arena.solid import Kind
 from benchnav.episode.episode import Status
 from benchnav.errors import StoreError, UsageError
 from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.navigation import Navigator
 from benchnav.viewer.replay.clearance import clearance
 from benchnav.viewer.replay.packing import packed, unpacked
 from benchnav.viewer.replay.page import replay_page
@@ -73,6 +76,7 @@ def test_senses_are_those_of_the_navigator(episode):
     active = episode.status[:, agents] == int(Status.ACTIVE)
     assert (found.distance[~active] == episode.world.sensing.rays.range).all()
     hits = found.kind == int(Kind.AGENT)
+    assert (hits & active[..., None]).any()
     for t, n, ray in np.argwhere(hits & active[..., None]):
         angle = episode.heading[t, agents[n]] + found.angle[ray]
         end = episode.position[t, agents[n]]
@@ -134,16 +138,13 @@ def test_a_page_asks_for_nothing_and_is_small(episode):
 
 
 def test_a_page_shows_one_to_nine(episode):
-    content = scene(episode, np.zeros(0, np.int64))
-    assert replay_page([content] * 9)
+    assert Replay([episode] * 9, agents=[]).html
     for count in (0, 10):
         with pytest.raises(UsageError, match="1 to 9"):
-            replay_page([content] * count)
+            Replay([episode] * count)
 
 
 def test_saving(episode, tmp_path):
-    from benchnav.api.records.episode import Episode
-
     handle = Episode(episode).replay(agents=[0])
     assert handle.save(tmp_path / "a.html").read_text(encoding="utf-8") == handle.html
     assert "<iframe srcdoc=" in handle._repr_html_()
@@ -152,4 +153,26 @@ def test_saving(episode, tmp_path):
     with pytest.raises(StoreError, match="must be writable"):
         handle.save(tmp_path / "missing" / "a.html")
     with pytest.raises(UsageError, match="0 to 3"):
-        Episode(episode).replay(agents=[4]).save(tmp_path / "b.html")
+        Episode(episode).replay(agents=[4])
+
+
+@pytest.mark.parametrize("suffix", [".html", ".png", ".gif", ".mp4", ".rrd", ".mcap"])
+def test_an_episode_without_a_decision_is_shown(tmp_path, suffix):
+    """A navigator that fails in `reset` leaves one state."""
+
+    class Fails(Navigator):
+        def reset(self, briefings, rows):
+            raise RuntimeError("no")
+
+        def act(self, observation):
+            raise AssertionError
+
+    for module in {".mp4": ["imageio_ffmpeg"], ".mcap": ["mcap_protobuf"], ".rrd": ["rerun"]}.get(
+        suffix, ["matplotlib"]
+    ):
+        pytest.importorskip(module)
+    world = benchnav.load_scenario("leaders/dynamic").world(seed=7)
+    failed = benchnav.simulate(world, Fails())
+    assert failed.failure
+    assert len(failed.record.position) == 1
+    assert failed.replay().save(tmp_path / f"a{suffix}").stat().st_size > 0

@@ -1,7 +1,5 @@
 """The page of a replay in a real browser: it loads, plays, is scrubbed and jumps."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -93,7 +91,7 @@ def test_a_crowd_of_a_thousand_is_small_and_plays(tmp_path):
     from tests.viewer.made_episode import straight_episode
 
     record = straight_episode(drawn, 600)
-    page = Episode(replace(record)).replay().html
+    page = Episode(record).replay().html
     assert len(page) <= 8_000_000
     frames = in_browser(page, READY + """
       let frames = 0;

@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 import benchnav
-from benchnav.drawing.top_view import TEAMS
+from benchnav.drawing.palette import TEAMS
 from benchnav.errors import MissingExtraError, StoreError, UsageError
 from benchnav.viewer.animation import frame_times
 from benchnav.viewer.scene_figure import episode_figure, world_figure

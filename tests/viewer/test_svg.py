@@ -6,6 +6,7 @@ import numpy as np
 
 import benchnav
 from benchnav.arena import Kind
+from benchnav.drawing.palette import FILL
 from benchnav.viewer.svg import world_svg
 from benchnav.world.simulation import Simulation
 
@@ -23,7 +24,7 @@ def test_a_world_has_its_agents_goals_and_moving_obstacles():
     for x, y in (*world.agents.start, *world.agents.goal):
         assert (round(float(x), 3), round(float(y), 3)) in circles(drawn)
     moving = [body.solid for body in world.bodies if body.solid.kind == Kind.DYNAMIC]
-    assert drawn.count('fill="#d55e00"') == len(moving) > 0
+    assert drawn.count(f'fill="{FILL[Kind.DYNAMIC]}"') == len(moving) > 0
     first = moving[0].loops[0] + Simulation([world]).body_position[0, 0]
     assert f"M {first[0, 0]:.3f},{first[0, 1]:.3f} " in drawn
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from benchnav.api.authoring.free_name import free_name, name_taken
 from benchnav.api.authoring.navigator_template import navigator_package
-from benchnav.errors import StoreError, UsageError
+from benchnav.errors import UsageError
 from benchnav.processes.main_module import stop_import_of_main
+from benchnav.system.plain_file import writing
 
 
 def new_navigator(name: str, folder: "str | PathLike[str] | None" = None) -> Path:
@@ -33,12 +34,8 @@ def new_navigator(name: str, folder: "str | PathLike[str] | None" = None) -> Pat
     target = Path(name if folder is None else folder)
     if target.exists() and (not target.is_dir() or any(target.iterdir())):
         raise UsageError(f"{target} must be missing or an empty folder. It is not empty.")
-    try:
-        for file, text in navigator_package(name).items():
+    for file, text in navigator_package(name).items():
+        with writing(target / file):
             (target / file).parent.mkdir(parents=True, exist_ok=True)
             (target / file).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise StoreError(
-            f"{target} must be writable. The system says: {error.strerror}."
-        ) from error
     return target

@@ -50,12 +50,12 @@ _EXTRAS = {
 class Check(NamedTuple):
     """One line of a diagnosis."""
 
-    verdict: str  # OK, LACKING or WRONG
+    verdict: str  # OK, MISSING or WRONG
     subject: str
     detail: str
 
 
-OK, LACKING, WRONG = "ok", "-", "WRONG"
+OK, MISSING, WRONG = "ok", "-", "WRONG"
 
 
 class Diagnosis:
@@ -107,7 +107,7 @@ def _packages() -> Iterator[Check]:
         have = [f"{name} {version(name)}" for name in packages if name not in absent]
         if absent:
             detail = f"without {', '.join(absent)}: pip install 'benchnav[{extra}]'"
-            yield Check(LACKING, f"extra [{extra}]", detail)
+            yield Check(MISSING, f"extra [{extra}]", detail)
         else:
             yield Check(OK, f"extra [{extra}]", ", ".join(have))
 
@@ -138,7 +138,7 @@ def _receipts() -> Iterator[Check]:
 
 def _folder(name: str, place: Path, reason: str) -> Check:
     if reason:
-        return Check(LACKING, name, f"{place}, because {reason}")
+        return Check(MISSING, name, f"{place}, because {reason}")
     return Check(OK, name, str(place))
 
 
@@ -152,7 +152,7 @@ def _plugins() -> Iterator[Check]:
         yield Check(OK, f"{registry.kind}s", f"{len(answers) - len(errors)} can be used")
         for cause in dict.fromkeys(incomplete.values()):
             names = ", ".join(name for name, why in incomplete.items() if why == cause)
-            yield Check(LACKING, f"{registry.kind}s", f"without {names}. {cause}")
+            yield Check(MISSING, f"{registry.kind}s", f"without {names}. {cause}")
         for name, error in errors.items():
             if name not in incomplete:
                 yield Check(WRONG, registry.kind, str(error))

@@ -67,8 +67,6 @@ def _page(page: str | BenchnavError) -> str:
 
 def _pair(name: str) -> Iterator[str]:
     """Yield the page of a navigator that is named by its parts."""
-    from benchnav.api.components.inspection import inspect_plugins
-
     if is_pair(name):
         yield _page(inspect_plugins(NAVIGATORS, [name], PAIR)[name])
 

@@ -5,8 +5,7 @@ from html import escape
 from os import PathLike
 from pathlib import Path
 
-from benchnav.errors import StoreError
-from benchnav.system.plain_file import require_writable
+from benchnav.system.plain_file import writing
 
 
 def written(text: str, path: "str | PathLike[str] | None") -> str:
@@ -16,13 +15,8 @@ def written(text: str, path: "str | PathLike[str] | None") -> str:
     """
     if path is not None:
         target = Path(path)
-        try:
-            require_writable(target)
+        with writing(target):
             target.write_text(text, encoding="utf-8")
-        except OSError as error:
-            raise StoreError(
-                f"{target} must be writable. The system says: {error.strerror}."
-            ) from error
     return text
 
 

@@ -115,7 +115,8 @@ class Episode:
         """Return a replay: it shows itself in a notebook, and `save` writes it to a file.
 
         Args:
-            agents: whose senses and charts it holds; None: up to four, failed ones first.
+            agents: those whose sensor readings and charts it holds; None: up to four, first those
+                that did not succeed.
         """
         from benchnav.api.records.replay import Replay
 

@@ -1,5 +1,6 @@
 """Choose stored episodes the way people name them: the failed ones, the worst ones."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import pyarrow.compute as pc
@@ -16,7 +17,7 @@ Key = tuple[str, str, str, int]  # navigator, scenario, track, seed
 def failed_episodes(folder: RunFolder, places: Sequence[Place], owner: object = None) -> Episodes:
     """Return those in which an evaluated agent did not succeed, in the same order."""
     values = _values(folder, SUCCESS)
-    lost = [place for place in places if values.get(_key(place), 1.0) < 1.0]
+    lost = [place for place in places if min(values.get(_key(place), [1.0])) < 1.0]
     return Episodes(lost, owner)
 
 
@@ -31,21 +32,15 @@ def worst_episodes(
 
     declared = declared_metrics()[0]
     values = _values(folder, metric)
-    if not values:
-        held = results_of(folder)["metric"].unique().to_pylist()
-        raise UsageError(
-            f"The metric must be one that the run holds. Got {metric!r} instead."
-            f"{did_you_mean(metric, held)}"
-        )
     better = declared[metric].better if metric in declared else None
     if better is None:
         raise UsageError(
-            f"The metric must have a better side, higher or lower, to say what is worst."
-            f" {metric!r} describes only; {SUCCESS!r} and 'collided' have one."
+            "The metric must have a better side, higher or lower, to define the worst."
+            f" {metric!r} has none; {SUCCESS!r} and 'collided' have one."
         )
-    sign = 1.0 if better == "higher" else -1.0
+    worst, sign = (min, 1.0) if better == "higher" else (max, -1.0)
     known = [place for place in places if _key(place) in values]
-    return Episodes(sorted(known, key=lambda place: sign * values[_key(place)]), owner)
+    return Episodes(sorted(known, key=lambda place: sign * worst(values[_key(place)])), owner)
 
 
 def in_same_world(
@@ -67,16 +62,24 @@ def in_same_world(
     return Episodes(found, owner)
 
 
-def _values(folder: RunFolder, metric: str) -> Mapping[Key, float]:
-    """Return the values of a metric; with several roles, the lowest one of each episode."""
+def _values(folder: RunFolder, metric: str) -> Mapping[Key, list[float]]:
+    """Return the defined values of a metric: one for each role of an episode.
+
+    Raises UsageError for a metric that the run does not hold.
+    """
     table = results_of(folder)
+    held = table["metric"].unique().to_pylist()
+    if metric not in held:
+        raise UsageError(
+            f"The metric must be one that the run holds. Got {metric!r} instead."
+            f"{did_you_mean(metric, held)}"
+        )
     table = table.filter(pc.equal(table["metric"], metric))
     names = ("navigator", "scenario", "track", "seed", "value")
-    found: dict[Key, float] = {}
+    found: dict[Key, list[float]] = {}
     for *key, value in zip(*(table[name].to_pylist() for name in names), strict=True):
-        if value is not None and value == value:  # not NaN
-            at: Key = tuple(key)
-            found[at] = min(value, found.get(at, value))
+        if not math.isnan(value):
+            found.setdefault(tuple(key), []).append(value)
     return found
 
 

@@ -88,12 +88,12 @@ class Episodes(Sequence[Episode]):
         """Return a replay of all of them side by side: at most nine.
 
         Args:
-            agents: whose senses and charts it holds; None: up to four, failed ones first.
+            agents: those whose sensor readings and charts it holds; None: up to four, first those
+                that did not succeed.
         """
-        from benchnav.api.records.replay import Replay
+        from benchnav.api.records.replay import MOST, Replay
 
-        require_few(len(self))
-        return Replay([episode.record for episode in self], agents)
+        return Replay([episode.record for episode in self[: MOST + 1]], agents)
 
     def __repr__(self) -> str:
         navigators = dict.fromkeys(place.navigator for place in self._places)
@@ -157,17 +157,6 @@ def _read(places: Sequence[Place]) -> Iterator[Episode]:
         place = wanted.get(record.identity.seed)
         if place is not None:
             yield Episode(replace(record, identity=replace(record.identity, track=place.track)))
-
-
-def require_few(count: int) -> None:
-    """Raise UsageError unless so many episodes fit side by side."""
-    from benchnav.viewer.replay.page import MOST
-
-    if not 1 <= count <= MOST:
-        raise UsageError(
-            f"A replay shows 1 to {MOST} episodes side by side. Got {count}: name a navigator,"
-            " a scenario, a track or a seed."
-        )
 
 
 def _require(what: str, name: str | None, known: Sequence[str]) -> None:

@@ -7,7 +7,6 @@ from functools import cached_property
 from html import escape
 from os import PathLike
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -19,6 +18,7 @@ from benchnav.errors import UsageError, did_you_mean
 PAGE, GIF, FILM = ".html", ".gif", ".mp4"
 MCAP, RERUN = ".mcap", ".rrd"
 FIGURES = (".png", ".svg", ".pdf")
+MOST = 9  # episodes side by side
 SUFFIXES = (PAGE, *FIGURES, GIF, FILM, RERUN, MCAP)
 
 
@@ -26,34 +26,43 @@ class Replay:
     """One page with everything in it: it opens from disk without a network."""
 
     def __init__(self, records: Sequence[Record], agents: Sequence[int] | None = None) -> None:
-        """Take 1 to 9 episodes; ``agents`` are those whose senses and charts are held."""
+        """Take 1 to 9 episodes.
+
+        Args:
+            records: the episodes.
+            agents: those whose sensor readings and charts the page holds; None: up to four, first
+                those that did not succeed.
+
+        Raises UsageError for another number of episodes, and for an agent that there is not.
+        """
+        if not 1 <= len(records) <= MOST:
+            raise UsageError(
+                f"A replay shows 1 to {MOST} episodes side by side. Got {len(records)}: name a"
+                " navigator, a scenario, a track or a seed."
+            )
+        for record in records:
+            _require_agents(agents, len(record.world.agents))
         self._records = tuple(records)
         self._agents = agents
-
-    @cached_property
-    def scenes(self) -> list[dict[str, Any]]:
-        """The content of the page, one entry an episode."""
-        from benchnav.viewer.replay.scene import scene
-
-        return [scene(record, self._chosen_agents(record)) for record in self._records]
 
     @cached_property
     def html(self) -> str:
         """The page."""
         from benchnav.viewer.replay.page import replay_page
+        from benchnav.viewer.replay.scene import scene
 
-        return replay_page(self.scenes)
+        return replay_page([scene(each, self._chosen_agents(each)) for each in self._records])
 
     def save(self, path: "str | PathLike[str]", times: Sequence[float] = ()) -> Path:
-        """Write the replay to a file, in the format of its ending, and return its path.
+        """Write the replay to a file, in the format of its suffix, and return its path.
 
         Args:
             path: ends in .html (a page), .gif or .mp4 (a moving picture), .png, .svg or .pdf (a
                 figure), .rrd (for the Rerun viewer) or .mcap (for Foxglove).
             times: [s] of a figure with snapshots in a row; none: one picture with trails.
 
-        Raises UsageError for another ending or a wrong time, StoreError if the file cannot be
-        written, MissingExtraError if a picture is wanted and matplotlib is not installed.
+        Raises UsageError for another suffix or a wrong time, StoreError if the file cannot be
+        written, MissingExtraError if a library of the format is not installed.
         """
         target = Path(path)
         suffix = target.suffix.lower()
@@ -93,10 +102,9 @@ class Replay:
         save(record, self._chosen_agents(record), path)
 
     def _chosen_agents(self, record: Record) -> IntArray:
-        """Return the agents (n,) whose senses are shown."""
+        """Return the agents (n,) whose sensor readings are shown."""
         from benchnav.viewer.replay.scene import interesting
 
-        _require_agents(self._agents, len(record.world.agents))
         return interesting(record) if self._agents is None else np.array(self._agents, np.int64)
 
     def __repr__(self) -> str:

@@ -21,7 +21,7 @@ def load_scenario(name: "str | PathLike[str]", **parameters: float) -> "Scenario
     Raises:
         UnknownPluginError: there is no scenario of this name.
         UsageError: it has no such parameter, or the value is out of bounds.
-        ScenarioError: the file is wrong; every line says file:line: key.
+        ScenarioError: the file is wrong; each line begins with file:line: key.
     """
     base, given = split_parameters(str(name))
     return Scenario(base + joined_parameters({**given, **parameters}))

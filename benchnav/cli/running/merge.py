@@ -14,7 +14,7 @@ def merge(
 ) -> None:
     """Merge runs that executed shares of one suite.
 
-    Prints the merged run on stdout, and says what it still lacks. Episodes that several
+    Prints the merged run on stdout, and names its missing episodes. Episodes that several
     runs hold must be the same.
     """
     from benchnav.api.records.run import merge as merged

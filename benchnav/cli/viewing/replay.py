@@ -39,8 +39,8 @@ def replay(
     agent: Annotated[
         list[int] | None,
         typer.Option(
-            help="With the senses and charts of this agent. Repeatable."
-            " [default: four agents, failed ones first]"
+            help="With the sensor readings and charts of this agent. Repeatable."
+            " [default: four agents, first those that did not succeed]"
         ),
     ] = None,
     list_: Annotated[
@@ -60,9 +60,9 @@ def replay(
     ] = None,
     show: Annotated[bool, typer.Option("--open", help="Open the file.")] = False,
 ) -> None:
-    """Show stored episodes: write a page that plays them, and opens from disk without a network.
+    """Write a page that plays stored episodes. It opens from disk without a network.
 
-    Without options it shows the first episode that failed, or the first one if none did.
+    Without options it shows the first episode in which an agent did not succeed, or the first one.
     """
     from benchnav.api.records.replay import Replay, open_in_browser
     from benchnav.api.records.run import open_run
@@ -77,8 +77,8 @@ def replay(
         if episodes:
             chosen = _named(opened, episodes)
         else:
-            any_order = not (failed or worst or seed is not None)
-            chosen = _first(opened, found, navigators, failed_first=any_order)
+            is_unnamed = not (failed or worst or seed is not None)
+            chosen = _first(opened, found, navigators, failed_first=is_unnamed)
         page = Replay([episode.record for episode in chosen], agent)
         path = page.save(out or Path(_file_name(chosen.places)), time or ())
     say(f"{page!r}")

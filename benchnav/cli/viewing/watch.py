@@ -34,9 +34,9 @@ def watch(
         bool, typer.Option("--open/--no-open", help="Open the page if there is a display.")
     ] = True,
 ) -> None:
-    """Run navigators in one world, and write a page that plays what happened.
+    """Run navigators in one world, and write a page that plays the episodes.
 
-    Nothing is stored beside the page.
+    No run is stored.
     """
     from benchnav.api.execution.simulate import simulate
     from benchnav.api.records.replay import Replay, open_in_browser

@@ -15,12 +15,12 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import FloatArray, IntArray
+from benchnav.drawing.palette import FILL, color_of, rgb
 from benchnav.episode.episode import Episode
-from benchnav.errors import MissingExtraError, StoreError
-from benchnav.metrics.quantities.trajectory import cut
-from benchnav.system.plain_file import require_writable
+from benchnav.errors import MissingExtraError
+from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.system.plain_file import writing
 from benchnav.viewer.recordings.extrusion import AGENT_HEIGHT, Mesh, extrude
-from benchnav.viewer.recordings.palette import color_of_kind, color_of_team
 from benchnav.viewer.replay.senses import sensed
 
 FRAME = "world"
@@ -36,14 +36,10 @@ def save_mcap(episode: Episode, agents: IntArray, path: Path) -> None:
     except ImportError as error:
         raise MissingExtraError("An MCAP file", "mcap") from error
     log = _Log(episode, agents)
-    try:
-        require_writable(path)
-        with path.open("wb") as stream, Writer(stream) as writer:
-            for time, topic, message in log.messages():
-                nanoseconds = round(time * 1e9)
-                writer.write_message(topic, message, nanoseconds, nanoseconds)
-    except OSError as error:
-        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+    with writing(path), path.open("wb") as stream, Writer(stream) as writer:
+        for time, topic, message in log.messages():
+            nanoseconds = round(time * 1e9)
+            writer.write_message(topic, message, nanoseconds, nanoseconds)
 
 
 class _Log:
@@ -55,13 +51,13 @@ class _Log:
         self._schemas = schemas
         self._episode = episode
         self._scans = sensed(episode, agents)
-        self._leaves = cut(episode).leaves
+        self._leaves = analyse(episode).trajectories.leaves
 
     def messages(self) -> Iterable[tuple[float, str, Any]]:
         """Yield (time [s], topic, message)."""
         world = self._episode.world
         arena = [
-            self._mesh(f"solid-{n}", extrude(solid, world.bounds), color_of_kind(Kind(solid.kind)))
+            self._mesh(f"solid-{n}", extrude(solid, world.bounds), rgb(FILL[Kind(solid.kind)]))
             for n, solid in enumerate(world.solids)
         ]
         yield 0.0, "/arena", self._scene(0.0, arena)
@@ -71,7 +67,7 @@ class _Log:
                 self._mesh(
                     f"body-{m}", Mesh(shape.vertices + _place(self._episode.body_position[t, m]),
                                       shape.triangles),
-                    color_of_kind(Kind(world.bodies[m].solid.kind)),
+                    rgb(FILL[Kind(world.bodies[m].solid.kind)]),
                 )
                 for m, shape in enumerate(shapes)
             ]  # fmt: skip
@@ -111,7 +107,7 @@ class _Log:
             )
             cylinder = self._make(
                 "CylinderPrimitive", size=size, bottom_scale=1.0, top_scale=1.0,
-                color=self._color(color_of_team(int(agents.team[a]))),
+                color=self._color(rgb(color_of(int(agents.team[a])))),
                 pose=self._pose(episode.position[t, a], 0.5 * AGENT_HEIGHT, episode.heading[t, a]),
             )  # fmt: skip
             entity = self._make(

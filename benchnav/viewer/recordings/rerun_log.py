@@ -12,12 +12,12 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import IntArray
+from benchnav.drawing.palette import FILL, color_of, rgb
 from benchnav.episode.episode import Episode
-from benchnav.errors import MissingExtraError, StoreError
-from benchnav.metrics.quantities.trajectory import cut
-from benchnav.system.plain_file import require_writable
+from benchnav.errors import MissingExtraError
+from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.system.plain_file import writing
 from benchnav.viewer.recordings.extrusion import AGENT_HEIGHT, extrude
-from benchnav.viewer.recordings.palette import Color, color_of_kind, color_of_team
 from benchnav.viewer.replay.senses import Senses, sensed
 
 _FLOOR = 0.02  # [m] trails are drawn so far above the floor
@@ -33,11 +33,8 @@ def save_rerun(episode: Episode, agents: IntArray, path: Path) -> None:
         import rerun
     except ImportError as error:
         raise MissingExtraError("A Rerun file", "rerun") from error
-    try:
-        require_writable(path)
-        path.open("wb").close()
-    except OSError as error:
-        raise StoreError(f"{path} must be writable. The system says: {error.strerror}.") from error
+    with writing(path):
+        path.open("wb").close()  # the library does not report a missing folder
     identity = episode.identity
     stream = rerun.RecordingStream(
         "benchnav",
@@ -57,14 +54,14 @@ def _log_arena(rerun: Any, stream: Any, episode: Episode) -> None:
     world = episode.world
     stream.log("/", rerun.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
     for n, solid in enumerate(world.solids):
-        mesh = _mesh(rerun, extrude(solid, world.bounds), color_of_kind(Kind(solid.kind)))
+        mesh = _mesh(rerun, extrude(solid, world.bounds), rgb(FILL[Kind(solid.kind)]))
         stream.log(f"arena/{n}", mesh, static=True)
     for m, body in enumerate(world.bodies):
-        mesh = _mesh(rerun, extrude(body.solid, world.bounds), color_of_kind(Kind(body.solid.kind)))
+        mesh = _mesh(rerun, extrude(body.solid, world.bounds), rgb(FILL[Kind(body.solid.kind)]))
         stream.log(f"bodies/{m}", mesh, static=True)
 
 
-def _mesh(rerun: Any, mesh: Any, color: Color) -> Any:
+def _mesh(rerun: Any, mesh: Any, color: tuple[float, float, float]) -> Any:
     return rerun.Mesh3D(
         vertex_positions=mesh.vertices, triangle_indices=mesh.triangles,
         albedo_factor=[*color, 1.0],
@@ -72,8 +69,8 @@ def _mesh(rerun: Any, mesh: Any, color: Color) -> Any:
 
 
 def _log_motion(rerun: Any, stream: Any, episode: Episode) -> None:
-    agents, leaves = episode.world.agents, cut(episode).leaves
-    colors = np.array([color_of_team(int(team)) for team in agents.team])
+    agents, leaves = episode.world.agents, analyse(episode).trajectories.leaves
+    colors = np.array([rgb(color_of(int(team))) for team in agents.team])
     for t, time in enumerate(episode.times):
         stream.set_time("time", duration=float(time))
         for m, place in enumerate(episode.body_position[t]):

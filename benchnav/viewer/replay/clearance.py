@@ -5,7 +5,7 @@ import numpy as np
 from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.metrics.quantities.encounters import things_of
-from benchnav.metrics.quantities.trajectory import cut
+from benchnav.metrics.quantities.episode_analysis import analyse
 
 _ROOM = 2_000_000  # distances that are held at a time
 
@@ -23,7 +23,7 @@ def clearance(episode: Episode, agent: int) -> FloatArray:
     if len(others):
         apart = np.linalg.norm(episode.position[:, others] - here[:, None], axis=-1)
         apart -= radius[others]
-        gone = cut(episode).leaves[others]
+        gone = analyse(episode).trajectories.leaves[others]
         gap = np.where(np.arange(len(here))[:, None] >= gone, np.inf, apart).min(axis=1)
     things = things_of(world, episode.body_position)
     chunk = max(1, _ROOM // max(1, len(here)))

@@ -6,27 +6,18 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
-from benchnav.errors import UsageError
 
-MOST = 9  # episodes side by side
-
-
-def replay_page(scenes: Sequence[dict[str, Any]], title: str = "") -> str:
-    """Return the page that plays episodes side by side and in step.
-
-    Raises UsageError for none, or for more than nine.
-    """
-    if not 1 <= len(scenes) <= MOST:
-        raise UsageError(f"A replay shows 1 to {MOST} episodes side by side. Got {len(scenes)}.")
+def replay_page(scenes: Sequence[dict[str, Any]]) -> str:
+    """Return the page that plays episodes side by side and in step."""
     # Stored numbers are finite: the simulator and the reader of runs refuse others.
     content = json.dumps(list(scenes), separators=(",", ":"), allow_nan=False)
     return _PAGE.format(
-        title=escape(title or _title(scenes)), style=asset("replay.css"),
-        script=asset("replay.js"), content=content.replace("<", "\\u003c"),
+        title=escape(_title(scenes)), style=_asset("replay.css"),
+        script=_asset("replay.js"), content=content.replace("<", "\\u003c"),
     )  # fmt: skip
 
 
-def asset(name: str) -> str:
+def _asset(name: str) -> str:
     """Return the text of a file beside this module."""
     return (files("benchnav.viewer.replay") / name).read_text(encoding="utf-8")
 

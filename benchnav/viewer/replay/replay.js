@@ -3,11 +3,10 @@
 
 /** @typedef {{shape: number[], quantum: number, data: string}} Packed */
 
-const TEAMS = ["#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d00", "#7a5195", "#4d4d4d"];
 const ACTIVE = 0, ARRIVED = 1;
 const TRAIL = 6; // [s] length of the trail behind an agent
 const FLASH = 0.6; // [s] that a contact stays marked after its end
-const CROWD = 200; // with more agents, trails are short and headings are not drawn
+const CROWD = 200; // with more agents, trails are short, goals are dots, and headings are not drawn
 
 const colours = getComputedStyle(document.documentElement);
 const colour = (name) => colours.getPropertyValue(`--${name}`).trim();
@@ -122,7 +121,7 @@ class View {
   exact(array, row, k) { return array[row * this.times + Math.min(Math.floor(k + 1e-6), this.times - 1)]; }
   status(a, k) { return this.exact(this.scene.status, a, k); }
   present(a, k) { return k < this.scene.agents.leaves[a]; }
-  teamColour(a) { return TEAMS[this.scene.agents.team[a] % TEAMS.length]; }
+  colourOf(team) { return this.scene.colours[team % this.scene.colours.length]; }
 
   /** Scale [pixels per metre] and origin of the picture. */
   frame() {
@@ -245,9 +244,9 @@ class View {
 
   /** One path for each team: a crowd of a thousand stays fast. */
   drawTrails(c, pixel, k) {
-    const seconds = this.count > CROWD ? 1 : TRAIL;
-    const first = Math.max(0, Math.floor(k - seconds / this.scene.dt));
-    const stride = this.count > CROWD ? 2 : 1;
+    const isCrowd = this.count > CROWD;
+    const first = Math.max(0, Math.floor(k - (isCrowd ? 1 : TRAIL) / this.scene.dt));
+    const stride = isCrowd ? 2 : 1;
     this.byTeam((team, members) => {
       c.beginPath();
       for (const a of members) {
@@ -261,31 +260,31 @@ class View {
         const [x, y] = this.at(a, k);
         c.lineTo(x, y);
       }
-      c.strokeStyle = TEAMS[team % TEAMS.length];
+      c.strokeStyle = this.colourOf(team);
       c.globalAlpha = 0.5;
-      c.lineWidth = 2 * pixel;
+      c.lineWidth = (isCrowd ? 1 : 2) * pixel;
       c.stroke();
       c.globalAlpha = 1;
     });
   }
 
   drawGoals(c, pixel, k) {
-    const { goal, radius } = this.scene.agents;
+    const { goal, radius } = this.scene.agents, isCrowd = this.count > CROWD;
     this.byTeam((team, members) => {
+      c.fillStyle = c.strokeStyle = this.colourOf(team);
       c.beginPath();
       for (const a of members) {
         const r = Math.max(radius[a], 4 * pixel), [x, y] = goal[a];
-        if (this.count > CROWD && this.status(a, k) !== ACTIVE) continue;
+        if (isCrowd && this.status(a, k) === ACTIVE) c.rect(x - pixel, y - pixel, 2 * pixel, 2 * pixel);
+        if (isCrowd) continue;
         c.moveTo(x + r, y);
         c.arc(x, y, r, 0, 2 * Math.PI);
       }
-      c.strokeStyle = TEAMS[team % TEAMS.length];
+      if (isCrowd) return c.fill(); // a thousand rings are slow
       c.lineWidth = 1.3 * pixel;
-      c.globalAlpha = this.count > CROWD ? 0.3 : 0.9;
-      if (this.count <= CROWD) c.setLineDash([4 * pixel, 3 * pixel]); // dashes are slow
+      c.setLineDash([4 * pixel, 3 * pixel]);
       c.stroke();
       c.setLineDash([]);
-      c.globalAlpha = 1;
     });
   }
 
@@ -305,7 +304,7 @@ class View {
         headings.moveTo(x, y);
         headings.lineTo(x + 1.6 * r * Math.cos(heading), y + 1.6 * r * Math.sin(heading));
       }
-      c.fillStyle = c.strokeStyle = TEAMS[team % TEAMS.length];
+      c.fillStyle = c.strokeStyle = this.colourOf(team);
       c.fill(discs);
       c.lineWidth = 1.5 * pixel;
       c.stroke(still);
@@ -363,9 +362,9 @@ class View {
       c.setLineDash([2 * pixel, 3 * pixel]);
       c.beginPath();
       for (let s = 0; s < slots; s++) {
-        const who = this.exact(senses.neighbours, n * slots + s, k);
-        if (who < 0) continue;
-        const [nx, ny] = who < this.count ? this.at(who, Math.floor(k)) : this.bodyAt(who - this.count, Math.floor(k));
+        const seen = this.exact(senses.neighbours, n * slots + s, k);
+        if (seen < 0) continue;
+        const [nx, ny] = seen < this.count ? this.at(seen, Math.floor(k)) : this.bodyAt(seen - this.count, Math.floor(k));
         c.moveTo(x, y); c.lineTo(nx, ny);
       }
       c.stroke();
@@ -488,7 +487,7 @@ class Replay {
   }
 
   toggles() {
-    const names = { trails: "trails", goals: "goals", senses: "senses of the chosen agent", map: "granted map" };
+    const names = { trails: "trails", goals: "goals", senses: "sensor readings", map: "granted map" };
     const boxes = Object.entries(names).map(([key, text]) => {
       const box = element("input", { type: "checkbox", onchange: () => { this.show[key] = box.checked; this.draw(); } });
       box.checked = this.show[key];
@@ -533,7 +532,7 @@ class Replay {
     this.panel.replaceChildren();
     this.charts = [];
     if (!this.selected) {
-      this.panel.append(element("h2", {}, "No agent chosen"), element("p", {}, "Click an agent to see its senses and charts."));
+      this.panel.append(element("h2", {}, "No agent chosen"), element("p", {}, "Click an agent to see its sensor readings and charts."));
     } else this.describeAgent(view, agent);
     this.draw();
   }
@@ -544,7 +543,7 @@ class Replay {
     const name = this.views.length > 1 ? ` of ${view.scene.navigator}` : "";
     this.panel.append(element("h2", {}, `Agent ${agent}${name}`), element("p", {}, `Team ${agents.teams[agents.team[agent]]}. It ${result}.`));
     if (n < 0) {
-      this.panel.append(element("p", {}, `This file holds charts and senses of ${charts.agents.length === 1 ? "agent" : "agents"} ${charts.agents.join(", ")}.`));
+      this.panel.append(element("p", {}, `This file holds charts and sensor readings of ${charts.agents.length === 1 ? "agent" : "agents"} ${charts.agents.join(", ")}.`));
       return;
     }
     const add = (title, unit, array, digits) => {
@@ -556,7 +555,7 @@ class Replay {
     add("turn rate", "rad/s", charts.turn, 2);
     add("clearance", "m", charts.clearance, 2);
     if (senses && senses.probability) add("collision probability (Eq. 24)", "", senses.probability, 2);
-    if (!senses) this.panel.append(element("p", {}, "This episode cannot be simulated again, so its senses are unknown."));
+    if (!senses) this.panel.append(element("p", {}, "This episode cannot be simulated again, so its sensor readings are unknown."));
   }
 
   drawChart(chart) {

@@ -7,6 +7,7 @@ import numpy as np
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray, IntArray
+from benchnav.drawing.palette import TEAMS
 from benchnav.episode.episode import Episode, Status
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.navigation.tracks import granted_map
@@ -32,7 +33,7 @@ def scene(episode: Episode, agents: IntArray) -> dict[str, Any]:
         "solids": [_shape(solid) for solid in world.solids],
         "bodies": [_shape(body.solid) for body in world.bodies],
         "map": _map(world, identity.track),
-        "agents": _agents(episode),
+        "agents": _agents(episode), "colours": TEAMS,
         "position": packed(episode.position, MILLIMETRE),
         "heading": packed(_unwrapped(episode.heading), MILLIMETRE),
         "status": packed(episode.status),

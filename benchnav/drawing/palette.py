@@ -1,0 +1,21 @@
+"""The colours of worlds in every picture, page and recording; readable for colour-blind people.
+
+The first five colours of teams are from Okabe & Ito 2008, Color Universal Design.
+"""
+
+from benchnav.arena.solid import Kind
+
+PAPER, INK = "#ffffff", "#22303c"
+FILL = {Kind.WALL: "#36454f", Kind.STATIC: "#b4bec6", Kind.DYNAMIC: "#e07a3f"}
+TEAMS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d00", "#7a5195", "#4d4d4d")
+
+
+def color_of(team: int) -> str:
+    """Return the colour of a team's agents."""
+    return TEAMS[team % len(TEAMS)]
+
+
+def rgb(color: str) -> tuple[float, float, float]:
+    """Return red, green and blue in [0, 1] of ``#rrggbb``."""
+    red, green, blue = (int(color[n : n + 2], 16) / 255.0 for n in (1, 3, 5))
+    return red, green, blue
