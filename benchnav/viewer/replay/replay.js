@@ -404,7 +404,7 @@ class View {
     if (this.caption.dataset.text === text) return;
     this.caption.dataset.text = text;
     const where = this.replay.views.length > 1 && this.replay.views[0] !== this && this.replay.sameWorld(this.replay.views[0], this)
-      ? ` · ${text}` : ` · ${scenario} · ${track} · seed ${seed} · ${text}`;
+      ? ` · ${text}` : ` · ${text} · ${scenario} · ${track} · seed ${seed}`;
     this.caption.replaceChildren(element("b", {}, navigator), element("span", {}, where));
   }
 
