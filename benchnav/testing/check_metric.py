@@ -97,7 +97,7 @@ def check_pure(metric: Metric) -> None:
 def check_blind(metric: Metric) -> None:
     """Check that names, seeds and (for a verifiable metric) timings do not matter."""
     for title, episode in zoo().items():
-        other = replace(episode, identity=Identity("x/y@2", "f", "train", 7, "unknown", "other"))
+        other = replace(episode, identity=Identity("x/y@2", "f", "train", 7, "unknown", "another"))
         if metric.verifiable:
             slower = replace(other.timings, decision=10.0 * other.timings.decision, planning=9.0)
             other = replace(other, timings=slower)

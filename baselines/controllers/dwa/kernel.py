@@ -116,7 +116,7 @@ def choose(
         last: (N, 2) the current twist.
         target: (N, 2) [m].
         remaining: (N,) [m] to the place where the agent must stop.
-        body: (N, 6) see `baselines.sensed.BODY`.
+        body: (N, 6) see `baselines.common.kernel_inputs.BODY`.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].
         radius: (N, K) [m].

@@ -41,7 +41,7 @@ def cost_of(
         goal_x: target [m].
         goal_y: target [m].
         final: the path ends in the target.
-        body: (6,) see `baselines.sensed.BODY`.
+        body: (6,) see `baselines.common.kernel_inputs.BODY`.
         margin: [m] within which a contact is counted; half of it for static obstacles.
         position: (K, 2) of neighbours [m].
         velocity: (K, 2) [m/s].

@@ -75,7 +75,7 @@ def control(
         heading: (N,) [rad].
         target: (N, 2) [m].
         remaining: (N,) [m] of the path.
-        body: (N, 6) see `baselines.sensed.BODY`.
+        body: (N, 6) see `baselines.common.kernel_inputs.BODY`.
         plan: (N, H, 2) the last plans; zero if there is none.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].

@@ -50,7 +50,7 @@ def social_force(
         here: (N, 2) [m].
         moving: (N, 2) velocity [m/s].
         target: (N, 2) [m].
-        body: (N, 6) see `baselines.sensed.BODY`.
+        body: (N, 6) see `baselines.common.kernel_inputs.BODY`.
         push: (N, 2) an acceleration [m/s²] of its own.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].

@@ -13,7 +13,7 @@ class Load:
     """The properties of a task that determine its duration."""
 
     navigator: str  # its tasks of equal effort take about equal time
-    effort: float  # of all its episodes, as `benchnav.runner.plan.job.Cell.effort`; not in seconds
+    effort: float  # of all its episodes, as `benchnav.runner.plan.job.Job.effort`; not in seconds
 
 
 class Estimate:
