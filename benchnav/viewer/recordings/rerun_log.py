@@ -25,7 +25,7 @@ _EYE = 0.3  # [m] height of rays
 
 
 def save_rerun(episode: Episode, agents: IntArray, path: Path) -> None:
-    """Write an episode, with the sensor readings of ``agents`` (n,), to a Rerun file. No viewer is started.
+    """Write an episode, with the sensor readings of ``agents`` (n,), to a file for Rerun.
 
     Raises MissingExtraError without the library, StoreError if the file cannot be written.
     """
