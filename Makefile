@@ -39,7 +39,7 @@ test: check $(READY)  ## all checks, and all tests but the long ones
 	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal -m 'not long and not soak'
 
 test-all: check $(READY)  ## all checks and tests, as CI runs them
-	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal -m 'not soak'
+	$(BIN)/python -m pytest --numprocesses 3 --dist worksteal -m 'not soak'
 
 soak: $(READY)  ## the same attacks and faults as in CI, with many more cases
 	$(BIN)/python -m pytest --numprocesses 2 --dist worksteal -m soak

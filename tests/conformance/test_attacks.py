@@ -17,6 +17,13 @@ def test_the_documents_list_word_for_word_what_is_not_found():
 
 
 @pytest.mark.long
+def test_one_change_of_seven(tmp_path):
+    outcome = attack(honest_run(tmp_path), every=7)
+    assert len(outcome.found) > 20
+    assert [name for name in outcome.missed if not is_by_design(name)] == []
+
+
+@pytest.mark.soak
 def test_every_column_and_every_key(tmp_path):
     run = honest_run(tmp_path)
     outcome = attack(run)

@@ -207,7 +207,7 @@ def test_free_arcs_are_where_the_slow_twin_finds_room(seed):
         mine = [row for row in rows if row[0] == x and row[1] == y and row[2] == r + 0.25]
         for angle in rng.uniform(0, 2 * math.pi, 12):
             at = slow.place((x, y, r + 0.25), angle)
-            free = slow.point_is_clear(solid, 0.25, at)
+            free = slow.point_is_clear(solid, 0.25, at, 0.0)
             covered = not slow.point_is_clear(solid, 0.25, at, 1e-6)
             on_one = any(slow.is_on(row, angle) for row in mine)
             if on_one:
