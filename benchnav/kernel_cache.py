@@ -30,12 +30,13 @@ _STALE = 3600.0  # [s] age at which an unfinished file belongs to a killed proce
 class KernelCache(FunctionCache):
     """The cached signatures of one function."""
 
-    def __init__(self, function: Callable[..., Any], folder: Path) -> None:
+    def __init__(self, function: Callable[..., Any], folder: Path, prefix: str = "") -> None:
         self._name = repr(function)
         self._py_func = function
         self._impl = _Codec()
         self._cache_path = str(folder)
-        name = f"{function.__module__}.{function.__qualname__}".replace("<", "").replace(">", "")
+        name = f"{prefix}{function.__module__}.{function.__qualname__}"
+        name = name.replace("<", "").replace(">", "")
         self._cache_file: Any = _Files(folder, name)
         self.enable()
 

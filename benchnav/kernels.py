@@ -7,6 +7,9 @@ this saves a branch per division.
 Numba notices a change of a cached kernel's own file, but not of a kernel that it calls in another
 file, and would run the old code. Therefore the name of the cache folder is a digest of all kernel
 sources of a package.
+
+Numba takes half a second to import, and a kernel costs time to load. Therefore a kernel is loaded
+or compiled when it is first called, and a process that calls none never imports Numba.
 """
 
 import hashlib
@@ -16,15 +19,11 @@ import sys
 import time
 from collections.abc import Callable
 from contextlib import suppress
-from functools import lru_cache
+from functools import cached_property, lru_cache, update_wrapper
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-import numba
-from numba import njit
-from numba.core import config
-
-from benchnav.kernel_cache import KernelCache, drop_unfinished
 from benchnav.system.user_folders import UserFolder, user_cache
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -32,13 +31,69 @@ _HERE = Path(__file__).parent
 _CONSTANTS = ("arena", "episode")  # packages with enumerations that kernels compile in
 
 
+class Kernel:
+    """A function that Numba compiles when Python or another kernel first calls it."""
+
+    __slots__ = ("__dict__",)
+
+    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+        self._options = options
+
+    def __call__(self, *args: Any) -> Any:
+        """Run the compiled code."""
+        return self.for_python(*args)
+
+    def __reduce__(self) -> str:
+        """Pickle by name, as functions are."""
+        return self.py_func.__qualname__
+
+    @property
+    def targetoptions(self) -> dict[str, Any]:
+        """The options that Numba reads to inline a function."""
+        return self._options
+
+    @cached_property
+    def for_python(self) -> Any:
+        """The code that Python calls."""
+        return self._dispatcher("")
+
+    @cached_property
+    def for_kernels(self) -> Any:
+        """The code that other kernels call: wrappers for Python would take time to compile."""
+        return self._dispatcher(
+            "inner-", no_cpython_wrapper=True, no_cfunc_wrapper=True
+        )
+
+    def _dispatcher(self, prefix: str, **options: bool) -> Any:
+        import numba
+
+        from benchnav.kernel_cache import KernelCache
+
+        _let_numba_call_kernels()
+        function, njit = self.py_func, cast(Any, numba.njit)
+        compiled = njit(function, error_model="numpy", **self._options, **options)
+        folder = cache_folder(function.__module__.partition(".")[0])
+        if folder is not None and Path(function.__code__.co_filename).is_file():
+            compiled._cache = KernelCache(function, folder, prefix)
+        return compiled
+
+
+@lru_cache
+def _let_numba_call_kernels() -> None:
+    """Tell Numba that a kernel within a kernel is a function that it compiles."""
+    from numba.core import types
+    from numba.extending import typeof_impl
+
+    @typeof_impl.register(Kernel)
+    def _(value: Kernel, _: object) -> Any:
+        return types.Dispatcher(value.for_kernels)
+
+
 def kernel(function: F) -> F:
     """Compile once per signature, and cache on disk if there is a cache folder."""
-    folder = cache_folder(function.__module__.partition(".")[0])
-    compiled: Any = njit(function, nogil=True, error_model="numpy")
-    if folder is not None and Path(function.__code__.co_filename).is_file():
-        compiled._cache = KernelCache(function, folder)
-    return cast(F, compiled)
+    return cast(F, Kernel(function, nogil=True))
 
 
 def inlined(function: F) -> F:
@@ -47,14 +102,13 @@ def inlined(function: F) -> F:
     For code that runs once per agent with many arrays: passing an array costs more than
     reading it.
     """
-    compiled: F = njit(function, inline="always", error_model="numpy")
-    return compiled
+    return cast(F, Kernel(function, inline="always"))
 
 
 @lru_cache
 def kernels_name(package: str) -> str:
     """Return a digest name of the code from which a top-level package's kernels are compiled."""
-    digest = hashlib.blake2b(numba.__version__.encode(), digest_size=8)
+    digest = hashlib.blake2b(version("numba").encode(), digest_size=8)
     source = getattr(sys.modules.get(package), "__file__", None)
     roots = {_HERE, Path(source).parent if source else _HERE}
     for root in sorted(roots):
@@ -73,6 +127,8 @@ def cache_folder(package: str) -> Path | None:
         return None
     folder = base / kernels_name(package)
     if folder.is_dir():
+        from benchnav.kernel_cache import drop_unfinished
+
         drop_unfinished(folder)
     else:
         _remove_old(base)
@@ -81,6 +137,8 @@ def cache_folder(package: str) -> Path | None:
 
 def cache_base() -> UserFolder:
     """Return the folder of all compiled kernels: ``$NUMBA_CACHE_DIR``, or the user's cache."""
+    from numba.core import config  # its value may come from a file of Numba
+
     requested = str(vars(config)["CACHE_DIR"])
     if not requested:
         return user_cache()

@@ -138,7 +138,7 @@ assert (double(ARGUMENT), double(21)) == (2 * ARGUMENT, 42)
 def test_processes_that_compile_at_once_leave_what_each_of_them_can_load(tmp_path):
     (tmp_path / "one.py").write_text(MODULE)
     code = "import builtins, sys; builtins.ARGUMENT = eval(sys.argv[1]); import one;"
-    code += "print(sum(one.double.stats.cache_hits.values()))"
+    code += "print(sum(one.double.for_python.stats.cache_hits.values()))"
     environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
 
     def start(argument):

@@ -36,7 +36,9 @@ def verify(
     stored number that does not agree. The exit status is 1 if there are any.
     """
     from benchnav.api.records.run import open_run
+    from benchnav.system.pandas_import import delay_pandas
 
+    delay_pandas()
     with open_run(run) as opened:
         found = opened.verify(twin=twin, referee=referee, rerun=rerun, workers=workers, quiet=quiet)
     put(found.to_json() if json else found.text())

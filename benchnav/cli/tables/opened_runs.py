@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 def opened_runs(paths: Sequence[Path]) -> Iterator["list[Run]"]:
     """Open the runs; packs stay unpacked within the context."""
     from benchnav.api.records.run import open_run
+    from benchnav.system.pandas_import import delay_pandas
 
+    delay_pandas()
     with ExitStack() as stack:
         yield [stack.enter_context(open_run(path)) for path in paths]

@@ -13,6 +13,7 @@ from benchnav.runner.rollouts.rollout import Assignment
 from benchnav.scenario.load import scenario_from_text
 from benchnav.sensors.sense import sense
 from benchnav.store.parts.episodes import from_table, to_table
+from benchnav.system.pandas_import import delay_pandas
 from benchnav.world.simulation import Simulation
 
 _DECISIONS = 3
@@ -46,6 +47,7 @@ rules: {goal_tolerance: 0.5, contact: end, on_arrival: vanish, on_end: vanish}
 
 def warm() -> None:
     """Build, sense, step, record, store and measure one small world."""
+    delay_pandas()
     scenario = scenario_from_text(_SCENARIO, "warm.yaml")
     episodes = [_episode(build(scenario, "train", 0))]
     measured(from_table(to_table(episodes)), own_metrics())

@@ -1,0 +1,62 @@
+"""Kernels are loaded when they are first called, by Python or by another kernel."""
+
+import pickle
+import subprocess
+import sys
+
+from benchnav.kernels import inlined, kernel
+
+
+@kernel
+def double(x):
+    return 2.0 * x
+
+
+@inlined
+def one_more(x):
+    return x + 1.0
+
+
+@kernel
+def both(x):
+    return double(x) + one_more(x)
+
+
+def test_kernels_call_kernels():
+    assert both(3.0) == 10.0
+    assert double(3.0) == 6.0
+    assert double.py_func(3.0) == 6.0
+
+
+def test_what_only_kernels_call_has_no_wrapper_for_python():
+    assert both(3.0) == 10.0
+    wrapper = "PyArg_UnpackTuple"
+    assert wrapper in "".join(both.for_python.inspect_llvm().values())
+    assert wrapper not in "".join(double.for_kernels.inspect_llvm().values())
+
+
+def test_a_kernel_is_pickled_by_its_name():
+    assert pickle.loads(pickle.dumps(double)) is double
+
+
+def test_tables_and_lists_need_no_numba():
+    code = (
+        "import sys\n"
+        "import benchnav.leaderboard.from_runs, benchnav.runner.run, benchnav.store.runs.reading\n"
+        "assert 'numba' not in sys.modules"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_pandas_waits_until_a_data_frame_is_wanted():
+    code = (
+        "import sys, pyarrow\n"
+        "from benchnav.system.pandas_import import delay_pandas\n"
+        "delay_pandas()\n"
+        "values = pyarrow.array([1, 2])\n"
+        "assert 'pandas' not in sys.modules\n"
+        "assert list(values.to_pandas()) == [1, 2]"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
