@@ -62,9 +62,7 @@ class Kernel:
     @cached_property
     def for_kernels(self) -> Any:
         """The code that other kernels call: wrappers for Python would take time to compile."""
-        return self._dispatcher(
-            "inner-", no_cpython_wrapper=True, no_cfunc_wrapper=True
-        )
+        return self._dispatcher("inner-", no_cpython_wrapper=True, no_cfunc_wrapper=True)
 
     def _dispatcher(self, prefix: str, **options: bool) -> Any:
         import numba
