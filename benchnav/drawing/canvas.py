@@ -1,7 +1,6 @@
 """A picture of an area seen from above, drawn in metres without a plotting library."""
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 from PIL import Image, ImageDraw
@@ -78,22 +77,29 @@ class Canvas:
         self.line(np.array([place, place + ahead]), PAPER, 2.0)
 
     def cross(self, place: FloatArray, color: str, arm: float = 4.0, width: float = 2.0) -> None:
-        """Draw a cross with arms of ``arm`` pixels, both up and down."""
+        """Draw a cross with arms of ``arm`` pixels, which has a rim to stand out on a disc."""
         ((x, y),) = self._places(place[None])
-        r = arm * self._finer
-        for way in (-r, r):
-            self._draw.line(
-                [(x - r, y - way), (x + r, y + way)], fill=color, width=self._width(width)
-            )
+        for ink, edge in ((PAPER, 1.0), (color, 0.0)):
+            r = (arm + 0.7 * edge) * self._finer
+            for way in (-r, r):
+                ends = [(x - r, y - way), (x + r, y + way)]
+                self._draw.line(ends, fill=ink, width=self._width(width + 2.0 * edge))
 
     def dots(self, points: FloatArray, color: str, apart: float) -> None:
-        """Draw dots of one pixel along the line through ``points`` (N, 2), ``apart`` pixels."""
+        """Draw dots along the line through ``points`` (N, 2), at least ``apart`` pixels apart.
+
+        A line that runs back over itself keeps its dots.
+        """
         steps = np.linalg.norm(np.diff(points, axis=0), axis=-1)
         along = np.concatenate([[0.0], np.cumsum(steps)])
-        places = np.arange(0.0, along[-1] + 1e-9, apart * self._finer / self._scale)
+        gap = apart * self._finer / self._scale  # [m]
+        places = np.arange(0.0, along[-1] + 1e-9, gap)
         x, y = (np.interp(places, along, points[:, axis]) for axis in (0, 1))
+        kept = np.zeros((0, 2))
         for place in np.column_stack([x, y]):
-            self.disc(place, 0.0, fill=color, least=0.5)
+            if (np.linalg.norm(kept - place, axis=-1) > 0.8 * gap).all():
+                kept = np.vstack([kept, place])
+                self.disc(place, 0.0, fill=color, least=0.5)
 
     def _width(self, width: float) -> int:
         return max(1, round(width * self._finer))
@@ -113,12 +119,13 @@ def shade(color: str, strength: float) -> str:
     """Return a colour mixed with the paper; ``strength`` in [0, 1]."""
     mixed = (
         round(strength * own + (1.0 - strength) * paper)
-        for own, paper in zip(_channels(color), _channels(PAPER), strict=True)
+        for own, paper in zip(channels(color), channels(PAPER), strict=True)
     )
     return "#{:02x}{:02x}{:02x}".format(*mixed)
 
 
-def _channels(color: str) -> Sequence[int]:
+def channels(color: str) -> list[int]:
+    """Return red, green and blue from 0 to 255 of ``#rrggbb``."""
     return [int(color[n : n + 2], 16) for n in (1, 3, 5)]
 
 
