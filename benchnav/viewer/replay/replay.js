@@ -89,6 +89,7 @@ class View {
     this.solids = scene.solids.map((s) => [s.kind, outline(s, scene.bounds, this.margin)]);
     this.bodies = scene.bodies.map((s) => [s.kind, outline(s, scene.bounds, this.margin)]);
     this.map = scene.map && scene.map.map((s) => outline(s, scene.bounds, this.margin));
+    this.own = new Map(); // agent and number of the change → path of its own map
     this.laws = this.motionPaths();
     this.reset();
     this.listen();
@@ -204,6 +205,7 @@ class View {
     const pixel = 1 / scale, show = this.replay.show;
     this.drawSolids(c, pixel, k);
     if (show.map && this.map) this.drawMap(c, pixel);
+    if (show.own) this.drawOwnMap(c, pixel, k);
     if (show.trails) this.drawTrails(c, pixel, k);
     if (show.goals) this.drawGoals(c, pixel, k);
     if (show.senses) this.drawSenses(c, pixel, k);
@@ -240,6 +242,38 @@ class View {
     c.strokeStyle = "#e6c300";
     c.lineWidth = 2.5 * pixel;
     for (const path of this.map) c.stroke(path);
+  }
+
+  /** The map that the chosen agent had made by now. */
+  drawOwnMap(c, pixel, k) {
+    const chosen = this.replay.selected, own = this.scene.own_map;
+    if (!own || own.reason || !chosen || chosen.view !== this) return;
+    const n = own.agents.indexOf(chosen.agent);
+    if (n < 0) return;
+    const last = own.changes[n].findLastIndex(([state]) => state <= k + 1e-6), key = `${n} ${last}`;
+    if (!this.own.has(key)) this.own.set(key, this.ownPath(own, n, last));
+    c.strokeStyle = colour("own");
+    c.globalAlpha = 0.6;
+    c.lineWidth = 7 * pixel; // wider than the edges that are sensed now
+    c.stroke(this.own.get(key));
+    c.globalAlpha = 1;
+  }
+
+  ownPath({ capsules, changes }, n, last) {
+    const held = new Set();
+    for (const [, added, removed] of changes[n].slice(0, last + 1)) {
+      removed.forEach((row) => held.delete(row));
+      added.forEach((row) => held.add(row));
+    }
+    const path = new Path2D();
+    for (const row of held) {
+      const [x0, y0, x1, y1, radius] = capsules[row];
+      path.moveTo(x0 + radius, y0);
+      if (radius > 0) path.arc(x0, y0, radius, 0, 2 * Math.PI);
+      path.moveTo(x0, y0);
+      path.lineTo(x1, y1);
+    }
+    return path;
   }
 
   /** One path for each team: a crowd of a thousand stays fast. */
@@ -427,7 +461,7 @@ class Replay {
     this.speed = 1;
     this.playing = false;
     this.selected = null;
-    this.show = { trails: true, goals: true, senses: true, map: false };
+    this.show = { trails: true, goals: true, senses: true, map: false, own: true };
     this.views = scenes.map((scene) => new View(scene, this));
     this.duration = Math.max(...this.views.map((view) => view.duration));
     this.dt = this.views[0].scene.dt;
@@ -487,11 +521,12 @@ class Replay {
   }
 
   toggles() {
-    const names = { trails: "trails", goals: "goals", senses: "sensor readings", map: "granted map" };
+    const names = { trails: "trails", goals: "goals", senses: "sensor readings", map: "granted map", own: "own map" };
     const boxes = Object.entries(names).map(([key, text]) => {
       const box = element("input", { type: "checkbox", onchange: () => { this.show[key] = box.checked; this.draw(); } });
       box.checked = this.show[key];
-      if (key === "map") box.disabled = this.views.every((view) => !view.map);
+      const has = { map: (view) => view.map, own: (view) => view.scene.own_map && !view.scene.own_map.reason };
+      if (has[key]) box.disabled = !this.views.some(has[key]);
       return element("label", {}, box, ` ${text}`);
     });
     return element("div", { class: "toggles" }, ...boxes);
@@ -555,6 +590,7 @@ class Replay {
     add("turn rate", "rad/s", charts.turn, 2);
     add("clearance", "m", charts.clearance, 2);
     if (senses && senses.probability) add("collision probability (Eq. 24)", "", senses.probability, 2);
+    if (view.scene.own_map && view.scene.own_map.reason) this.panel.append(element("p", {}, `The map that the navigator made is not shown: ${view.scene.own_map.reason}.`));
     if (!senses) this.panel.append(element("p", {}, "This episode cannot be simulated again, so its sensor readings are unknown."));
   }
 
