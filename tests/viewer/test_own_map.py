@@ -156,7 +156,7 @@ def test_the_page_draws_the_map_in_step_with_time(mapped, tmp_path):
     assert result["last"] == 6
     assert f"{result['n']} 6" in result["keys"]
     assert result["then"] > 300
-    assert result["start"] == 0  # before anything was sensed
+    assert result["start"] < result["then"]  # little was sensed by then
 
 
 @needs_chromium
