@@ -4,8 +4,9 @@ The first five colours of teams are from Okabe & Ito 2008, Color Universal Desig
 """
 
 from benchnav.arena.solid import Kind
+from benchnav.arena.world import World
 
-PAPER, INK = "#ffffff", "#22303c"
+PAPER, INK, HIT = "#ffffff", "#22303c", "#cc0033"
 FILL = {Kind.WALL: "#36454f", Kind.STATIC: "#b4bec6", Kind.DYNAMIC: "#e07a3f"}
 TEAMS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d00", "#7a5195", "#4d4d4d")
 
@@ -13,6 +14,12 @@ TEAMS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d00", "#7a5
 def color_of(team: int) -> str:
     """Return the colour of a team's agents."""
     return TEAMS[team % len(TEAMS)]
+
+
+def agent_color(world: World, agent: int) -> str:
+    """Return the colour of an agent's team; of the agent itself if one team has few agents."""
+    single = len(world.teams) == 1 and len(world.agents) <= len(TEAMS)
+    return color_of(agent if single else int(world.agents.team[agent]))
 
 
 def rgb(color: str) -> tuple[float, float, float]:

@@ -29,6 +29,8 @@ async function report() {
 addEventListener("load", report);
 </script>
 """
+_FRAME = """<!doctype html><meta charset="utf-8"><body style="margin: 0">
+<iframe src="/framed" style="width: {}px; height: {}px; border: 0"></iframe>"""
 
 
 def in_browser(page, script, folder, size=DESKTOP, limit=60.0):
@@ -38,14 +40,17 @@ def in_browser(page, script, folder, size=DESKTOP, limit=60.0):
     """
     answers, asked = Queue(), []
     html = page.replace("<meta charset", _REPORT % script + "<meta charset", 1).encode()
+    # The window of Chromium is at least 500 pixels wide, but a frame in it is a small screen.
+    framed = _FRAME.format(*size).encode() if size[0] < 500 else html
+    served = {"/": framed, "/framed": html}
 
     class Handler(BaseHTTPRequestHandler):
         def do_GET(self):
             asked.append(self.path)
-            self.send_response(200 if self.path == "/" else 404)
+            self.send_response(200 if self.path in served else 404)
             self.send_header("Content-Type", "text/html; charset=utf-8")
             self.end_headers()
-            self.wfile.write(html if self.path == "/" else b"")
+            self.wfile.write(served.get(self.path, b""))
 
         def do_POST(self):
             answers.put(json.loads(self.rfile.read(int(self.headers["Content-Length"]))))
@@ -74,6 +79,6 @@ def in_browser(page, script, folder, size=DESKTOP, limit=60.0):
                 browser.kill()
                 server.shutdown()
     assert answer["problems"] == []
-    assert set(asked) <= {"/", "/favicon.ico"}, asked
+    assert set(asked) <= {*served, "/favicon.ico"}, asked
     assert [name for name in answer["requests"] if not name.endswith("/favicon.ico")] == []
     return answer["result"]

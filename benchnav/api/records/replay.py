@@ -7,6 +7,7 @@ from functools import cached_property
 from html import escape
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from benchnav.api.output.text_table import written
 from benchnav.arrays import IntArray
 from benchnav.episode.episode import Episode as Record
 from benchnav.errors import UsageError, did_you_mean
+
+if TYPE_CHECKING:
+    from benchnav.verify.own_map import Origin
 
 PAGE, GIF, FILM = ".html", ".gif", ".mp4"
 MCAP, RERUN = ".mcap", ".rrd"
@@ -25,13 +29,20 @@ SUFFIXES = (PAGE, *FIGURES, GIF, FILM, RERUN, MCAP)
 class Replay:
     """One page with everything in it: it opens from disk without a network."""
 
-    def __init__(self, records: Sequence[Record], agents: Sequence[int] | None = None) -> None:
+    def __init__(
+        self,
+        records: Sequence[Record],
+        agents: Sequence[int] | None = None,
+        origins: "Sequence[Origin | None] | None" = None,
+    ) -> None:
         """Take 1 to 9 episodes.
 
         Args:
             records: the episodes.
             agents: those whose sensor readings and charts the page holds; None: up to four, first
                 those that did not succeed.
+            origins: how each episode was made, so that the page can show the maps that its
+                navigator made; None: without them.
 
         Raises UsageError for another number of episodes, and for an agent that there is not.
         """
@@ -44,6 +55,7 @@ class Replay:
             _require_agents(agents, len(record.world.agents))
         self._records = tuple(records)
         self._agents = agents
+        self._origins = tuple(origins or [None] * len(self._records))
 
     @cached_property
     def html(self) -> str:
@@ -51,7 +63,12 @@ class Replay:
         from benchnav.viewer.replay.page import replay_page
         from benchnav.viewer.replay.scene import scene
 
-        return replay_page([scene(each, self._chosen_agents(each)) for each in self._records])
+        return replay_page(
+            [
+                scene(record, self._chosen_agents(record), origin)
+                for record, origin in zip(self._records, self._origins, strict=True)
+            ]
+        )
 
     def save(self, path: "str | PathLike[str]", times: Sequence[float] = ()) -> Path:
         """Write the replay to a file, in the format of its suffix, and return its path.
