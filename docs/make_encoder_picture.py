@@ -219,7 +219,10 @@ def main() -> None:
     batch, values = moment()
     figure, row = pyplot.subplots(1, 2, figsize=(11.0, 5.75), dpi=110, facecolor=PAPER)
     figure.subplots_adjust(0.006, 0.01, 0.994, 0.945, 0.015)
-    titles = ("paper, ego: seven rays as wide as the body", "surround: a scan, and the nearest others")
+    titles = (
+        "paper, ego: seven rays as wide as the body",
+        "surround: a scan, and the nearest others",
+    )
     draw_rays(row[0], batch)
     draw_scan(row[1], batch, values)
     for axes, title in zip(row, titles, strict=True):
