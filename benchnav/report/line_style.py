@@ -1,0 +1,30 @@
+"""The colour, dash and mark of each navigator, the same on all pages of a report."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from benchnav.drawing.palette import NAVIGATORS
+
+DASHES = ("solid", "dash", "dot", "dashdot")
+SYMBOLS = ("circle", "square", "diamond", "triangle-up", "cross", "x", "star", "hexagon")
+
+
+@dataclass(frozen=True)
+class LineStyle:
+    """How figures draw a navigator. Names are those of plotly."""
+
+    color: str  # "#rrggbb"
+    dash: str
+    symbol: str
+
+
+def line_styles(navigators: Sequence[str]) -> dict[str, LineStyle]:
+    """Return a style for each navigator; where colours repeat, dashes and marks differ."""
+    return {
+        name: LineStyle(
+            NAVIGATORS[k % len(NAVIGATORS)],
+            DASHES[k // len(NAVIGATORS) % len(DASHES)],
+            SYMBOLS[k % len(SYMBOLS)],
+        )
+        for k, name in enumerate(navigators)
+    }

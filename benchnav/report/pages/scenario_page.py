@@ -1,0 +1,11 @@
+"""The pages about each scenario."""
+
+from collections.abc import Iterator
+
+from benchnav.report.page import Page
+from benchnav.report.report_data import ReportData
+
+
+def pages(data: ReportData) -> Iterator[Page]:
+    """Yield the pages."""
+    yield from ()
