@@ -3,14 +3,20 @@
 
 const ROWS = 100; // a longer table has several pages
 
-/** Show the rows that all filters allow; hide a column that has one value then. */
+/** Show the rows that all filters allow. */
 function filter(table, form) {
   for (const select of form.elements) {
-    const column = table.column(`${select.name}:name`);
-    column.search(select.value ? (text) => text === select.value : "");
-    column.visible(!select.value, false);
+    table.column(`${select.name}:name`).search(select.value ? (text) => text === select.value : "");
   }
-  table.columns.adjust().draw();
+  table.draw();
+}
+
+/** Hide the columns of the class "collapse" in which all rows agree. */
+function collapse(table) {
+  table.columns(".collapse").every(function () {
+    const values = new Set(this.cells(null, this.index(), { search: "applied" }).render("filter").toArray());
+    this.visible(values.size > 1, false);
+  });
 }
 
 /** Set the filters that the address names: index.html#track=unknown&scenario=trap/u@1 */
@@ -45,7 +51,6 @@ function connect(table, id) {
       filter(table, form);
     });
     addEventListener("hashchange", () => { readAddress(form); filter(table, form); });
-    filter(table, form);
   }
   for (const box of document.querySelectorAll(`.columns[data-table="${id}"] input`)) {
     const show = () => table.column(`${box.dataset.column}:name`).visible(box.checked);
@@ -61,11 +66,14 @@ async function start() {
     const heads = [...element.tHead.rows[0].cells];
     const table = new DataTable(element, {
       autoWidth: false, order: [], info: false, paging: rows > ROWS, pageLength: ROWS,
-      columns: heads.map((head) => ({ name: head.dataset.name ?? null, orderable: !head.classList.contains("no-sort") })),
+      columns: heads.map((head) => ({ name: head.dataset.name ?? null, orderable: !head.classList.contains("no-sort"), visible: !head.classList.contains("filter-only") })),
       layout: { topStart: null, topEnd: rows > 8 ? "search" : null, bottomStart: null, bottomEnd: rows > ROWS ? "paging" : null },
       language: { search: "Search", zeroRecords: "No row is like that.", emptyTable: "The table is empty." },
     });
     connect(table, element.id);
+    table.on("draw", () => collapse(table));
+    const form = document.querySelector(`form.filters[data-table="${element.id}"]`);
+    form ? filter(table, form) : table.draw();
   }
   document.documentElement.dataset.tables = "ready";
 }

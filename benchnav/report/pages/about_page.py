@@ -12,7 +12,7 @@ from benchnav.report.page import ABOUT, Page
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
 from benchnav.runner.plan.limits import Limits
-from benchnav.store.runs.manifest import Manifest
+from benchnav.store.runs.manifest import IN_PROCESS, Manifest
 from benchnav.store.runs.pinned_run import pinned_digest
 from benchnav.store.runs.receipt import verified_at
 from benchnav.store.runs.run_folder import RunFolder
@@ -51,7 +51,7 @@ def _facts(folder: RunFolder, verified: set[str]) -> RunFacts:
         verification=_verification(folder, verified),
         navigators=tuple(
             (
-                str(e["label"]), str(e.get("source", "")), str(e.get("mode", "")),
+                str(e["label"]), str(e.get("source", "")), str(e.get("mode", IN_PROCESS)),
                 manifest.source_of(str(e["label"])),
             )
             for e in suite["navigators"]

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 
 from benchnav.report.failures import Cell, Failures
+from benchnav.report.line_style import LineStyle
 from benchnav.report.page import FAILURES, Page, replay_path
 from benchnav.report.report_data import ReportData, family_of
 from benchnav.report.template import fill
@@ -19,7 +20,7 @@ class Row:
 
     found: Failures
     family: str
-    color: str
+    style: LineStyle
     share: float
     replay: PurePosixPath | None  # of the first failed episode
     command: str  # plays the first failed episode
@@ -56,7 +57,7 @@ def _row(data: ReportData, f: Failures, replays: Collection[Cell]) -> Row:
         "--scenario", f.scenario, "--track", f.track, "--seed", str(f.seed),
     ]  # fmt: skip
     return Row(
-        f, family_of(f.scenario), data.styles[f.navigator].color, f.failed / f.episodes,
+        f, family_of(f.scenario), data.styles[f.navigator], f.failed / f.episodes,
         replay_path(f.navigator, f.scenario, f.track, f.seed) if has_replay else None,
         shlex.join(words),
     )  # fmt: skip

@@ -12,9 +12,11 @@ from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Record
 from benchnav.leaderboard.rendering.cell import cell, rank, training
 from benchnav.leaderboard.rendering.layout import legend
 from benchnav.leaderboard.statistics.order import by_merit, leading
+from benchnav.report.line_style import LineStyle
 from benchnav.report.page import LEADERBOARD, Page
 from benchnav.report.report_data import ReportData, family_of
 from benchnav.report.template import fill
+from benchnav.text.plural import counted
 
 OVERALL = "all scenarios"
 _LAST = 1e300  # the sort value of a missing number: it comes after all others
@@ -33,7 +35,8 @@ class Interval:
 class MetricCell:
     """A cell with a number."""
 
-    text: str
+    value: str
+    bounds: str  # "[0.84, 0.93]"
     order: float
     is_best: bool
     interval: Interval | None
@@ -44,7 +47,7 @@ class Row:
     """A navigator in one scenario, track and role."""
 
     navigator: str
-    color: str
+    style: LineStyle
     is_verified: bool
     scenario: str  # identity, or `OVERALL`
     page: str  # identity of the scenario; "" for all of them
@@ -79,9 +82,29 @@ def pages(data: ReportData) -> Iterator[Page]:
             ("role", "Role", list(dict.fromkeys(r.role for r in rows)), 0),
         ],
         has_training=any(r.training for r in rows), has_notes=any(r.notes for r in rows),
+        summary=_summary(data), verification=_verification(data),
         any_verified=any(r.is_verified for r in rows),
     )  # fmt: skip
     yield Page(LEADERBOARD, "Leaderboard", body, LEADERBOARD, has_tables=True)
+
+
+def _summary(data: ReportData) -> str:
+    """Return what the runs consist of, in a sentence."""
+    sizes = (
+        counted(len(data.navigators), "navigator"), counted(len(data.scenarios), "scenario"),
+        f"{counted(len(data.tracks), 'track')} ({', '.join(data.tracks)})",
+    )  # fmt: skip
+    return f"{counted(len(data.summaries), 'episode')}: {', '.join(sizes)}."
+
+
+def _verification(data: ReportData) -> str:
+    """Return how many navigators have verified results, in a sentence."""
+    verified = [name for name in data.navigators if name in data.values.verified]
+    if not verified:
+        return "The results were not verified."
+    if len(verified) == len(data.navigators):
+        return "All results were verified on the machine that made this report."
+    return f"The results of {', '.join(verified)} were verified."
 
 
 def leaderboard_rows(data: ReportData) -> Iterator[Row]:
@@ -116,7 +139,7 @@ def _rows(data: ReportData, group: Sequence[Record], is_unique: bool) -> Iterato
         r = at[navigator, lead]
         whole = r.scenario == ALL
         yield Row(
-            navigator=navigator, color=data.styles[navigator].color,
+            navigator=navigator, style=data.styles[navigator],
             is_verified=any(at[navigator, m].verified for m in held if (navigator, m) in at),
             scenario=OVERALL if whole else r.scenario, page="" if whole else r.scenario,
             variant="" if is_unique else _variant(r),
@@ -151,10 +174,18 @@ def _scale(data: ReportData, records: Sequence[Record]) -> tuple[float, float]:
 def _cell(r: Record | None, scale: tuple[float, float] | None, decided: bool) -> MetricCell:
     if r is None or scale is None or not r.episodes or math.isnan(r.value):
         missing = -_LAST if r is not None and r.better == "higher" else _LAST
-        return MetricCell("–" if r is not None and r.episodes else "", missing, False, None)
+        return MetricCell("–" if r is not None and r.episodes else "", "", missing, False, None)
     shown = cell(r, interval=True, decided=decided)
     low, high = (r.value, r.value) if math.isnan(r.low) else (r.low, r.high)
-    return MetricCell(shown.text, r.value, shown.bold, _interval(low, high, r.value, scale))
+    bar = _interval(low, high, r.value, scale)
+    return MetricCell(*_split(shown.text), r.value, shown.bold, bar)
+
+
+def _split(text: str) -> tuple[str, str]:
+    """Return ``16.6 s (96)`` and ``[16.2, 17.0]`` of ``16.6 [16.2, 17.0] s (96)``."""
+    value, bracket, rest = text.partition(" [")
+    bounds, end, unit = rest.partition("]")
+    return value + unit, f"[{bounds}]" if bracket and end else ""
 
 
 def _interval(low: float, high: float, value: float, scale: tuple[float, float]) -> Interval:
