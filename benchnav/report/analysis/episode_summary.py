@@ -29,6 +29,7 @@ class EpisodeSummary:
 
     navigator: str
     scenario: str
+    split: str
     tracks: tuple[str, ...]  # an episode without a map stands for several
     seed: int
     attempts: tuple[Attempt, ...]  # by role, in the track of the stored episode
@@ -53,7 +54,7 @@ def summarise(episode: Episode, tracks: tuple[str, ...]) -> EpisodeSummary:
             shares.append((role.name.lower(), tuple((count / members.sum()).tolist())))
     hit = np.flatnonzero(agents.evaluated & (cause != NO_CONTACT)).tolist()
     return EpisodeSummary(
-        identity.navigator, identity.scenario, tracks, identity.seed,
+        identity.navigator, identity.scenario, identity.split, tracks, identity.seed,
         tuple(attempts_of(episode)), tuple(shares),
         tuple(_collision(episode, agent, int(cause[agent])) for agent in hit),
     )  # fmt: skip
