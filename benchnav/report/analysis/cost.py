@@ -1,6 +1,6 @@
 """The cost of navigators: time for decisions and resets, and memory."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Record
 from benchnav.report.analysis.view import View
@@ -18,14 +18,14 @@ MEANINGS = {
 """Metric → its meaning, in the order of tables."""
 
 
-
-
-def costs(records: Iterable[Record], view: View) -> dict[str, dict[str, Record]]:
-    """Return metric of `MEANINGS` → navigator → its record over all scenarios, or of the only one.
+def costs(
+    records: Iterable[Record], view: View, metrics: Collection[str] = tuple(MEANINGS)
+) -> dict[str, dict[str, Record]]:
+    """Return metric → navigator → its record over all scenarios, or of the only one.
 
     Metrics without a value are left out.
     """
-    found: dict[str, dict[str, Record]] = {name: {} for name in MEANINGS}
+    found: dict[str, dict[str, Record]] = {name: {} for name in metrics}
     for r in records:
         if r.metric not in found or not view.holds(r) or not r.episodes:
             continue
