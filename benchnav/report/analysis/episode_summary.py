@@ -1,21 +1,73 @@
-"""What the figures of a report need from one episode."""
+"""What the figures of a report need from one episode, without its trajectories."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
+import numpy as np
+
+from benchnav.arena.agents import Role
 from benchnav.episode.episode import Episode
+from benchnav.leaderboard.statistics.curve import Attempt, attempts_of
+from benchnav.report.analysis.outcome import NO_CONTACT, Outcome, outcomes, place_of
+from benchnav.report.analysis.partner import partner_name
+
+
+@dataclass(frozen=True)
+class Collision:
+    """The first charged contact of an agent that did not arrive before it."""
+
+    agent: int
+    role: str
+    partner: str  # the name of the obstacle, wall or team
+    time: float  # [s]
+    place: tuple[float, float]  # of the agent [m]
 
 
 @dataclass(frozen=True, eq=False)
 class EpisodeSummary:
-    """A stored episode without its trajectories."""
+    """An episode without its trajectories."""
 
     navigator: str
     scenario: str
+    split: str
     tracks: tuple[str, ...]  # an episode without a map stands for several
     seed: int
+    attempts: tuple[Attempt, ...]  # by role, in the track of the stored episode
+    shares: tuple[tuple[str, tuple[float, ...]], ...]  # role → share of agents per `Outcome`
+    collisions: tuple[Collision, ...]
+
+    def attempts_in(self, track: str) -> Iterator[Attempt]:
+        """Yield the attempts as those of ``track``; none if the episode does not stand for it."""
+        if track in self.tracks:
+            yield from (replace(attempt, track=track) for attempt in self.attempts)
 
 
 def summarise(episode: Episode, tracks: tuple[str, ...]) -> EpisodeSummary:
     """Return the summary of an episode that stands for ``tracks``."""
-    identity = episode.identity
-    return EpisodeSummary(identity.navigator, identity.scenario, tracks, identity.seed)
+    identity, agents = episode.identity, episode.world.agents
+    outcome, cause = outcomes(episode)
+    shares = []
+    for role in Role:
+        members = agents.evaluated & (agents.role == role)
+        if members.any():
+            count = np.bincount(outcome[members], minlength=len(Outcome))
+            shares.append((role.name.lower(), tuple((count / members.sum()).tolist())))
+    hit = np.flatnonzero(agents.evaluated & (cause != NO_CONTACT)).tolist()
+    return EpisodeSummary(
+        identity.navigator, identity.scenario, identity.split, tracks, identity.seed,
+        tuple(attempts_of(episode)), tuple(shares),
+        tuple(_collision(episode, agent, int(cause[agent])) for agent in hit),
+    )  # fmt: skip
+
+
+def _collision(episode: Episode, agent: int, row: int) -> Collision:
+    world, contacts = episode.world, episode.contacts
+    time = float(contacts.start[row])
+    x, y = place_of(episode, agent, time).tolist()
+    return Collision(
+        agent=agent,
+        role=Role(world.agents.role[agent]).name.lower(),
+        partner=partner_name(world, int(contacts.kind[row]), int(contacts.partner[row])),
+        time=time,
+        place=(x, y),
+    )

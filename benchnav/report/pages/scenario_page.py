@@ -1,11 +1,158 @@
-"""The pages about each scenario."""
+"""The list of scenarios, and a page for each of them."""
 
-from collections.abc import Iterator
+from __future__ import annotations
 
-from benchnav.report.page import Page
-from benchnav.report.report_data import ReportData
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from benchnav.leaderboard.record import Record
+from benchnav.leaderboard.statistics.curve import Point, curves_of
+from benchnav.metrics.success import success
+from benchnav.report.analysis.episode_summary import EpisodeSummary
+from benchnav.report.analysis.failures import outcome_shares, partners
+from benchnav.report.analysis.scenario_facts import scenario_facts
+from benchnav.report.analysis.view import View, title_of, views_of
+from benchnav.report.figure import figure_html
+from benchnav.report.figures.curves import curves_figure
+from benchnav.report.figures.failures import outcomes_figure, partners_figure
+from benchnav.report.figures.intervals import by_value, intervals_figure
+from benchnav.report.figures.style import height_of
+from benchnav.report.figures.world import Hit, world_picture
+from benchnav.report.page import SCENARIOS, Page, scenario_path
+from benchnav.report.pages.index import grouped
+from benchnav.report.pages.table import metric_table
+from benchnav.report.report_data import ReportData, StoredScenario
+from benchnav.report.template import fill
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+MOST_PARTNERS = 12  # rows of the figure of obstacles
+SHOWN = 6  # metrics of a table
+TALL = 420  # [px] of a curve without its legend
 
 
 def pages(data: ReportData) -> Iterator[Page]:
-    """Yield the pages."""
-    yield from ()
+    """Yield the page with all scenarios, then one for each."""
+    records = grouped(data.board.records, lambda r: r.scenario)
+    summaries = grouped(data.summaries, lambda s: s.scenario)
+    found = [
+        _Scenario(data, each, records.get(each.identity, []), summaries.get(each.identity, []))
+        for each in data.scenarios
+    ]
+    cards = [
+        {"scenario": each.scenario, "picture": each.picture(0), "best": each.best}
+        for each in found
+    ]  # fmt: skip
+    yield Page(SCENARIOS, "Scenarios", fill("scenarios.html", page=SCENARIOS, cards=cards), SCENARIOS)
+    for each in found:
+        yield each.page()
+
+
+@dataclass(frozen=True, eq=False)
+class _Scenario:
+    """A scenario with its results."""
+
+    data: ReportData
+    scenario: StoredScenario
+    records: Sequence[Record]
+    summaries: Sequence[EpisodeSummary]
+
+    @property
+    def best(self) -> str:
+        """The best navigator of each view, in words."""
+        texts = []
+        for view in views_of(self.records):
+            ordered = by_value([r for r in self._of(view, success.name) if r.value == r.value])
+            if ordered:
+                texts.append(f"{view.track}: {ordered[0].navigator} {ordered[0].value:.2f}")
+        return ", ".join(texts[:1]) if len(texts) == 1 else "; ".join(texts)
+
+    def page(self) -> Page:
+        """Return the page of the scenario."""
+        path = scenario_path(self.scenario.identity)
+        views = views_of(self.records)
+        config = self.scenario.config
+        body = fill(
+            "scenario.html",
+            page=path,
+            scenario=self.scenario,
+            title=str(config.get("title", "")),
+            description=str(config.get("description", "")),
+            facts=scenario_facts(config, self.scenario.worlds, self.scenario.hash),
+            pictures=[
+                (seed, self.picture(k), len(self._hits(seed)))
+                for k, seed in enumerate(self.scenario.seeds)
+            ],
+            sections=[(title_of(view, views), *self._section(view)) for view in views],
+        )
+        return Page(path, self.scenario.identity, body, SCENARIOS, has_figures=True)
+
+    def picture(self, index: int) -> Markup | None:
+        """Return the picture of one of the stored worlds; None if there are fewer."""
+        if index >= len(self.scenario.worlds):
+            return None
+        hits = self._hits(self.scenario.seeds[index])
+        names = {hit.partner for _, hit in hits}
+        return world_picture(self.scenario.worlds[index], hits, names, self.data.styles)
+
+    def _hits(self, seed: int) -> list[Hit]:
+        return [(s.navigator, hit) for s in self.summaries if s.seed == seed for hit in s.collisions]
+
+    def _section(self, view: View) -> tuple[list[Markup], Markup]:
+        """Return the figures and the table of one view."""
+        where = f"{self.scenario.identity}, track {view.track}, {view.role}s"
+        values = self._of(view, success.name)
+        figures = []
+        if any(r.value == r.value for r in values):
+            figures.append(figure_html(
+                intervals_figure(values, self.data.styles), height=height_of(len(values)),
+                label=f"Success of each navigator in {where}",
+                caption="Success: share of agents that arrive without a collision. Mean and 95 % interval.",
+            ))  # fmt: skip
+        figures += [*self._curves(view, where), *self._failures(view, where)]
+        shown = [m for m in self.data.metrics if m in self.data.values.metrics][:SHOWN]
+        chosen = [r for r in self.records if view.holds(r)]
+        return figures, metric_table(chosen, shown, self.data)
+
+    def _curves(self, view: View, where: str) -> Iterator[Markup]:
+        """Yield the figure of success against horizon; several if horizons differ."""
+        attempts = (
+            a for s in self.summaries for a in s.attempts_in(view.track)
+            if (a.role, a.split) == (view.role, view.split)
+        )  # fmt: skip
+        panels: dict[tuple[str, float, float], list[Point]] = {}
+        for point in curves_of(attempts):
+            panels.setdefault((point.scenario_hash, point.horizon, point.dt), []).append(point)
+        for points in panels.values():
+            names = {p.navigator for p in points}
+            yield figure_html(
+                curves_figure(points, self.data.styles), height=TALL + 8 * len(names),
+                label=f"Success against horizon in {where}",
+                caption="Success against horizon: share of all agents that would have succeeded had the"
+                " episodes ended by then.",
+            )  # fmt: skip
+
+    def _failures(self, view: View, where: str) -> Iterator[Markup]:
+        """Yield the figures of failures by cause and by obstacle."""
+        shares = outcome_shares(self.summaries, view).get(self.scenario.identity, {})
+        ordered = sorted(shares, key=lambda name: (-shares[name].shares[0], name))
+        if ordered:
+            yield figure_html(
+                outcomes_figure({name: shares[name] for name in ordered}),
+                height=height_of(len(ordered), 3), label=f"Outcomes of agents in {where}",
+                caption="Failures by cause. An agent that collides and goes on counts as a collision.",
+            )  # fmt: skip
+        found = partners(self.summaries, view, MOST_PARTNERS)
+        if found:
+            yield figure_html(
+                partners_figure(found, self.data.styles),
+                height=height_of(len(found), 2 + len(shares) // 4),
+                label=f"Obstacles, walls and agents that were hit in {where}",
+                caption="Collisions by obstacle: the first collision of each agent. The numbers are those"
+                " in the pictures.",
+            )  # fmt: skip
+
+    def _of(self, view: View, metric: str) -> list[Record]:
+        return [r for r in self.records if view.holds(r) and r.metric == metric]
