@@ -53,8 +53,8 @@ def outcomes_figure(rows: Mapping[str, OutcomeShares]) -> Figure:
     layout = {
         "barmode": "stack", "bargap": 0.3, "legend": dict(BELOW, traceorder="normal"),
         "xaxis": {
-            "title": {"text": "share of agents"}, "range": [0, 1], "tickformat": ".0%",
-            "fixedrange": True,
+            "title": {"text": "share of agents"}, "range": [0, 1], "fixedrange": True,
+            "tickvals": [0, 0.25, 0.5, 0.75, 1], "ticktext": ["0", "25 %", "50 %", "75 %", "100 %"],
         },
         "yaxis": rows_axis(names),
     }  # fmt: skip

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
+from urllib.parse import urlencode
 
 from benchnav.leaderboard.record import Record
 from benchnav.leaderboard.rendering.cell import cell
@@ -22,7 +23,7 @@ from benchnav.report.figures.failures import outcomes_figure
 from benchnav.report.figures.price import price_figure
 from benchnav.report.figures.profile import profile_figure
 from benchnav.report.figures.style import height_of
-from benchnav.report.page import NAVIGATORS, Page, navigator_path
+from benchnav.report.page import COMPARISON, FAILURES, NAVIGATORS, Page, href, navigator_path
 from benchnav.report.pages.index import grouped
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
@@ -123,6 +124,8 @@ def _page(shared: _Shared, name: str) -> Page:
         page=navigator_path(name),
         navigator=name,
         color=shared.data.styles[name].color,
+        comparison=f"{href(navigator_path(name), COMPARISON)}#{urlencode({'a': name})}",
+        failures=FAILURES,
         facts=facts_of(entry),
         parameters=parameters_of(entry["config"]),
         profiles=list(_profiles(shared, name)),
