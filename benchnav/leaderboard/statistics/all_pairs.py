@@ -152,8 +152,11 @@ def _strata_of(every: Sequence[Stratum], pair: Pair) -> list[Stratum]:
         if at:
             found.append(
                 replace(
-                    s, navigators=tuple(s.navigators[n] for n in at), attempted=s.attempted[:, at],
-                    failed=s.failed[:, at], granted=s.granted[at],
-                )  # fmt: skip
+                    s,
+                    navigators=tuple(s.navigators[n] for n in at),
+                    attempted=s.attempted[:, at],
+                    failed=s.failed[:, at],
+                    granted=s.granted[at],
+                )
             )
     return found

@@ -79,7 +79,9 @@ def partners_figure(
                 "hovertemplate": "%{y}<br>%{fullData.name}: %{x} collisions<extra></extra>",
             })  # fmt: skip
     layout = {
-        "barmode": "stack", "bargap": 0.3, "legend": dict(BELOW, traceorder="normal"),
+        "barmode": "stack",
+        "bargap": 0.3,
+        "legend": dict(BELOW, traceorder="normal"),
         "xaxis": {"title": {"text": "first collisions of agents"}, "fixedrange": True},
         "yaxis": rows_axis(names),
     }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.record import Record
@@ -11,6 +12,7 @@ from benchnav.leaderboard.statistics.curve import Point, curves_of
 from benchnav.metrics.success import success
 from benchnav.report.analysis.episode_summary import EpisodeSummary
 from benchnav.report.analysis.failures import outcome_shares, partners
+from benchnav.report.analysis.partner import fixed_obstacles
 from benchnav.report.analysis.scenario_facts import scenario_facts
 from benchnav.report.analysis.view import View, title_of, views_of
 from benchnav.report.figure import figure_html
@@ -31,6 +33,16 @@ if TYPE_CHECKING:
 MOST_PARTNERS = 12  # rows of the figure of obstacles
 SHOWN = 6  # metrics of a table
 TALL = 420  # [px] of a curve without its legend
+SUCCESS = "Success: share of agents that arrive without a collision. Mean and 95 % interval."
+CURVES = (
+    "Success against horizon: share of all agents that would have succeeded had the episodes ended"
+    " by then."
+)
+CAUSES = "Failures by cause. An agent that collides and goes on counts as a collision."
+PARTNERS = (
+    "Collisions by obstacle: the first collision of each agent. Numbers are those in the pictures;"
+    " obstacles that are drawn anew for each seed are added up."
+)
 
 
 def pages(data: ReportData) -> Iterator[Page]:
@@ -45,7 +57,9 @@ def pages(data: ReportData) -> Iterator[Page]:
         {"scenario": each.scenario, "picture": each.picture(0), "best": each.best}
         for each in found
     ]  # fmt: skip
-    yield Page(SCENARIOS, "Scenarios", fill("scenarios.html", page=SCENARIOS, cards=cards), SCENARIOS)
+    yield Page(
+        SCENARIOS, "Scenarios", fill("scenarios.html", page=SCENARIOS, cards=cards), SCENARIOS
+    )
     for each in found:
         yield each.page()
 
@@ -68,6 +82,11 @@ class _Scenario:
             if ordered:
                 texts.append(f"{view.track}: {ordered[0].navigator} {ordered[0].value:.2f}")
         return ", ".join(texts[:1]) if len(texts) == 1 else "; ".join(texts)
+
+    @cached_property
+    def fixed(self) -> set[str]:
+        """The obstacles and walls that are the same in all stored worlds."""
+        return fixed_obstacles(self.scenario.worlds) if self.scenario.worlds else set()
 
     def page(self) -> Page:
         """Return the page of the scenario."""
@@ -94,11 +113,13 @@ class _Scenario:
         if index >= len(self.scenario.worlds):
             return None
         hits = self._hits(self.scenario.seeds[index])
-        names = {hit.partner for _, hit in hits}
+        names = self.fixed & {hit.partner for s in self.summaries for hit in s.collisions}
         return world_picture(self.scenario.worlds[index], hits, names, self.data.styles)
 
     def _hits(self, seed: int) -> list[Hit]:
-        return [(s.navigator, hit) for s in self.summaries if s.seed == seed for hit in s.collisions]
+        return [
+            (s.navigator, hit) for s in self.summaries if s.seed == seed for hit in s.collisions
+        ]
 
     def _section(self, view: View) -> tuple[list[Markup], Markup]:
         """Return the figures and the table of one view."""
@@ -109,7 +130,7 @@ class _Scenario:
             figures.append(figure_html(
                 intervals_figure(values, self.data.styles), height=height_of(len(values)),
                 label=f"Success of each navigator in {where}",
-                caption="Success: share of agents that arrive without a collision. Mean and 95 % interval.",
+                caption=SUCCESS,
             ))  # fmt: skip
         figures += [*self._curves(view, where), *self._failures(view, where)]
         shown = [m for m in self.data.metrics if m in self.data.values.metrics][:SHOWN]
@@ -130,8 +151,7 @@ class _Scenario:
             yield figure_html(
                 curves_figure(points, self.data.styles), height=TALL + 8 * len(names),
                 label=f"Success against horizon in {where}",
-                caption="Success against horizon: share of all agents that would have succeeded had the"
-                " episodes ended by then.",
+                caption=CURVES,
             )  # fmt: skip
 
     def _failures(self, view: View, where: str) -> Iterator[Markup]:
@@ -142,16 +162,15 @@ class _Scenario:
             yield figure_html(
                 outcomes_figure({name: shares[name] for name in ordered}),
                 height=height_of(len(ordered), 3), label=f"Outcomes of agents in {where}",
-                caption="Failures by cause. An agent that collides and goes on counts as a collision.",
+                caption=CAUSES,
             )  # fmt: skip
-        found = partners(self.summaries, view, MOST_PARTNERS)
+        found = partners(self.summaries, view, MOST_PARTNERS, self.fixed)
         if found:
             yield figure_html(
                 partners_figure(found, self.data.styles),
                 height=height_of(len(found), 2 + len(shares) // 4),
                 label=f"Obstacles, walls and agents that were hit in {where}",
-                caption="Collisions by obstacle: the first collision of each agent. The numbers are those"
-                " in the pictures.",
+                caption=PARTNERS,
             )  # fmt: skip
 
     def _of(self, view: View, metric: str) -> list[Record]:
