@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
-from typing import Any
-
-from markupsafe import Markup, escape
+from typing import TYPE_CHECKING, Any
 
 from benchnav.text.visible import visible
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
 
 HEIGHT = 380  # [px]
 
@@ -25,12 +25,13 @@ def figure_html(
         height: [px].
         caption: text below the figure.
     """
+    from markupsafe import Markup, escape
     from plotly.io.json import to_json_plotly
 
     fields = figure if isinstance(figure, Mapping) else figure.to_plotly_json()
     layout = {k: v for k, v in fields.get("layout", {}).items() if k != "template"}
+    # It writes "<" as \u003c, so that no text ends the script element.
     text = to_json_plotly({"data": fields["data"], "layout": layout}, engine="json")
-    text = json.dumps(json.loads(text), separators=(",", ":")).replace("<", "\\u003c")
     below = f"<figcaption>{escape(visible(caption))}</figcaption>" if caption else ""
     return Markup(  # noqa: S704 - each part is escaped
         f'<figure class="plot"><div class="plot-area" role="img" style="height:{height:d}px"'

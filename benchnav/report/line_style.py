@@ -17,6 +17,11 @@ class LineStyle:
     dash: str
     symbol: str
 
+    @property
+    def swatch(self) -> str:
+        """The CSS classes of the square before its name: it is hollow where a colour repeats."""
+        return "swatch" if self.dash == DASHES[0] else "swatch hollow"
+
 
 def line_styles(navigators: Sequence[str]) -> dict[str, LineStyle]:
     """Return a style for each navigator; where colours repeat, dashes and marks differ."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from benchnav.arena.world import World
 from benchnav.episode.episode import Episode
-from benchnav.leaderboard.columns import DEFAULT
+from benchnav.leaderboard.columns import choose
 from benchnav.leaderboard.from_runs import StoredValues
 from benchnav.leaderboard.record import Leaderboard, Record
 from benchnav.report.analysis.episode_summary import EpisodeSummary, summarise
@@ -17,6 +17,12 @@ from benchnav.scenario.terms import TRACKS
 from benchnav.store.runs.run_folder import RunFolder
 
 WORLDS = 6  # of each scenario that are kept for its pictures
+
+MORE = (
+    "timeout", "stuck", "failed", "min_clearance", "path_length", "efficiency",
+    "personal_space_intimate", "planning_time", "latency_p95",
+)  # fmt: skip
+"""Metrics of a report besides those of a leaderboard."""
 
 Receive = Callable[[Episode, tuple[str, ...]], None]
 """Receives each stored episode once, and the tracks for which it stands."""
@@ -77,17 +83,22 @@ def family_of(scenario: str) -> str:
 
 
 def read_runs(
-    folders: Sequence[RunFolder], values: StoredValues, receive: Receive | None = None
+    folders: Sequence[RunFolder],
+    values: StoredValues,
+    metrics: Sequence[str] | None = None,
+    receive: Receive | None = None,
 ) -> ReportData:
     """Read each stored episode of some runs once.
 
     Args:
         folders: the runs.
         values: their measured values.
+        metrics: names of metrics on the board, or "all"; None: the usual ones and `MORE`.
         receive: also receives each episode.
 
-    Raises CorruptPartError for a damaged part.
+    Raises UsageError for an unknown metric, CorruptPartError for a damaged part.
     """
+    shown = _metrics(values.names, metrics)
     worlds: dict[str, dict[int, World]] = {}
     summaries = []
     for episode, tracks in _episodes(folders):
@@ -99,9 +110,8 @@ def read_runs(
     held = set(values.results["navigator"].unique().to_pylist())
     held |= {cell.navigator for cell in values.not_applicable}
     navigators = tuple(dict.fromkeys(e["label"] for e in entries if e["label"] in held))
-    metrics = _metrics(values.names)
     return ReportData(
-        folders=tuple(folders), values=values, board=values.board(metrics), metrics=metrics,
+        folders=tuple(folders), values=values, board=values.board(shown), metrics=shown,
         navigators=navigators, scenarios=_scenarios(folders, worlds), tracks=_tracks(folders),
         styles=line_styles(navigators), summaries=tuple(summaries),
         navigator_configs={e["label"]: e for e in reversed(entries)},
@@ -134,8 +144,11 @@ def _keep_world(kept: dict[int, World], episode: Episode) -> None:
         del kept[max(kept)]
 
 
-def _metrics(held: Sequence[str]) -> tuple[str, ...]:
-    return tuple(dict.fromkeys([*(name for name in DEFAULT if name in held), *held]))
+def _metrics(held: Sequence[str], named: Sequence[str] | None) -> tuple[str, ...]:
+    if named is not None:
+        return choose(held, named)
+    usual = choose(held, None)
+    return tuple(dict.fromkeys([*usual, *(name for name in MORE if name in held)]))
 
 
 def _scenarios(

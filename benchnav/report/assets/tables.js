@@ -1,0 +1,80 @@
+"use strict";
+// Makes tables of the class "data" sortable, and connects them to the filters above them.
+
+const ROWS = 100; // a longer table has several pages
+
+/** Show the rows that all filters allow. */
+function filter(table, form) {
+  for (const select of form.elements) {
+    table.column(`${select.name}:name`).search(select.value ? (text) => text === select.value : "");
+  }
+  table.draw();
+}
+
+/** Hide the columns of the class "collapse" in which all rows agree. */
+function collapse(table) {
+  table.columns(".collapse").every(function () {
+    const values = new Set(this.cells(null, this.index(), { search: "applied" }).render("filter").toArray());
+    this.visible(values.size > 1, false);
+  });
+}
+
+/** Set the filters that the address names: index.html#track=unknown&scenario=trap/u@1 */
+function readAddress(form) {
+  const named = new URLSearchParams(location.hash.slice(1));
+  const isNamed = [...form.elements].some((select) => named.has(select.name));
+  for (const select of form.elements) {
+    const wanted = named.get(select.name) ?? "";
+    if (isNamed && [...select.options].some((option) => option.value === wanted)) select.value = wanted;
+  }
+}
+
+function writeAddress(form) {
+  const chosen = new URLSearchParams([...form.elements].map((select) => [select.name, select.value]));
+  history.replaceState(null, "", `#${chosen}`);
+}
+
+/** A family and one scenario are alternatives. */
+function reset(form, changed) {
+  const other = { family: "scenario", scenario: "family" }[changed.name];
+  if (other && changed.value && form.elements[other]) form.elements[other].value = "";
+}
+
+function connect(table, id) {
+  const form = document.querySelector(`form.filters[data-table="${id}"]`);
+  if (form && form.elements.length) {
+    readAddress(form);
+    form.addEventListener("submit", (event) => event.preventDefault());
+    form.addEventListener("change", (event) => {
+      reset(form, event.target);
+      writeAddress(form);
+      filter(table, form);
+    });
+    addEventListener("hashchange", () => { readAddress(form); filter(table, form); });
+  }
+  for (const box of document.querySelectorAll(`.columns[data-table="${id}"] input`)) {
+    const show = () => table.column(`${box.dataset.column}:name`).visible(box.checked);
+    box.addEventListener("change", show);
+    show();
+  }
+}
+
+async function start() {
+  const { default: DataTable } = await import(window.dataTablesModule);
+  for (const element of document.querySelectorAll("table.data")) {
+    const rows = element.tBodies[0].rows.length;
+    const heads = [...element.tHead.rows[0].cells];
+    const table = new DataTable(element, {
+      autoWidth: false, order: [], info: false, paging: rows > ROWS, pageLength: ROWS,
+      columns: heads.map((head) => ({ name: head.dataset.name ?? null, orderable: !head.classList.contains("no-sort"), visible: !head.classList.contains("filter-only") })),
+      layout: { topStart: null, topEnd: rows > 8 ? "search" : null, bottomStart: null, bottomEnd: rows > ROWS ? "paging" : null },
+      language: { search: "Search", zeroRecords: "No row is like that.", emptyTable: "The table is empty." },
+    });
+    connect(table, element.id);
+    table.on("draw", () => collapse(table));
+    const form = document.querySelector(`form.filters[data-table="${element.id}"]`);
+    form ? filter(table, form) : table.draw();
+  }
+  document.documentElement.dataset.tables = "ready";
+}
+start();
