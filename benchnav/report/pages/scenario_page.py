@@ -8,10 +8,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.record import Record
-from benchnav.leaderboard.statistics.curve import Point, curves_of
 from benchnav.metrics.success import success
 from benchnav.report.analysis.episode_summary import EpisodeSummary
 from benchnav.report.analysis.failures import outcome_shares, partners
+from benchnav.report.analysis.horizon import HorizonCurves
 from benchnav.report.analysis.partner import fixed_obstacles
 from benchnav.report.analysis.scenario_facts import scenario_facts
 from benchnav.report.analysis.view import View, title_of, views_of
@@ -54,7 +54,7 @@ def pages(data: ReportData) -> Iterator[Page]:
         for each in data.scenarios
     ]
     cards = [
-        {"scenario": each.scenario, "picture": each.picture(0), "best": each.best}
+        {"scenario": each.scenario, "picture": next(iter(each.pictures), None), "best": each.best}
         for each in found
     ]  # fmt: skip
     yield Page(
@@ -101,20 +101,21 @@ class _Scenario:
             description=str(config.get("description", "")),
             facts=scenario_facts(config, self.scenario.worlds, self.scenario.hash),
             pictures=[
-                (seed, self.picture(k), len(self._hits(seed)))
-                for k, seed in enumerate(self.scenario.seeds)
+                (seed, picture, len(self._hits(seed)))
+                for seed, picture in zip(self.scenario.seeds, self.pictures, strict=True)
             ],
             sections=[(title_of(view, views), *self._section(view)) for view in views],
         )
         return Page(path, self.scenario.identity, body, SCENARIOS, has_figures=True)
 
-    def picture(self, index: int) -> Markup | None:
-        """Return the picture of one of the stored worlds; None if there are fewer."""
-        if index >= len(self.scenario.worlds):
-            return None
-        hits = self._hits(self.scenario.seeds[index])
+    @cached_property
+    def pictures(self) -> list[Markup]:
+        """The pictures of the stored worlds."""
         names = self.fixed & {hit.partner for s in self.summaries for hit in s.collisions}
-        return world_picture(self.scenario.worlds[index], hits, names, self.data.styles)
+        return [
+            world_picture(world, self._hits(seed), names, self.data.styles)
+            for world, seed in zip(self.scenario.worlds, self.scenario.seeds, strict=True)
+        ]
 
     def _hits(self, seed: int) -> list[Hit]:
         return [
@@ -137,16 +138,13 @@ class _Scenario:
         chosen = [r for r in self.records if view.holds(r)]
         return figures, metric_table(chosen, shown, self.data)
 
+    @cached_property
+    def _horizon(self) -> HorizonCurves:
+        return HorizonCurves(self.summaries)
+
     def _curves(self, view: View, where: str) -> Iterator[Markup]:
         """Yield the figure of success against horizon; several if horizons differ."""
-        attempts = (
-            a for s in self.summaries for a in s.attempts_in(view.track)
-            if (a.role, a.split) == (view.role, view.split)
-        )  # fmt: skip
-        panels: dict[tuple[str, float, float], list[Point]] = {}
-        for point in curves_of(attempts):
-            panels.setdefault((point.scenario_hash, point.horizon, point.dt), []).append(point)
-        for points in panels.values():
+        for points in self._horizon.panels(view):
             names = {p.navigator for p in points}
             yield figure_html(
                 curves_figure(points, self.data.styles), height=TALL + 8 * len(names),
