@@ -89,6 +89,8 @@ def _in_one(s: Stratum, metrics: Sequence[Metric]) -> Iterator[Comparison]:
     held = [metric for metric in metrics if metric.name in s.metrics]
     first, second = pairs(len(s.navigators))
     met = (s.attempted[:, first] & s.attempted[:, second]).any(axis=0)
+    if not held or not met.any():
+        return
     first, second = (np.repeat(side[met], len(held)) for side in (first, second))
     yield from differences(s, first, second, held * int(met.sum()))
 
@@ -96,6 +98,8 @@ def _in_one(s: Stratum, metrics: Sequence[Metric]) -> Iterator[Comparison]:
 def _over_all(group: Sequence[Stratum], metrics: Sequence[Metric]) -> Iterator[Comparison]:
     """Yield the comparisons of all pairs over the scenarios of one split, track and role."""
     s = group[0]
+    if len(s.navigators) < 2:
+        return
     first, second = (np.repeat(side, len(metrics)) for side in pairs(len(s.navigators)))
     columns = [*metrics] * (len(first) // len(metrics))
     sides = [side_by_side(each, first, second, columns) for each in group]
@@ -152,8 +156,11 @@ def _strata_of(every: Sequence[Stratum], pair: Pair) -> list[Stratum]:
         if at:
             found.append(
                 replace(
-                    s, navigators=tuple(s.navigators[n] for n in at), attempted=s.attempted[:, at],
-                    failed=s.failed[:, at], granted=s.granted[at],
-                )  # fmt: skip
+                    s,
+                    navigators=tuple(s.navigators[n] for n in at),
+                    attempted=s.attempted[:, at],
+                    failed=s.failed[:, at],
+                    granted=s.granted[at],
+                )
             )
     return found

@@ -127,11 +127,12 @@ def _times(horizon: float, points: int) -> FloatArray:
 def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
     split, track, scenario, role, digest, horizon, dt, rehearsal, navigator = key
     times = [worlds[seed] for seed in sorted(worlds)]
-    value = np.array([success_by_horizon(each, _times(horizon, points)) for each in times])
-    agents = np.array([[float(len(each))] * points for each in times])
+    every = np.array([success_by_horizon(each, _times(horizon, points)) for each in times])
+    value, places = np.unique(every, axis=1, return_inverse=True)  # few times differ
+    agents = np.repeat([[float(len(each))] for each in times], value.shape[1], axis=1)
     weights = resample(len(value), np.random.default_rng(0))
-    found = estimate(Sample(value, agents, weights), columns_of([success] * points))
-    for k, time in enumerate(_times(horizon, points)):
+    found = estimate(Sample(value, agents, weights), columns_of([success] * value.shape[1]))
+    for k, time in zip(places.ravel().tolist(), _times(horizon, points), strict=True):
         yield Point(
             navigator, scenario, track, role, success.name, HORIZON, "s", float(time),
             float(found.value[k]), float(found.low[k]), float(found.high[k]), "", len(value),

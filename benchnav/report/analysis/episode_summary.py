@@ -1,7 +1,6 @@
 """What the figures of a report need from one episode, without its trajectories."""
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -35,11 +34,6 @@ class EpisodeSummary:
     attempts: tuple[Attempt, ...]  # by role, in the track of the stored episode
     shares: tuple[tuple[str, tuple[float, ...]], ...]  # role → share of agents per `Outcome`
     collisions: tuple[Collision, ...]
-
-    def attempts_in(self, track: str) -> Iterator[Attempt]:
-        """Yield the attempts as those of ``track``; none if the episode does not stand for it."""
-        if track in self.tracks:
-            yield from (replace(attempt, track=track) for attempt in self.attempts)
 
 
 def summarise(episode: Episode, tracks: tuple[str, ...]) -> EpisodeSummary:

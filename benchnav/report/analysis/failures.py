@@ -1,13 +1,14 @@
 """Failures by cause, and by the obstacle, wall or agent that was hit."""
 
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from benchnav.report.analysis.episode_summary import EpisodeSummary
 from benchnav.report.analysis.outcome import Outcome
+from benchnav.report.analysis.partner import without_number
 from benchnav.report.analysis.view import View
 
 
@@ -44,11 +45,12 @@ def outcome_shares(
 
 
 def partners(
-    summaries: Iterable[EpisodeSummary], view: View, most: int
+    summaries: Iterable[EpisodeSummary], view: View, most: int, fixed: Collection[str]
 ) -> dict[str, Mapping[str, int]]:
     """Return name of the obstacle, wall or team → navigator → number of agents that hit it.
 
-    Only the ``most`` frequent ones, the most frequent first; the others are added up.
+    Obstacles and walls that are not ``fixed`` differ from seed to seed: those of a kind are added
+    up. Only the ``most`` frequent ones, the most frequent first; the others are added up.
     """
     seen = set()
     counts: dict[str, Counter[str]] = {}
@@ -59,7 +61,9 @@ def partners(
         seen.add(key)
         for collision in s.collisions:
             if collision.role == view.role:
-                counts.setdefault(collision.partner, Counter())[s.navigator] += 1
+                name = collision.partner
+                name = name if name in fixed else without_number(name)
+                counts.setdefault(name, Counter())[s.navigator] += 1
     ordered = sorted(counts, key=lambda name: (-counts[name].total(), name))
     found: dict[str, Mapping[str, int]] = {name: counts[name] for name in ordered[:most]}
     if rest := ordered[most:]:

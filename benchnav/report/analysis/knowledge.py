@@ -43,8 +43,10 @@ def _judged(record: Record) -> str:
         return "; that may be chance"
     if record.better is None:
         return ""
-    return "; the map helps" if (record.value > 0) == (record.better == "higher") else (
-        "; the map harms"
+    return (
+        "; the map helps"
+        if (record.value > 0) == (record.better == "higher")
+        else ("; the map harms")
     )
 
 

@@ -1,11 +1,14 @@
 """Names of the walls, obstacles and agents that an agent touches."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+
+import numpy as np
 
 from benchnav.arena.agents import Role
 from benchnav.arena.body import LawKind
 from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
+from benchnav.arrays import FloatArray
 
 _LAWS = {
     LawKind.TRACK: "moving obstacle", LawKind.CIRCLE: "circling obstacle",
@@ -30,9 +33,45 @@ def partner_name(world: World, kind: int, partner: int) -> str:
     return "outer wall" if _is_outer(solid) else f"wall {_number(world.solids, partner)}"
 
 
-def solid_names(world: World) -> list[str]:
-    """Return the name of every wall and static obstacle, in the order of ``world.solids``."""
-    return [partner_name(world, int(s.kind), k) for k, s in enumerate(world.solids)]
+def obstacles_of(world: World) -> Iterator[tuple[str, FloatArray, Solid]]:
+    """Yield the name, a point (2,) [m] and the shape of every wall, obstacle and moving obstacle.
+
+    The point is the middle of an obstacle, or of the longest edge of a wall.
+    """
+    for k, solid in enumerate(world.solids):
+        yield partner_name(world, int(solid.kind), k), _point(solid), solid
+    for k, body in enumerate(world.bodies):
+        name = partner_name(world, int(body.solid.kind), -1 - k)
+        yield name, np.asarray(body.law.points[0], np.float64), body.solid
+
+
+def fixed_obstacles(worlds: Sequence[World]) -> set[str]:
+    """Return the names of walls and obstacles that are the same in all ``worlds``."""
+    first, *others = (_shapes(world) for world in worlds)
+    return {
+        name for name, shape in first.items() if all(shape == other.get(name) for other in others)
+    }
+
+
+def without_number(name: str) -> str:
+    """Return the name of an obstacle or wall without its number: ``a static obstacle``."""
+    kind, _, number = name.rpartition(" ")
+    return f"a {kind}" if number.isdigit() else name
+
+
+def _point(solid: Solid) -> FloatArray:
+    ends = solid.capsules[:, :4].reshape(-1, 2, 2)
+    if solid.kind == Kind.WALL:
+        ends = ends[[int(np.argmax(np.hypot(*(ends[:, 1] - ends[:, 0]).T)))]]
+    middle: FloatArray = 0.5 * (ends.min(axis=(0, 1)) + ends.max(axis=(0, 1)))
+    return middle
+
+
+def _shapes(world: World) -> dict[str, bytes]:
+    return {
+        name: point.tobytes() + solid.capsules.tobytes()
+        for name, point, solid in obstacles_of(world)
+    }
 
 
 def _agent(world: World, agent: int) -> str:

@@ -9,6 +9,7 @@ from benchnav.report.figure import plain
 from benchnav.report.figures.style import BELOW, GREY, Figure, errors, marker, rows_axis
 from benchnav.report.line_style import LineStyle
 
+TICK = "line-ns-open"  # the mark of a higher percentile
 TICKS: Mapping[str, Any] = {
     "tickvals": [1e-6, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0, 10.0, 100.0],
     "ticktext": ["1 µs", "10 µs", "0.1 ms", "1 ms", "10 ms", "0.1 s", "1 s", "10 s", "100 s"],
@@ -33,7 +34,7 @@ def times_figure(
             "type": "scatter", "mode": "lines+markers", "y": [plain(name)] * len(found),
             "x": [r.value for r in found],
             "line": {"color": styles[name].color if name == own else GREY, "width": 3},
-            "marker": {"size": 8, "symbol": [styles[name].symbol, *["line-ns-open"] * 2][: len(found)]},
+            "marker": {"size": 8, "symbol": [styles[name].symbol, *[TICK] * (len(found) - 1)]},
             "opacity": 1.0 if name == own else 0.6,
             "text": [f"{r.metric}: {cell(r, interval=False, decided=False).text}" for r in found],
             "hovertemplate": "%{y}<br>%{text}<extra></extra>",

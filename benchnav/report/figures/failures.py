@@ -52,6 +52,7 @@ def outcomes_figure(rows: Mapping[str, OutcomeShares]) -> Figure:
         })  # fmt: skip
     layout = {
         "barmode": "stack", "bargap": 0.3, "legend": dict(BELOW, traceorder="normal"),
+        "margin": {"r": 30},
         "xaxis": {
             "title": {"text": "share of agents"}, "range": [0, 1], "fixedrange": True,
             "tickvals": [0, 0.25, 0.5, 0.75, 1], "ticktext": ["0", "25 %", "50 %", "75 %", "100 %"],
@@ -79,7 +80,9 @@ def partners_figure(
                 "hovertemplate": "%{y}<br>%{fullData.name}: %{x} collisions<extra></extra>",
             })  # fmt: skip
     layout = {
-        "barmode": "stack", "bargap": 0.3, "legend": dict(BELOW, traceorder="normal"),
+        "barmode": "stack",
+        "bargap": 0.3,
+        "legend": dict(BELOW, traceorder="normal"),
         "xaxis": {"title": {"text": "first collisions of agents"}, "fixedrange": True},
         "yaxis": rows_axis(names),
     }

@@ -1,6 +1,7 @@
 """A metric of all navigators in one view: a mark with its interval in each row."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from benchnav.leaderboard.record import Record
 from benchnav.leaderboard.rendering.cell import cell
@@ -18,7 +19,10 @@ def intervals_figure(records: Sequence[Record], styles: Mapping[str, LineStyle])
     data = [_mark(r, styles[r.navigator]) for r in shown]
     first = records[0]
     unit = f" [{first.unit}]" if first.unit else ""
-    axis = {"title": {"text": f"{plain(first.metric)}{unit}"}, "rangemode": "tozero"}
+    axis: dict[str, Any] = {
+        "title": {"text": f"{plain(first.metric)}{unit}"},
+        "rangemode": "tozero",
+    }
     if first.metric == "success":
         axis["range"] = [-0.03, 1.03]
     layout = {

@@ -6,12 +6,9 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from benchnav.arena.world import World
-from benchnav.arrays import FloatArray
 from benchnav.report.analysis.episode_summary import Collision
-from benchnav.report.analysis.partner import partner_name
+from benchnav.report.analysis.partner import obstacles_of
 from benchnav.report.line_style import LineStyle
 from benchnav.text.visible import visible
 from benchnav.viewer.svg import world_svg
@@ -20,7 +17,10 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
 MOST_MARKS = 60  # of one picture
-MARK, LETTER = 0.012, 0.05  # radius and font size, of the longer side of the arena
+MARK, LETTER = (
+    0.012,
+    0.05,
+)  # half the size of a cross and font size, of the longer side of the arena
 Hit = tuple[str, Collision]
 """A navigator, and the collision of one of its agents."""
 
@@ -33,7 +33,7 @@ def world_picture(
     Args:
         world: the world.
         hits: collisions in this world; only the first `MOST_MARKS` are drawn.
-        labelled: names of obstacles and walls (`partner_name`) whose numbers are shown.
+        labelled: names of obstacles and walls (`obstacles_of`) whose numbers are shown.
         styles: the style of each navigator.
     """
     from markupsafe import Markup
@@ -45,18 +45,20 @@ def world_picture(
     return Markup(world_svg(world, [*_labels(world, labelled, LETTER * side), *marks]))  # noqa: S704
 
 
-def _mark(navigator: str, hit: Collision, radius: float, color: str) -> str:
+def _mark(navigator: str, hit: Collision, size: float, color: str) -> str:
+    """Return a cross with the navigator, the partner and the time as its title."""
     x, y = hit.place
     text = escape(visible(f"{navigator}: {hit.partner}, {hit.time:.1f} s"))
     return (
-        f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{radius:.3g}" fill="{color}" stroke="#fff"'
-        f' stroke-width="{radius / 4:.2g}"><title>{text}</title></circle>'
+        f'<path d="M{x - size:.2f} {y - size:.2f}l{2 * size:.3g} {2 * size:.3g}m0 {-2 * size:.3g}'
+        f'l{-2 * size:.3g} {2 * size:.3g}" stroke="{color}" stroke-width="{size / 1.6:.2g}">'
+        f"<title>{text}</title></path>"
     )
 
 
 def _labels(world: World, labelled: Collection[str], size: float) -> Iterator[str]:
     """Yield the numbers of obstacles, upright although y points upwards."""
-    for name, (x, y) in _places(world):
+    for name, (x, y), _ in obstacles_of(world):
         number = name.rpartition(" ")[2]
         if name in labelled and number.isdigit():
             yield (
@@ -64,13 +66,3 @@ def _labels(world: World, labelled: Collection[str], size: float) -> Iterator[st
                 ' text-anchor="middle" dominant-baseline="central" font-family="sans-serif"'
                 f' stroke="#fff" stroke-width="{size / 5:.2g}" paint-order="stroke">{number}</text>'
             )
-
-
-def _places(world: World) -> Iterator[tuple[str, FloatArray]]:
-    """Yield the name and the middle (2,) [m] of every wall, obstacle and body."""
-    for k, solid in enumerate(world.solids):
-        ends = solid.capsules[:, :4].reshape(-1, 2)
-        yield partner_name(world, int(solid.kind), k), 0.5 * (ends.min(axis=0) + ends.max(axis=0))
-    for k, body in enumerate(world.bodies):
-        place = np.asarray(body.law.points[0], np.float64)
-        yield partner_name(world, int(body.solid.kind), -1 - k), place

@@ -169,7 +169,9 @@ def _prices(shared: _Shared, name: str) -> Iterator[tuple[str, Markup | None]]:
         )  # fmt: skip
 
 
-def _costs(shared: _Shared, name: str) -> Iterator[tuple[str, list[tuple[str, str, str]], Markup | None]]:
+def _costs(
+    shared: _Shared, name: str
+) -> Iterator[tuple[str, list[tuple[str, str, str]], Markup | None]]:
     """Yield the heading, the table and the figure of the costs in each view."""
     for view in shared.views:
         found = shared.costs[view]
@@ -186,8 +188,8 @@ def _costs(shared: _Shared, name: str) -> Iterator[tuple[str, list[tuple[str, st
             figure = figure_html(
                 times_figure(found, metrics, name, shared.data.styles),
                 height=height_of(len(found[metrics[0]])), label=f"Times of decisions, {title}",
-                caption="Time of a decision: median, and the time that 95 % and 99 % of the decisions"
-                f" stay below. In colour: {name}.",
+                caption="Time of a decision: median, and the times that 95 % and 99 % of the"
+                f" decisions stay below. In colour: {name}.",
             )  # fmt: skip
         yield title, rows, figure
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.record import Record
-from benchnav.leaderboard.statistics.curve import Point, curves_of
 from benchnav.metrics.success import success
 from benchnav.report.analysis.episode_summary import EpisodeSummary
 from benchnav.report.analysis.failures import outcome_shares, partners
+from benchnav.report.analysis.horizon import HorizonCurves
+from benchnav.report.analysis.partner import fixed_obstacles
 from benchnav.report.analysis.scenario_facts import scenario_facts
 from benchnav.report.analysis.view import View, title_of, views_of
 from benchnav.report.figure import figure_html
@@ -31,6 +33,16 @@ if TYPE_CHECKING:
 MOST_PARTNERS = 12  # rows of the figure of obstacles
 SHOWN = 6  # metrics of a table
 TALL = 420  # [px] of a curve without its legend
+SUCCESS = "Success: share of agents that arrive without a collision. Mean and 95 % interval."
+CURVES = (
+    "Success against horizon: share of all agents that would have succeeded had the episodes ended"
+    " by then."
+)
+CAUSES = "Failures by cause. An agent that collides and goes on counts as a collision."
+PARTNERS = (
+    "Collisions by obstacle: the first collision of each agent. Numbers are those in the pictures;"
+    " obstacles that are drawn anew for each seed are added up."
+)
 
 
 def pages(data: ReportData) -> Iterator[Page]:
@@ -42,10 +54,12 @@ def pages(data: ReportData) -> Iterator[Page]:
         for each in data.scenarios
     ]
     cards = [
-        {"scenario": each.scenario, "picture": each.picture(0), "best": each.best}
+        {"scenario": each.scenario, "picture": next(iter(each.pictures), None), "best": each.best}
         for each in found
     ]  # fmt: skip
-    yield Page(SCENARIOS, "Scenarios", fill("scenarios.html", page=SCENARIOS, cards=cards), SCENARIOS)
+    yield Page(
+        SCENARIOS, "Scenarios", fill("scenarios.html", page=SCENARIOS, cards=cards), SCENARIOS
+    )
     for each in found:
         yield each.page()
 
@@ -69,6 +83,11 @@ class _Scenario:
                 texts.append(f"{view.track}: {ordered[0].navigator} {ordered[0].value:.2f}")
         return ", ".join(texts[:1]) if len(texts) == 1 else "; ".join(texts)
 
+    @cached_property
+    def fixed(self) -> set[str]:
+        """The obstacles and walls that are the same in all stored worlds."""
+        return fixed_obstacles(self.scenario.worlds) if self.scenario.worlds else set()
+
     def page(self) -> Page:
         """Return the page of the scenario."""
         path = scenario_path(self.scenario.identity)
@@ -82,23 +101,26 @@ class _Scenario:
             description=str(config.get("description", "")),
             facts=scenario_facts(config, self.scenario.worlds, self.scenario.hash),
             pictures=[
-                (seed, self.picture(k), len(self._hits(seed)))
-                for k, seed in enumerate(self.scenario.seeds)
+                (seed, picture, len(self._hits(seed)))
+                for seed, picture in zip(self.scenario.seeds, self.pictures, strict=True)
             ],
             sections=[(title_of(view, views), *self._section(view)) for view in views],
         )
         return Page(path, self.scenario.identity, body, SCENARIOS, has_figures=True)
 
-    def picture(self, index: int) -> Markup | None:
-        """Return the picture of one of the stored worlds; None if there are fewer."""
-        if index >= len(self.scenario.worlds):
-            return None
-        hits = self._hits(self.scenario.seeds[index])
-        names = {hit.partner for _, hit in hits}
-        return world_picture(self.scenario.worlds[index], hits, names, self.data.styles)
+    @cached_property
+    def pictures(self) -> list[Markup]:
+        """The pictures of the stored worlds."""
+        names = self.fixed & {hit.partner for s in self.summaries for hit in s.collisions}
+        return [
+            world_picture(world, self._hits(seed), names, self.data.styles)
+            for world, seed in zip(self.scenario.worlds, self.scenario.seeds, strict=True)
+        ]
 
     def _hits(self, seed: int) -> list[Hit]:
-        return [(s.navigator, hit) for s in self.summaries if s.seed == seed for hit in s.collisions]
+        return [
+            (s.navigator, hit) for s in self.summaries if s.seed == seed for hit in s.collisions
+        ]
 
     def _section(self, view: View) -> tuple[list[Markup], Markup]:
         """Return the figures and the table of one view."""
@@ -109,29 +131,25 @@ class _Scenario:
             figures.append(figure_html(
                 intervals_figure(values, self.data.styles), height=height_of(len(values)),
                 label=f"Success of each navigator in {where}",
-                caption="Success: share of agents that arrive without a collision. Mean and 95 % interval.",
+                caption=SUCCESS,
             ))  # fmt: skip
         figures += [*self._curves(view, where), *self._failures(view, where)]
         shown = [m for m in self.data.metrics if m in self.data.values.metrics][:SHOWN]
         chosen = [r for r in self.records if view.holds(r)]
         return figures, metric_table(chosen, shown, self.data)
 
+    @cached_property
+    def _horizon(self) -> HorizonCurves:
+        return HorizonCurves(self.summaries)
+
     def _curves(self, view: View, where: str) -> Iterator[Markup]:
         """Yield the figure of success against horizon; several if horizons differ."""
-        attempts = (
-            a for s in self.summaries for a in s.attempts_in(view.track)
-            if (a.role, a.split) == (view.role, view.split)
-        )  # fmt: skip
-        panels: dict[tuple[str, float, float], list[Point]] = {}
-        for point in curves_of(attempts):
-            panels.setdefault((point.scenario_hash, point.horizon, point.dt), []).append(point)
-        for points in panels.values():
+        for points in self._horizon.panels(view):
             names = {p.navigator for p in points}
             yield figure_html(
                 curves_figure(points, self.data.styles), height=TALL + 8 * len(names),
                 label=f"Success against horizon in {where}",
-                caption="Success against horizon: share of all agents that would have succeeded had the"
-                " episodes ended by then.",
+                caption=CURVES,
             )  # fmt: skip
 
     def _failures(self, view: View, where: str) -> Iterator[Markup]:
@@ -142,16 +160,15 @@ class _Scenario:
             yield figure_html(
                 outcomes_figure({name: shares[name] for name in ordered}),
                 height=height_of(len(ordered), 3), label=f"Outcomes of agents in {where}",
-                caption="Failures by cause. An agent that collides and goes on counts as a collision.",
+                caption=CAUSES,
             )  # fmt: skip
-        found = partners(self.summaries, view, MOST_PARTNERS)
+        found = partners(self.summaries, view, MOST_PARTNERS, self.fixed)
         if found:
             yield figure_html(
                 partners_figure(found, self.data.styles),
                 height=height_of(len(found), 2 + len(shares) // 4),
                 label=f"Obstacles, walls and agents that were hit in {where}",
-                caption="Collisions by obstacle: the first collision of each agent. The numbers are those"
-                " in the pictures.",
+                caption=PARTNERS,
             )  # fmt: skip
 
     def _of(self, view: View, metric: str) -> list[Record]:
