@@ -211,8 +211,8 @@ def _outcomes(shared: _Shared, name: str) -> Iterator[Markup]:
             )  # fmt: skip
 
 
-def _reasons(shared: _Shared, name: str) -> Iterator[tuple[str, str]]:
-    """Yield the scenarios and tracks that could not be run, and why."""
+def _reasons(shared: _Shared, name: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield why cells could not be run, and these scenarios and tracks."""
     gaps = [gap for gap in shared.data.values.not_applicable if gap.navigator == name]
     for reason, found in grouped(gaps, lambda gap: gap.reason).items():
-        yield reason, ", ".join(sorted({f"{gap.scenario} ({gap.track})" for gap in found}))
+        yield reason, sorted({f"{gap.scenario} ({gap.track})" for gap in found})
