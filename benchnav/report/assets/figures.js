@@ -13,6 +13,7 @@ function template() {
       title: { font: { size: 14 } },
       paper_bgcolor: "rgba(0, 0, 0, 0)", plot_bgcolor: "rgba(0, 0, 0, 0)",
       xaxis: axis, yaxis: axis, margin: { l: 50, r: 15, t: 30, b: 45 },
+      modebar: { bgcolor: "rgba(0, 0, 0, 0)", color: color("soft"), activecolor: color("ink") },
       legend: { bgcolor: "rgba(0, 0, 0, 0)" },
       hoverlabel: { bgcolor: color("panel"), bordercolor: color("line"), font: { color: color("ink") } },
     },

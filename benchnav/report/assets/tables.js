@@ -3,19 +3,21 @@
 
 const ROWS = 100; // a longer table has several pages
 
-/** Show the rows that all filters allow. */
+/** Show the rows whose data attributes are those of the filters. */
 function filter(table, form) {
-  for (const select of form.elements) {
-    table.column(`${select.name}:name`).search(select.value ? (text) => text === select.value : "");
-  }
-  table.draw();
+  const wanted = [...form.elements].filter((select) => select.value);
+  table.search.fixed("filters", (text, cells, index) => {
+    const row = table.row(index).node();
+    return wanted.every((select) => row.dataset[select.name] === select.value);
+  }).draw();
 }
 
 /** Hide the columns of the class "collapse" in which all rows agree. */
 function collapse(table) {
+  const rows = table.rows({ search: "applied" }).nodes().toArray();
   table.columns(".collapse").every(function () {
-    const values = new Set(this.cells(null, this.index(), { search: "applied" }).render("filter").toArray());
-    this.visible(values.size > 1, false);
+    const name = this.header().dataset.name;
+    this.visible(new Set(rows.map((row) => row.dataset[name])).size > 1, false);
   });
 }
 
@@ -66,7 +68,7 @@ async function start() {
     const heads = [...element.tHead.rows[0].cells];
     const table = new DataTable(element, {
       autoWidth: false, order: [], info: false, paging: rows > ROWS, pageLength: ROWS,
-      columns: heads.map((head) => ({ name: head.dataset.name ?? null, orderable: !head.classList.contains("no-sort"), visible: !head.classList.contains("filter-only") })),
+      columns: heads.map((head) => ({ name: head.dataset.name ?? null, orderable: !head.classList.contains("no-sort") })),
       layout: { topStart: null, topEnd: rows > 8 ? "search" : null, bottomStart: null, bottomEnd: rows > ROWS ? "paging" : null },
       language: { search: "Search", zeroRecords: "No row is like that.", emptyTable: "The table is empty." },
     });
