@@ -23,6 +23,7 @@ from benchnav.report.figures.style import height_of
 from benchnav.report.figures.world import Hit, hits_text, world_picture
 from benchnav.report.page import SCENARIOS, Page, scenario_path
 from benchnav.report.pages.index import grouped
+from benchnav.report.pages.records import records_with
 from benchnav.report.pages.table import metric_table
 from benchnav.report.report_data import ReportData, StoredScenario
 from benchnav.report.template import fill
@@ -47,7 +48,7 @@ PARTNERS = (
 
 def pages(data: ReportData) -> Iterator[Page]:
     """Yield the page with all scenarios, then one for each."""
-    records = grouped(data.board.records, lambda r: r.scenario)
+    records = grouped(records_with(data, (success.name,)), lambda r: r.scenario)
     summaries = grouped(data.summaries, lambda s: s.scenario)
     found = [
         _Scenario(data, each, records.get(each.identity, []), summaries.get(each.identity, []))
