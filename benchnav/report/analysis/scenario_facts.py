@@ -44,17 +44,26 @@ def _world_facts(worlds: Sequence[World]) -> Iterator[Fact]:
 def _team(worlds: Sequence[World], team: int) -> str:
     agents = worlds[0].agents
     members = np.flatnonzero(agents.team == team)
-    count = _spread(int((w.agents.team == team).sum()) for w in worlds)
     if not len(members):
-        return f"{count} agents"
+        return "no agents in the first world"
     one = members[0]
-    role = Role(agents.role[one]).name.lower()
+    count = " and ".join(_members(worlds, team, role) for role in _roles(worlds, team))
     kind = Dynamics(agents.dynamics[one]).name.lower()
-    text = (
-        f"{count} × {kind} {role}, radius {agents.radius[one]:.3g} m,"
-        f" up to {agents.max_speed[one]:.3g} m/s"
-    )
-    return text if agents.evaluated[one] else f"{text}; background, not evaluated"
+    text = f"{count}, {kind}, radius {agents.radius[one]:.3g} m, up to {agents.max_speed[one]:.3g}"
+    return f"{text} m/s" if agents.evaluated[one] else f"{text} m/s; background, not evaluated"
+
+
+def _roles(worlds: Sequence[World], team: int) -> list[Role]:
+    return [r for r in Role if any(_count(w, team, r) for w in worlds)]
+
+
+def _members(worlds: Sequence[World], team: int, role: Role) -> str:
+    count = _spread(_count(world, team, role) for world in worlds)
+    return f"{count} {role.name.lower()}{'' if count == '1' else 's'}"
+
+
+def _count(world: World, team: int, role: Role) -> int:
+    return int(((world.agents.team == team) & (world.agents.role == role)).sum())
 
 
 def _parameters(config: Mapping[str, Any]) -> Iterator[Fact]:

@@ -10,6 +10,7 @@ from benchnav.arena.world import World
 from benchnav.report.analysis.episode_summary import Collision
 from benchnav.report.analysis.partner import obstacles_of
 from benchnav.report.line_style import LineStyle
+from benchnav.text.plural import counted
 from benchnav.text.visible import visible
 from benchnav.viewer.svg import world_svg
 
@@ -43,6 +44,12 @@ def world_picture(
     drawn = sorted(hits, key=lambda hit: hit[1].time)[:MOST_MARKS]
     marks = [_mark(*hit, MARK * side, styles[hit[0]].color) for hit in drawn]
     return Markup(world_svg(world, [*_labels(world, labelled, LETTER * side), *marks]))  # noqa: S704
+
+
+def hits_text(count: int) -> str:
+    """Return the number of collisions in a world, and how many of them are drawn."""
+    text = counted(count, "first collision")
+    return text if count <= MOST_MARKS else f"{text}, the earliest {MOST_MARKS} drawn"
 
 
 def _mark(navigator: str, hit: Collision, size: float, color: str) -> str:

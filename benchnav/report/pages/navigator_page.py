@@ -25,6 +25,7 @@ from benchnav.report.figures.profile import profile_figure
 from benchnav.report.figures.style import height_of
 from benchnav.report.page import COMPARISON, FAILURES, NAVIGATORS, Page, href, navigator_path
 from benchnav.report.pages.index import grouped
+from benchnav.report.pages.records import records_with
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 LATENCIES = ("latency_p50", "latency_p95", "latency_p99")
 DECISIONS = ("decision_time_p50", "decision_time_p95", "decision_time_p99")
+NAMES = tuple(dict.fromkeys((*MEANINGS, *LATENCIES, *DECISIONS)))
 SCATTER = 460  # [px]
 
 
@@ -51,9 +53,14 @@ class _Shared:
     data: ReportData
 
     @cached_property
+    def records(self) -> list[Record]:
+        """The records of success and of all costs."""
+        return records_with(self.data, (success.name, *NAMES))
+
+    @cached_property
     def views(self) -> list[View]:
         """Every view of the results."""
-        return views_of(self.data.board.records)
+        return views_of(self.records)
 
     @cached_property
     def profile(self) -> Profile:
@@ -68,7 +75,7 @@ class _Shared:
     @cached_property
     def costs(self) -> dict[View, dict[str, dict[str, Record]]]:
         """The costs of each navigator in each view."""
-        return {view: costs(self.data.board.records, view) for view in self.views}
+        return {view: costs(self.records, view, NAMES) for view in self.views}
 
     @cached_property
     def outcomes(self) -> dict[View, dict[str, dict[str, OutcomeShares]]]:
@@ -78,7 +85,7 @@ class _Shared:
     @cached_property
     def success(self) -> dict[View, dict[str, Record]]:
         """The success of each navigator in each view over all scenarios."""
-        by_metric = {v: costs(self.data.board.records, v, (success.name,)) for v in self.views}
+        by_metric = {v: costs(self.records, v, (success.name,)) for v in self.views}
         return {view: found.get(success.name, {}) for view, found in by_metric.items()}
 
 
@@ -154,7 +161,7 @@ def _profiles(shared: _Shared, name: str) -> Iterator[Markup]:
 def _prices(shared: _Shared, name: str) -> Iterator[tuple[str, Markup | None]]:
     """Yield a sentence and a figure for each split and role."""
     data = shared.data
-    found = prices_of(data.board.records, name, success.name)
+    found = prices_of(shared.records, name, success.name)
     for key, records in grouped(found, lambda r: f"{r.split}\0{r.role}").items():
         text = price_sentence(records[0], data.values.metrics[success.name])
         shown = [r for r in records if r.episodes and r.value == r.value]
@@ -211,8 +218,8 @@ def _outcomes(shared: _Shared, name: str) -> Iterator[Markup]:
             )  # fmt: skip
 
 
-def _reasons(shared: _Shared, name: str) -> Iterator[tuple[str, str]]:
-    """Yield the scenarios and tracks that could not be run, and why."""
+def _reasons(shared: _Shared, name: str) -> Iterator[tuple[str, list[str]]]:
+    """Yield why cells could not be run, and these scenarios and tracks."""
     gaps = [gap for gap in shared.data.values.not_applicable if gap.navigator == name]
     for reason, found in grouped(gaps, lambda gap: gap.reason).items():
-        yield reason, ", ".join(sorted({f"{gap.scenario} ({gap.track})" for gap in found}))
+        yield reason, sorted({f"{gap.scenario} ({gap.track})" for gap in found})

@@ -20,9 +20,10 @@ from benchnav.report.figures.curves import curves_figure
 from benchnav.report.figures.failures import outcomes_figure, partners_figure
 from benchnav.report.figures.intervals import by_value, intervals_figure
 from benchnav.report.figures.style import height_of
-from benchnav.report.figures.world import Hit, world_picture
+from benchnav.report.figures.world import Hit, hits_text, world_picture
 from benchnav.report.page import SCENARIOS, Page, scenario_path
 from benchnav.report.pages.index import grouped
+from benchnav.report.pages.records import records_with
 from benchnav.report.pages.table import metric_table
 from benchnav.report.report_data import ReportData, StoredScenario
 from benchnav.report.template import fill
@@ -47,7 +48,7 @@ PARTNERS = (
 
 def pages(data: ReportData) -> Iterator[Page]:
     """Yield the page with all scenarios, then one for each."""
-    records = grouped(data.board.records, lambda r: r.scenario)
+    records = grouped(records_with(data, (success.name,)), lambda r: r.scenario)
     summaries = grouped(data.summaries, lambda s: s.scenario)
     found = [
         _Scenario(data, each, records.get(each.identity, []), summaries.get(each.identity, []))
@@ -74,14 +75,15 @@ class _Scenario:
     summaries: Sequence[EpisodeSummary]
 
     @property
-    def best(self) -> str:
-        """The best navigator of each view, in words."""
-        texts = []
-        for view in views_of(self.records):
+    def best(self) -> list[str]:
+        """The highest success in each view, in words."""
+        texts, views = [], views_of(self.records)
+        for view in views:
             ordered = by_value([r for r in self._of(view, success.name) if r.value == r.value])
             if ordered:
-                texts.append(f"{view.track}: {ordered[0].navigator} {ordered[0].value:.2f}")
-        return ", ".join(texts[:1]) if len(texts) == 1 else "; ".join(texts)
+                title = title_of(view, views)
+                texts.append(f"{title}: {ordered[0].navigator} {ordered[0].value:.2f}")
+        return texts
 
     @cached_property
     def fixed(self) -> set[str]:
@@ -101,7 +103,7 @@ class _Scenario:
             description=str(config.get("description", "")),
             facts=scenario_facts(config, self.scenario.worlds, self.scenario.hash),
             pictures=[
-                (seed, picture, len(self._hits(seed)))
+                (seed, picture, hits_text(len(self._hits(seed))))
                 for seed, picture in zip(self.scenario.seeds, self.pictures, strict=True)
             ],
             sections=[(title_of(view, views), *self._section(view)) for view in views],
