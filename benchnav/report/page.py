@@ -65,7 +65,7 @@ def _file(name: str) -> str:
 
 @dataclass(frozen=True)
 class Site:
-    """What all pages of a report share."""
+    """The title, navigation and footer of all pages of a report."""
 
     title: str
     entries: tuple[tuple[str, PurePosixPath], ...]  # the navigation bar: text, page

@@ -46,7 +46,7 @@ ENTRIES = (
 
 @dataclass(frozen=True)
 class Written:
-    """What was written."""
+    """The size of a written report."""
 
     index: Path  # the first page
     pages: int  # without replays

@@ -21,7 +21,7 @@ from benchnav.store.runs.spans import count
 
 @dataclass(frozen=True)
 class RunFacts:
-    """What the page says about a run."""
+    """The facts about a run."""
 
     name: str
     facts: tuple[tuple[str, str], ...]
