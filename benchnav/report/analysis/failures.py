@@ -10,6 +10,7 @@ from benchnav.report.analysis.episode_summary import EpisodeSummary
 from benchnav.report.analysis.outcome import Outcome
 from benchnav.report.analysis.partner import without_number
 from benchnav.report.analysis.view import View
+from benchnav.text.plural import counted
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ def partners(
     ordered = sorted(counts, key=lambda name: (-counts[name].total(), name))
     found: dict[str, Mapping[str, int]] = {name: counts[name] for name in ordered[:most]}
     if rest := ordered[most:]:
-        found[f"{len(rest)} others"] = sum((counts[name] for name in rest), Counter[str]())
+        found[counted(len(rest), "other")] = sum((counts[name] for name in rest), Counter[str]())
     return found
 
 

@@ -120,6 +120,9 @@
     return ordered.map(([verdict, n]) => `${verdict} in ${n} of ${rows.length}`).join(", ");
   }
 
+  /** Return a word as a shell reads it. */
+  const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+
   function drawFigures(rows, a, b) {
     const forests = document.getElementById("forests");
     for (const area of forests.querySelectorAll(".plot-area")) {
@@ -195,7 +198,7 @@
     drawFigures(shown, shared.navigators[a], shared.navigators[b]);
     drawTable(shown);
     document.getElementById("family").textContent = family;
-    document.getElementById("command").textContent = `benchnav compare RUN ${names[a]} ${names[b]}`;
+    document.getElementById("command").textContent = `benchnav compare RUN ${quoted(names[a])} ${quoted(names[b])}`;
     const state = new URLSearchParams({ a: names[a], b: names[b], track: shared.tracks[track.value] });
     history.replaceState(null, "", `#${state}`);
   }

@@ -1,10 +1,10 @@
-"""Success against horizon: a line for each navigator, with the band of its interval."""
+"""Success against horizon or a parameter: a line for each navigator, with its intervals."""
 
 from collections.abc import Mapping, Sequence
 
 from benchnav.leaderboard.statistics.curve import Point
 from benchnav.report.figure import plain
-from benchnav.report.figures.style import BELOW, Figure, translucent
+from benchnav.report.figures.style import BELOW, Figure, errors, marker, translucent
 from benchnav.report.line_style import LineStyle
 
 MOST_BANDS = 4  # with more navigators, intervals are only in the hover text
@@ -27,6 +27,32 @@ def curves_figure(points: Sequence[Point], styles: Mapping[str, LineStyle]) -> F
         "yaxis": {"title": {"text": "success"}, "range": [-0.03, 1.03]},
         "legend": dict(BELOW),
         "hovermode": "closest",
+    }
+    return {"data": data, "layout": layout}
+
+
+def parameter_figure(points: Sequence[Point], styles: Mapping[str, LineStyle]) -> Figure:
+    """Return a metric against a parameter: a mark with its interval for each value."""
+    data = []
+    for name, style in styles.items():
+        curve = sorted((p for p in points if p.navigator == name), key=lambda p: p.x)
+        if not curve:
+            continue
+        values, lows, highs = ([getattr(p, k) for p in curve] for k in ("value", "low", "high"))
+        data.append({
+            "type": "scatter", "mode": "lines+markers", "name": plain(name),
+            "x": [p.x for p in curve], "y": values, "marker": marker(style),
+            "line": {"color": style.color, "dash": style.dash, "width": 2},
+            "error_y": errors(values, lows, highs, translucent(style.color, 0.6)),
+            "text": [f"{p.value:.3f} [{p.low:.3f}, {p.high:.3f}]" for p in curve],
+            "hovertemplate": "%{fullData.name}<br>%{text} at %{x}<extra></extra>",
+        })  # fmt: skip
+    first = points[0]
+    unit = f" [{first.axis_unit}]" if first.axis_unit else ""
+    layout = {
+        "xaxis": {"title": {"text": plain(f"{first.axis}{unit}")}},
+        "yaxis": {"title": {"text": plain(first.metric)}, "range": [-0.03, 1.03]},
+        "legend": dict(BELOW),
     }
     return {"data": data, "layout": layout}
 

@@ -12,11 +12,12 @@ from benchnav.metrics.success import success
 from benchnav.report.analysis.episode_summary import EpisodeSummary
 from benchnav.report.analysis.failures import outcome_shares, partners
 from benchnav.report.analysis.horizon import HorizonCurves
+from benchnav.report.analysis.parameter import ParameterCurves
 from benchnav.report.analysis.partner import fixed_obstacles
 from benchnav.report.analysis.scenario_facts import scenario_facts
 from benchnav.report.analysis.view import View, title_of, views_of
 from benchnav.report.figure import figure_html
-from benchnav.report.figures.curves import curves_figure
+from benchnav.report.figures.curves import curves_figure, parameter_figure
 from benchnav.report.figures.failures import outcomes_figure, partners_figure
 from benchnav.report.figures.intervals import by_value, intervals_figure
 from benchnav.report.figures.style import height_of
@@ -50,9 +51,11 @@ def pages(data: ReportData) -> Iterator[Page]:
     """Yield the page with all scenarios, then one for each."""
     records = grouped(records_with(data, (success.name,)), lambda r: r.scenario)
     summaries = grouped(data.summaries, lambda s: s.scenario)
+    curves = ParameterCurves(data.folders, data.values)
     found = [
-        _Scenario(data, each, records.get(each.identity, []), summaries.get(each.identity, []))
+        _Scenario(data, each, records.get(name, []), summaries.get(name, []), curves)
         for each in data.scenarios
+        for name in [each.identity]
     ]
     cards = [
         {"scenario": each.scenario, "picture": next(iter(each.pictures), None), "best": each.best}
@@ -73,6 +76,7 @@ class _Scenario:
     scenario: StoredScenario
     records: Sequence[Record]
     summaries: Sequence[EpisodeSummary]
+    parameters: ParameterCurves
 
     @property
     def best(self) -> list[str]:
@@ -136,6 +140,7 @@ class _Scenario:
                 caption=SUCCESS,
             ))  # fmt: skip
         figures += [*self._curves(view, where), *self._failures(view, where)]
+        figures += self._parameters(view, where)
         shown = [m for m in self.data.metrics if m in self.data.values.metrics][:SHOWN]
         chosen = [r for r in self.records if view.holds(r)]
         return figures, metric_table(chosen, shown, self.data)
@@ -152,6 +157,16 @@ class _Scenario:
                 curves_figure(points, self.data.styles), height=TALL + 8 * len(names),
                 label=f"Success against horizon in {where}",
                 caption=CURVES,
+            )  # fmt: skip
+
+    def _parameters(self, view: View, where: str) -> Iterator[Markup]:
+        """Yield the figures of success against each parameter with several values."""
+        for points in self.parameters.panels(self.scenario.identity, view):
+            names, axis = {p.navigator for p in points}, points[0].axis
+            yield figure_html(
+                parameter_figure(points, self.data.styles), height=TALL + 8 * len(names),
+                label=f"Success against {axis} in {where}",
+                caption=f"Success against the parameter {axis} of {points[0].scenario}.",
             )  # fmt: skip
 
     def _failures(self, view: View, where: str) -> Iterator[Markup]:
