@@ -7,7 +7,7 @@ import numpy as np
 from benchnav.arena.solid import Kind
 from benchnav.arrays import ByteArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode
-from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.metrics.quantities.episode_analysis import endings
 from benchnav.metrics.success import stuck
 
 
@@ -56,7 +56,7 @@ def outcomes(episode: Episode) -> tuple[ByteArray, IntArray]:
     agent that goes on and times out. Its row is an index into ``episode.contacts``; for other
     outcomes it is `NO_CONTACT`. The share of agents with `Outcome.SUCCESS` is the metric `success`.
     """
-    found, contacts = analyse(episode), episode.contacts
+    found, contacts = endings(episode), episode.contacts
     arrival = np.where(found.arrived, found.arrival, np.inf)
     outcome = np.full(len(arrival), int(Outcome.OTHER), np.int8)
     cause = np.full(len(arrival), NO_CONTACT, np.int64)

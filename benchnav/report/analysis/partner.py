@@ -84,9 +84,10 @@ def _agent(world: World, agent: int) -> str:
 
 
 def _number(solids: Sequence[Solid], index: int) -> int:
-    """Return the number of a solid among those of its kind, without the outer wall."""
+    """Return the number of a solid among those of its kind; an outer wall comes first."""
     kind = solids[index].kind
-    return sum(s.kind == kind and not _is_outer(s) for s in solids[: index + 1])
+    count = sum(solid.kind == kind for solid in solids[: index + 1])
+    return count - (kind == Kind.WALL and _is_outer(solids[0]))
 
 
 def _is_outer(solid: Solid) -> bool:
