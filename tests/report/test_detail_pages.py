@@ -5,12 +5,13 @@ import re
 
 import pytest
 
+import benchnav
 from benchnav.leaderboard.from_runs import stored_values
 from benchnav.leaderboard.rendering.cell import cell
 from benchnav.report.page import COMPARISON, navigator_path, scenario_path
 from benchnav.report.pages import comparison_page, navigator_page, scenario_page
 from benchnav.report.report_data import read_runs
-from tests.report.conftest import EVIL
+from tests.report.conftest import EVIL, ODD
 
 SCRIPTS = re.compile(
     r'<script type="application/json"(?: id="([\w-]+)")?>(.*?)</script>', re.DOTALL
@@ -124,6 +125,25 @@ def test_the_comparison_has_the_numbers_of_compare(bodies, run):
             wanted = (c.difference, c.low, c.high, c.adjusted)
             got = [float("nan") if x is None else x for x in numbers]
             assert got == pytest.approx(wanted, rel=1e-4, nan_ok=True)
+
+
+def test_results_of_two_horizons_stand_apart(run, tmp_path):
+    pytest.importorskip("plotly")
+    pytest.importorskip("jinja2")
+    (tmp_path / "odd.yaml").write_text(ODD.replace("horizon: 12", "horizon: 9"))
+    other = benchnav.run(
+        tmp_path / "odd.yaml", navigators=["straight-line"], tracks=["known"], seeds=2,
+        out=tmp_path / "run", quiet=True,
+    )  # fmt: skip
+    folders = [run.folder, other.folder]
+    data = read_runs(folders, stored_values(folders, notify=print))
+    (text,) = (
+        str(page.body) for page in scenario_page.pages(data) if page.path == scenario_path("odd@1")
+    )
+    headings = re.findall(r'<h2 id="results-.*?>(.*?)</h2>', text)
+    assert len(headings) == 3
+    assert [h for h in headings if "horizon 9 s" in h] == [headings[2]]
+    assert all("horizon 12 s" in h for h in headings[:2])
 
 
 def test_labels_that_try_to_be_markup_stay_in_their_script(bodies):

@@ -29,6 +29,7 @@ class EpisodeSummary:
     navigator: str
     scenario: str
     split: str
+    variant: str  # `variant_name` of its worlds
     tracks: tuple[str, ...]  # an episode without a map stands for several
     seed: int
     attempts: tuple[Attempt, ...]  # by role, in the track of the stored episode
@@ -47,11 +48,23 @@ def summarise(episode: Episode, tracks: tuple[str, ...]) -> EpisodeSummary:
             count = np.bincount(outcome[members], minlength=len(Outcome))
             shares.append((role.name.lower(), tuple((count / members.sum()).tolist())))
     hit = np.flatnonzero(agents.evaluated & (cause != NO_CONTACT)).tolist()
+    clock = episode.world.clock
     return EpisodeSummary(
-        identity.navigator, identity.scenario, identity.split, tracks, identity.seed,
-        tuple(attempts_of(episode)), tuple(shares),
-        tuple(_collision(episode, agent, int(cause[agent])) for agent in hit),
-    )  # fmt: skip
+        navigator=identity.navigator,
+        scenario=identity.scenario,
+        split=identity.split,
+        variant=variant_name(identity.scenario_hash, clock.horizon, clock.dt),
+        tracks=tracks,
+        seed=identity.seed,
+        attempts=tuple(attempts_of(episode)),
+        shares=tuple(shares),
+        collisions=tuple(_collision(episode, agent, int(cause[agent])) for agent in hit),
+    )
+
+
+def variant_name(digest: str, horizon: float, dt: float) -> str:
+    """Return what distinguishes results of a scenario that must not be mixed. Times are in s."""
+    return f"horizon {horizon:g} s, time step {dt:g} s, hash {digest}"
 
 
 def _collision(episode: Episode, agent: int, row: int) -> Collision:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.record import Record
 from benchnav.metrics.success import success
-from benchnav.report.analysis.episode_summary import EpisodeSummary
+from benchnav.report.analysis.episode_summary import EpisodeSummary, variant_name
 from benchnav.report.analysis.failures import outcome_shares, partners
 from benchnav.report.analysis.horizon import HorizonCurves
 from benchnav.report.analysis.parameter import ParameterCurves
@@ -97,7 +97,6 @@ class _Scenario:
     def page(self) -> Page:
         """Return the page of the scenario."""
         path = scenario_path(self.scenario.identity)
-        views = views_of(self.records)
         config = self.scenario.config
         body = fill(
             "scenario.html",
@@ -110,9 +109,26 @@ class _Scenario:
                 (seed, picture, hits_text(len(self._hits(seed))))
                 for seed, picture in zip(self.scenario.seeds, self.pictures, strict=True)
             ],
-            sections=[(title_of(view, views), *self._section(view)) for view in views],
+            sections=[s for title, each in self._variants() for s in each._sections(title)],
         )
         return Page(path, self.scenario.identity, body, SCENARIOS, has_figures=True)
+
+    def _variants(self) -> Iterator[tuple[str, _Scenario]]:
+        """Yield the results of equal hash, horizon and time step, and what distinguishes them."""
+        found = grouped(self.records, lambda r: variant_name(r.scenario_hash, r.horizon, r.dt))
+        summaries = grouped(self.summaries, lambda s: s.variant)
+        if len(found) < 2:
+            yield "", self
+            return
+        for title, records in found.items():
+            yield title, replace(self, records=records, summaries=summaries.get(title, []))
+
+    def _sections(self, title: str) -> Iterator[tuple[str, list[Markup], Markup]]:
+        """Yield heading, figures and table of each view."""
+        views = views_of(self.records)
+        for view in views:
+            parts = (title_of(view, views), title)
+            yield ", ".join(filter(None, parts)), *self._section(view)
 
     @cached_property
     def pictures(self) -> list[Markup]:

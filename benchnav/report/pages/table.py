@@ -32,8 +32,9 @@ def metric_table(records: Sequence[Record], metrics: Sequence[str], data: Report
             cell(r, interval=True, decided=decided[m]) for r, m in zip(found, held, strict=True)
         ]
         rows.append({
-            "navigator": name, "color": data.styles[name].color, "rank": rank(found[0]).text,
-            "cells": cells, "note": "" if first.episodes else first.note,
+            "navigator": name, "color": data.styles[name].color, "rehearsal": first.rehearsal,
+            "rank": rank(found[0]).text, "cells": cells,
+            "note": "" if first.episodes else first.note,
         })  # fmt: skip
     heads = [heading(next(r for r in records if r.metric == m)).text for m in held]
     return fill("metric_table.html", heads=heads, rows=rows)
