@@ -55,7 +55,7 @@ class Row:
     family: str
     track: str
     role: str
-    rank: str
+    rank: str  # why there is no result, for a navigator that cannot run here
     rank_order: float
     cells: tuple[MetricCell, ...]
     training: str
@@ -144,7 +144,7 @@ def _rows(data: ReportData, group: Sequence[Record], is_unique: bool) -> Iterato
             scenario=OVERALL if whole else r.scenario, page="" if whole else r.scenario,
             variant="" if is_unique else _variant(r),
             family="" if whole else family_of(r.scenario), track=r.track, role=r.role,
-            rank=rank(r).text if r.episodes else "n/a",
+            rank=rank(r).text if r.episodes else r.note,
             rank_order=_LAST if r.rank_low is None else r.rank_low,
             cells=tuple(
                 _cell(at.get((navigator, m)), scales.get(m), m in decided) for m in data.metrics
@@ -194,9 +194,8 @@ def _interval(low: float, high: float, value: float, scale: tuple[float, float])
 
 
 def _notes(records: Sequence[Record], lead: Record) -> Iterator[str]:
-    """Yield why there is no result or no rank, failures of the navigator, and its remarks."""
+    """Yield why there is no rank, failures of the navigator, and its remarks."""
     if not lead.episodes:
-        yield lead.note
         return
     if lead.note:
         yield f"not ranked: {lead.note}"
