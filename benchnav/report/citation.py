@@ -11,8 +11,6 @@ PAPER = """\
   journal = {IEEE Access},
   year    = {2019},
 }"""
-PAPERS_NAVIGATORS = ("recurrent-ppo", "guided-crowd")
-"""The navigators of that paper."""
 
 
 def software(year: str) -> str:

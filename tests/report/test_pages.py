@@ -2,9 +2,12 @@
 
 import re
 from html.parser import HTMLParser
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from urllib.parse import unquote, urlsplit
 
+import yaml
+
+from benchnav.report import citation
 from benchnav.report.page import (
     ABOUT,
     COMPARISON,
@@ -122,6 +125,19 @@ def test_a_page_says_where_the_numbers_come_from(report, run):
         assert fact in text
     assert "@software{benchnav," in text
     assert "not verified on the machine" in text
+
+
+def test_citations_agree_with_the_citation_file():
+    root = Path(citation.__file__).parents[2]
+    cff = yaml.safe_load((root / "CITATION.cff").read_text("utf-8"))
+    software, paper = citation.software("2026"), " ".join(citation.PAPER.split())
+    assert cff["title"] == citation.TITLE
+    assert cff["version"] in software
+    (reference,) = cff["references"]
+    assert reference["title"] in paper
+    names = (f"{a['family-names']}, {a['given-names']}" for a in reference["authors"])
+    assert " and ".join(names) in paper
+    assert reference["journal"] in paper
 
 
 def test_a_verified_run_is_marked(report, run, tmp_path):

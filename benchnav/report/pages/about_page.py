@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from benchnav.report.citation import PAPER, PAPERS_NAVIGATORS, software
+from benchnav.report.citation import PAPER, software
 from benchnav.report.page import ABOUT, Page
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
@@ -37,7 +37,7 @@ def pages(data: ReportData, made: datetime) -> Iterator[Page]:
         "about.html",
         page=ABOUT, runs=[_facts(folder, verified) for folder in data.folders],
         caveats=data.board.caveats, made=made.isoformat(timespec="minutes"),
-        software=software(str(made.year)), paper=PAPER, papers_navigators=PAPERS_NAVIGATORS,
+        software=software(str(made.year)), paper=PAPER,
     )  # fmt: skip
     yield Page(ABOUT, "How this report was made", body, ABOUT)
 
