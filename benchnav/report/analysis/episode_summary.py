@@ -1,4 +1,4 @@
-"""What the figures of a report need from one episode, without its trajectories."""
+"""The outcomes, success times and collisions of one episode, without its trajectories."""
 
 from dataclasses import dataclass
 

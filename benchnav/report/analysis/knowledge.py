@@ -25,14 +25,14 @@ def prices_of(records: Iterable[Record], navigator: str, metric: str) -> list[Re
 def price_sentence(record: Record, metric: Metric) -> str:
     """Return a sentence about one price."""
     where = "Over all scenarios" if record.scenario == ALL else f"In {record.scenario}"
-    whose = f", {record.role}s" if record.role != "leader" else ""
+    role = f", {record.role}s" if record.role != "leader" else ""
     if record.note == NO_MAP:
-        return f"{where}{whose}: it uses no map, so a map changes nothing."
+        return f"{where}{role}: it uses no map, so a map changes nothing."
     if not record.episodes:
-        return f"{where}{whose}: no value, {record.note}."
+        return f"{where}{role}: no value, {record.note}."
     change = f"{metric.name} changes by {cell(record, interval=True, decided=False).text}"
     note = f" ({record.note})" if record.note else ""
-    return f"{where}{whose}: with the map, {change}{_judged(record)}{note}."
+    return f"{where}{role}: with the map, {change}{_judged(record)}{note}."
 
 
 def _judged(record: Record) -> str:

@@ -1,4 +1,4 @@
-"""What all figures of a report share: sizes, axes, and marks with intervals."""
+"""The sizes, axes, and marks with intervals that all figures of a report share."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -49,7 +49,7 @@ def pages(data: ReportData) -> Iterator[Page]:
 
 @dataclass(frozen=True, eq=False)
 class _Shared:
-    """What the pages of all navigators share, computed once."""
+    """The results that the pages of all navigators share, computed once."""
 
     data: ReportData
 
