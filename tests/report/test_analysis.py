@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import benchnav
 from benchnav.arena.solid import Kind
 from benchnav.leaderboard import leaderboard
+from benchnav.leaderboard.from_runs import curve, stored_values
 from benchnav.leaderboard.record import ALL, NO_MAP, PRICE
 from benchnav.leaderboard.statistics.curve import horizon_curves
 from benchnav.report.analysis.configuration import facts_of, parameters_of, training_text
@@ -16,8 +18,11 @@ from benchnav.report.analysis.failures import outcome_shares, partners
 from benchnav.report.analysis.horizon import HorizonCurves
 from benchnav.report.analysis.knowledge import price_sentence, prices_of
 from benchnav.report.analysis.outcome import Outcome
+from benchnav.report.analysis.parameter import ParameterCurves
 from benchnav.report.analysis.profile import profile
 from benchnav.report.analysis.view import View, title_of, views_of
+from benchnav.report.figures.price import price_figure
+from benchnav.report.line_style import LineStyle
 from benchnav.testing.episodes import Hit, Setting, Walk, record, straight
 from tests.leaderboard.tables import METRICS, scores, simulated, table
 
@@ -141,3 +146,30 @@ def test_training_and_parameters_of_a_manifest_entry():
     ]  # fmt: skip
     assert training_text(None).startswith("none")
     assert training_text({"decisions": 900, "seconds": 40.0}) == "900 decisions of agents in 40.0 s"
+
+
+def test_curves_of_a_parameter_are_those_of_the_command_line(tmp_path):
+    (tmp_path / "two.yaml").write_text(
+        "name: two\nscenarios: [trap/u, 'trap/u:mouth=2']\ntracks: [known]\n"
+        "navigators: [straight-line]\nseeds: 2\n"
+    )
+    folder = benchnav.run(tmp_path / "two.yaml", out=tmp_path / "run", quiet=True).folder
+    values = stored_values([folder], notify=print)
+    (points,) = ParameterCurves([folder], values).panels("trap/u@1:mouth=2", KNOWN)
+    assert tuple(points) == curve([folder], "mouth", notify=print)
+    assert len({p.x for p in points}) == 2
+    assert ParameterCurves([folder], values).panels("trap/u@1", UNKNOWN) == []
+
+
+def test_a_price_is_a_filled_mark_only_if_its_interval_excludes_0():
+    rows = []
+    for scenario, unknown in (("a/one@1", [0.0] * 20), ("a/two@1", [0.0, 1.0] * 10)):
+        rows += scores({"a": [1.0] * 20}, track="known", scenario=scenario)
+        rows += scores({"a": unknown}, track="unknown", scenario=scenario)
+    rows += scores({"a": [1.0, 0.0] * 10}, track="known", scenario="a/zero@1")
+    rows += scores({"a": [0.0, 1.0] * 10}, track="unknown", scenario="a/zero@1")
+    prices = prices_of(_records(rows), "a", "success")
+    (trace,) = price_figure(prices, LineStyle("#0072b2", "solid", "circle"))["data"]
+    assert trace["y"] == ["all scenarios", "a/one@1", "a/two@1", "a/zero@1"]
+    assert trace["x"] == pytest.approx([0.5, 1.0, 0.5, 0.0])
+    assert trace["marker"]["symbol"] == ["circle"] * 3 + ["circle-open"]

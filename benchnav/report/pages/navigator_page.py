@@ -104,7 +104,7 @@ def _list(shared: _Shared) -> Page:
     ]  # fmt: skip
     rows = [
         {
-            "navigator": name, "color": data.styles[name].color,
+            "navigator": name, "style": data.styles[name],
             "training": training_text(data.navigator_configs[name].get("training")),
             "map": data.navigator_configs[name].get("uses_map") is not False,
             "values": [_text(shared.success[view].get(name)) for view in shared.views],
@@ -135,7 +135,7 @@ def _page(shared: _Shared, name: str) -> Page:
         page=navigator_path(name),
         style_sheet=DETAILS,
         navigator=name,
-        color=shared.data.styles[name].color,
+        style=shared.data.styles[name],
         comparison=f"{href(navigator_path(name), COMPARISON)}#{urlencode({'a': name})}",
         failures=FAILURES,
         facts=facts_of(entry),

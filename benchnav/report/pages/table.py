@@ -32,7 +32,7 @@ def metric_table(records: Sequence[Record], metrics: Sequence[str], data: Report
             cell(r, interval=True, decided=decided[m]) for r, m in zip(found, held, strict=True)
         ]
         rows.append({
-            "navigator": name, "color": data.styles[name].color, "rehearsal": first.rehearsal,
+            "navigator": name, "style": data.styles[name], "rehearsal": first.rehearsal,
             "rank": rank(found[0]).text, "cells": cells,
             "note": "" if first.episodes else first.note,
         })  # fmt: skip
