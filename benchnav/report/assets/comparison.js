@@ -216,7 +216,7 @@
   fill(first, names);
   fill(second, names);
   fill(track, shared.tracks);
-  if (shared.tracks.length < 2) document.getElementById("track-label").style.display = "none";
+  document.getElementById("track-label").hidden = shared.tracks.length < 2;
   restore();
   for (const menu of [first, second, track]) menu.addEventListener("change", show);
   document.getElementById("swap").addEventListener("click", () => {

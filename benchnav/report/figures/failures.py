@@ -29,6 +29,9 @@ FILLS = {
 }
 
 
+LINES = 6  # of the legend on a phone, at most
+
+
 def outcomes_figure(rows: Mapping[str, OutcomeShares]) -> Figure:
     """Return stacked bars of shares of agents; ``rows`` maps the name of a row to its outcomes."""
     names = [plain(name) for name in rows]

@@ -10,7 +10,7 @@ Figure = dict[str, Any]
 
 ROW = 24  # [px] of a row of a figure with one row for each navigator
 FRAME = 90  # [px] of title, axis and margins
-LEGEND = 24  # [px] of a line of the legend
+LEGEND = 20  # [px] of a line of the legend
 GREY = "#7a8794"
 BELOW: Mapping[str, Any] = {
     "orientation": "h", "yref": "container", "y": 0, "yanchor": "bottom", "x": 0,
@@ -33,7 +33,7 @@ def rows_axis(names: Sequence[str]) -> dict[str, Any]:
     """Return a y axis with the names from top to bottom."""
     return {
         "type": "category", "categoryorder": "array", "categoryarray": [*reversed(names)],
-        "range": [-0.6, len(names) - 0.4], "fixedrange": True, "ticks": "",
+        "range": [-0.6, len(names) - 0.4], "fixedrange": True, "ticks": "", "dtick": 1,
     }  # fmt: skip
 
 

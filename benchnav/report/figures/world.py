@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from html import escape
 from typing import TYPE_CHECKING
@@ -33,7 +34,8 @@ def world_picture(
 
     Args:
         world: the world.
-        hits: collisions in this world; only the first `MOST_MARKS` are drawn.
+        hits: collisions in this world; at most `MOST_MARKS` are drawn, in equal shares for
+            navigators.
         labelled: names of obstacles and walls (`obstacles_of`) whose numbers are shown.
         styles: the style of each navigator.
     """
@@ -41,15 +43,26 @@ def world_picture(
 
     x0, y0, x1, y1 = world.bounds
     side = max(x1 - x0, y1 - y0)
-    drawn = sorted(hits, key=lambda hit: hit[1].time)[:MOST_MARKS]
+    drawn = _first_of_each(hits)[:MOST_MARKS]
     marks = [_mark(*hit, MARK * side, styles[hit[0]].color) for hit in drawn]
     return Markup(world_svg(world, [*_labels(world, labelled, LETTER * side), *marks]))  # noqa: S704
+
+
+def _first_of_each(hits: Sequence[Hit]) -> list[Hit]:
+    """Return the earliest collision of each navigator, then the second of each, and so on."""
+    counts = Counter[str]()
+    ordered = []
+    for hit in sorted(hits, key=lambda hit: hit[1].time):
+        counts[hit[0]] += 1
+        ordered.append((counts[hit[0]], hit))
+    ordered.sort(key=lambda each: each[0])  # stable
+    return [hit for _, hit in ordered]
 
 
 def hits_text(count: int) -> str:
     """Return the number of collisions in a world, and how many of them are drawn."""
     text = counted(count, "first collision")
-    return text if count <= MOST_MARKS else f"{text}, the earliest {MOST_MARKS} drawn"
+    return text if count <= MOST_MARKS else f"{text}, {MOST_MARKS} of them drawn"
 
 
 def _mark(navigator: str, hit: Collision, size: float, color: str) -> str:

@@ -11,6 +11,7 @@ from benchnav.leaderboard.statistics.all_pairs import duels
 from benchnav.report.analysis.pair_codec import VERDICTS, PairCodec, metric_fields
 from benchnav.report.figure import plain
 from benchnav.report.page import ASSETS, COMPARISON, Page, href
+from benchnav.report.pages.style_sheet import DETAILS
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
 from benchnav.text.visible import visible
@@ -40,8 +41,8 @@ def pages(data: ReportData) -> Iterator[Page]:
         "tracks": data.tracks,
     }
     body = fill(
-        "comparison.html", several=len(labels) > 1, shared=_json(shared), pairs=pairs,
-        script=href(COMPARISON, ASSETS / SCRIPT),
+        "comparison.html", page=COMPARISON, style_sheet=DETAILS, several=len(labels) > 1,
+        shared=_json(shared), pairs=pairs, script=href(COMPARISON, ASSETS / SCRIPT),
     )  # fmt: skip
     yield Page(COMPARISON, "Two navigators compared", body, COMPARISON, has_figures=True)
 

@@ -19,13 +19,14 @@ from benchnav.report.analysis.profile import Profile, profile
 from benchnav.report.analysis.view import View, title_of, views_of
 from benchnav.report.figure import figure_html
 from benchnav.report.figures.cost import times_figure, value_figure
-from benchnav.report.figures.failures import outcomes_figure
+from benchnav.report.figures.failures import LINES, outcomes_figure
 from benchnav.report.figures.price import price_figure
 from benchnav.report.figures.profile import profile_figure
 from benchnav.report.figures.style import height_of
 from benchnav.report.page import COMPARISON, FAILURES, NAVIGATORS, Page, href, navigator_path
 from benchnav.report.pages.index import grouped
 from benchnav.report.pages.records import records_with
+from benchnav.report.pages.style_sheet import DETAILS
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
 
@@ -111,7 +112,10 @@ def _list(shared: _Shared) -> Page:
         for name in data.navigators
     ]  # fmt: skip
     heads = [title_of(view, shared.views) for view in shared.views]
-    body = fill("navigators.html", page=NAVIGATORS, rows=rows, heads=heads, figures=figures)
+    body = fill(
+        "navigators.html", page=NAVIGATORS, style_sheet=DETAILS, rows=rows, heads=heads,
+        figures=figures,
+    )  # fmt: skip
     return Page(NAVIGATORS, "Navigators", body, NAVIGATORS, has_figures=True)
 
 
@@ -129,6 +133,7 @@ def _page(shared: _Shared, name: str) -> Page:
     body = fill(
         "navigator.html",
         page=navigator_path(name),
+        style_sheet=DETAILS,
         navigator=name,
         color=shared.data.styles[name].color,
         comparison=f"{href(navigator_path(name), COMPARISON)}#{urlencode({'a': name})}",
@@ -213,7 +218,8 @@ def _outcomes(shared: _Shared, name: str) -> Iterator[Markup]:
             ordered = sorted(rows, key=lambda s: (-rows[s].shares[0], s))
             yield figure_html(
                 outcomes_figure({scenario: rows[scenario] for scenario in ordered}),
-                height=height_of(len(rows), 3), label=f"Outcomes of {name} by scenario, {title}",
+                height=height_of(len(rows), LINES),
+                label=f"Outcomes of {name} by scenario, {title}",
                 caption=f"{title}: failures by cause in each scenario.",
             )  # fmt: skip
 

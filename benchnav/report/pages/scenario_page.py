@@ -18,13 +18,14 @@ from benchnav.report.analysis.scenario_facts import scenario_facts
 from benchnav.report.analysis.view import View, title_of, views_of
 from benchnav.report.figure import figure_html
 from benchnav.report.figures.curves import curves_figure, parameter_figure
-from benchnav.report.figures.failures import outcomes_figure, partners_figure
+from benchnav.report.figures.failures import LINES, outcomes_figure, partners_figure
 from benchnav.report.figures.intervals import by_value, intervals_figure
 from benchnav.report.figures.style import height_of
 from benchnav.report.figures.world import Hit, hits_text, world_picture
 from benchnav.report.page import SCENARIOS, Page, scenario_path
 from benchnav.report.pages.index import grouped
 from benchnav.report.pages.records import records_with
+from benchnav.report.pages.style_sheet import DETAILS
 from benchnav.report.pages.table import metric_table
 from benchnav.report.report_data import ReportData, StoredScenario
 from benchnav.report.template import fill
@@ -62,7 +63,10 @@ def pages(data: ReportData) -> Iterator[Page]:
         for each in found
     ]  # fmt: skip
     yield Page(
-        SCENARIOS, "Scenarios", fill("scenarios.html", page=SCENARIOS, cards=cards), SCENARIOS
+        SCENARIOS,
+        "Scenarios",
+        fill("scenarios.html", page=SCENARIOS, style_sheet=DETAILS, cards=cards),
+        SCENARIOS,
     )
     for each in found:
         yield each.page()
@@ -101,6 +105,7 @@ class _Scenario:
         body = fill(
             "scenario.html",
             page=path,
+            style_sheet=DETAILS,
             scenario=self.scenario,
             title=str(config.get("title", "")),
             description=str(config.get("description", "")),
@@ -170,7 +175,7 @@ class _Scenario:
         for points in self._horizon.panels(view):
             names = {p.navigator for p in points}
             yield figure_html(
-                curves_figure(points, self.data.styles), height=TALL + 8 * len(names),
+                curves_figure(points, self.data.styles), height=TALL + 12 * len(names),
                 label=f"Success against horizon in {where}",
                 caption=CURVES,
             )  # fmt: skip
@@ -180,7 +185,7 @@ class _Scenario:
         for points in self.parameters.panels(self.scenario.identity, view):
             names, axis = {p.navigator for p in points}, points[0].axis
             yield figure_html(
-                parameter_figure(points, self.data.styles), height=TALL + 8 * len(names),
+                parameter_figure(points, self.data.styles), height=TALL + 12 * len(names),
                 label=f"Success against {axis} in {where}",
                 caption=f"Success against the parameter {axis} of {points[0].scenario}.",
             )  # fmt: skip
@@ -192,14 +197,14 @@ class _Scenario:
         if ordered:
             yield figure_html(
                 outcomes_figure({name: shares[name] for name in ordered}),
-                height=height_of(len(ordered), 3), label=f"Outcomes of agents in {where}",
+                height=height_of(len(ordered), LINES), label=f"Outcomes of agents in {where}",
                 caption=CAUSES,
             )  # fmt: skip
         found = partners(self.summaries, view, MOST_PARTNERS, self.fixed)
         if found:
             yield figure_html(
                 partners_figure(found, self.data.styles),
-                height=height_of(len(found), 2 + len(shares) // 4),
+                height=height_of(len(found), 2 + len(shares) // 2),
                 label=f"Obstacles, walls and agents that were hit in {where}",
                 caption=PARTNERS,
             )  # fmt: skip
