@@ -16,20 +16,20 @@ class LineStyle:
     color: str  # "#rrggbb"
     dash: str
     symbol: str
-
-    @property
-    def swatch(self) -> str:
-        """The CSS classes of the square before its name: it is hollow where a colour repeats."""
-        return "swatch" if self.dash == DASHES[0] else "swatch hollow"
+    swatch: str  # CSS classes of the square before its name; hollow where a colour repeats
 
 
 def line_styles(navigators: Sequence[str]) -> dict[str, LineStyle]:
-    """Return a style for each navigator; where colours repeat, dashes and marks differ."""
+    """Return a style for each navigator; equal colours have different dashes.
+
+    Neighbours in the palette differ in dash and mark too, so that figures need no colours.
+    """
     return {
         name: LineStyle(
             NAVIGATORS[k % len(NAVIGATORS)],
-            DASHES[k // len(NAVIGATORS) % len(DASHES)],
+            DASHES[(k + k // len(NAVIGATORS)) % len(DASHES)],
             SYMBOLS[k % len(SYMBOLS)],
+            "swatch" if k < len(NAVIGATORS) else "swatch hollow",
         )
         for k, name in enumerate(navigators)
     }

@@ -74,6 +74,14 @@ def test_a_damaged_part_is_named(run, tmp_path):
         damaged.report(tmp_path / "report", quiet=True)
 
 
+def test_an_incomplete_run_is_shown_as_such(run, tmp_path):
+    copy = tmp_path / "run"
+    shutil.copytree(run.path, copy)
+    shutil.rmtree(sorted(copy.glob("parts/odd*straight-line*"))[0])
+    index = benchnav.open_run(copy).report(tmp_path / "report", replays=0, quiet=True)
+    assert "The runs are incomplete: 2 episodes missing." in index.read_text("utf-8")
+
+
 def test_what_is_not_a_run_is_refused(tmp_path, capsys):
     assert status(["report", str(tmp_path / "nothing"), "--out", str(tmp_path / "report")]) == 2
     assert "must be a run folder" in capsys.readouterr().err

@@ -1,8 +1,9 @@
 """Write the report of runs, and say what was written."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
+from benchnav.api.output.messages import message, silent
 from benchnav.errors import UsageError
 from benchnav.leaderboard.from_runs import stored_values
 from benchnav.report.site import REPLAYS, write_report
@@ -19,13 +20,14 @@ def write(
     metrics: Sequence[str] | None,
     replays: int | None,
     verify: bool,
-    say: Callable[[str], None],
+    quiet: bool,
 ) -> Path:
-    """Write the report and return its first page; ``say`` receives messages."""
+    """Write the report and return its first page."""
+    say = silent if quiet else message
     most = REPLAYS if replays is None else replays
     if most < 0:
         raise UsageError(f"The number of replays must be 0 or more. Got {most} instead.")
-    runs, verified = with_receipts(folders, verify, progress(False), say)
+    runs, verified = with_receipts(folders, verify, progress(quiet), say)
     written = write_report(
         runs, lambda: stored_values(runs, verified=verified, notify=say), out,
         metrics=metrics, replays=most,

@@ -293,7 +293,7 @@ class Run:
         with self._with(runs) as folders:
             return write(
                 folders, Path(out), metrics=_names(metrics), replays=replays, verify=verify,
-                say=silent if quiet else message,
+                quiet=quiet,
             )  # fmt: skip
 
     def report_missing(self, notify: Any = message) -> None:

@@ -16,6 +16,7 @@ from benchnav.report.line_style import LineStyle
 from benchnav.report.page import LEADERBOARD, Page
 from benchnav.report.report_data import ReportData, family_of
 from benchnav.report.template import fill
+from benchnav.store.runs.spans import count
 from benchnav.text.plural import counted
 
 OVERALL = "all scenarios"
@@ -94,7 +95,9 @@ def _summary(data: ReportData) -> str:
         counted(len(data.navigators), "navigator"), counted(len(data.scenarios), "scenario"),
         f"{counted(len(data.tracks), 'track')} ({', '.join(data.tracks)})",
     )  # fmt: skip
-    return f"{counted(len(data.summaries), 'episode')}: {', '.join(sizes)}."
+    missing = sum(count(seeds) for folder in data.folders for _, seeds in folder.missing())
+    gap = f" The runs are incomplete: {counted(missing, 'episode')} missing." if missing else ""
+    return f"{counted(len(data.summaries), 'episode')}: {', '.join(sizes)}.{gap}"
 
 
 def _verification(data: ReportData) -> str:
