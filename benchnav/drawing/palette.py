@@ -9,6 +9,11 @@ from benchnav.arena.world import World
 PAPER, INK, HIT = "#ffffff", "#22303c", "#cc0033"
 FILL = {Kind.WALL: "#36454f", Kind.STATIC: "#b4bec6", Kind.DYNAMIC: "#e07a3f"}
 TEAMS = ("#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d00", "#7a5195", "#4d4d4d")
+NAVIGATORS = (
+    "#0072b2", "#d55e00", "#009e73", "#c0619c", "#b07d00", "#3c95cf", "#7d5fb2", "#8a6a4f",
+    "#6f7a84", "#1f8a8c", "#b3404a", "#5f8a1f",
+)  # fmt: skip
+"""Colours of navigators: each has a contrast of at least 3 to white and to a dark page."""
 
 
 def color_of(team: int) -> str:

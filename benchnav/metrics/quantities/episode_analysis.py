@@ -4,7 +4,7 @@
 cached as long as the episode exists, and callers must not modify it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -18,19 +18,14 @@ from benchnav.metrics.quantities.lowpass import smooth_velocity
 from benchnav.metrics.quantities.trajectory import Trajectories, cut, positions_at
 
 
-@dataclass(frozen=True, eq=False)
-class Analysis:
-    """Intermediate results. It has no reference to the episode, so both can be freed."""
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Endings:
+    """How the attempts of an episode end; it needs no trajectories."""
 
-    world: World
-    trajectories: Trajectories
-    body_position: FloatArray  # (T+1, M, 2) [m]
     failed: BoolArray  # (A,) its navigator failed in this episode
-    driven: IntArray  # (T,) number of agents that the navigator drives in each decision
     active_at_end: BoolArray  # (A,) still on its way when the record ends
     arrival: FloatArray  # (A,) [s], NaN without an arrival or if its navigator failed
     contacts: Contacts
-    decision: FloatArray  # (T,) [s]
 
     @property
     def arrived(self) -> BoolArray:
@@ -45,6 +40,30 @@ class Analysis:
         hit = np.zeros(len(self.arrival), np.bool_)
         hit[c.agent[early]] = True
         return self.arrived & ~hit
+
+
+def endings(episode: Episode) -> Endings:
+    """Return how the attempts of an episode end."""
+    failed = (episode.status == int(Status.FAILED)).any(axis=0)
+    if episode.failure:
+        failed = failed | episode.world.agents.evaluated
+    return Endings(
+        failed=failed,
+        active_at_end=episode.status[-1] == int(Status.ACTIVE),
+        arrival=np.where(failed, np.nan, episode.arrival),
+        contacts=episode.contacts,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Analysis(Endings):
+    """Intermediate results. It has no reference to the episode, so both can be freed."""
+
+    world: World
+    trajectories: Trajectories
+    body_position: FloatArray  # (T+1, M, 2) [m]
+    driven: IntArray  # (T,) number of agents that the navigator drives in each decision
+    decision: FloatArray  # (T,) [s]
 
     @cached_property
     def geodesic(self) -> FloatArray:
@@ -105,21 +124,14 @@ def analyse(episode: Episode) -> Analysis:
     """Return the analysis of an episode: the same object in every call."""
     found: Analysis | None = vars(episode).get(_KEPT)
     if found is None:
-        final = episode.status[-1]
-        failed = (episode.status == int(Status.FAILED)).any(axis=0)
-        if episode.failure:
-            failed = failed | episode.world.agents.evaluated
+        ends = endings(episode)
+        active = episode.status == int(Status.ACTIVE)
         found = Analysis(
+            **{field.name: getattr(ends, field.name) for field in fields(Endings)},
             world=episode.world,
             trajectories=cut(episode),
             body_position=episode.body_position,
-            failed=failed,
-            driven=(episode.status == int(Status.ACTIVE))[:-1, episode.world.agents.evaluated].sum(
-                axis=1
-            ),
-            active_at_end=final == int(Status.ACTIVE),
-            arrival=np.where(failed, np.nan, episode.arrival),
-            contacts=episode.contacts,
+            driven=active[:-1, episode.world.agents.evaluated].sum(axis=1),
             decision=episode.timings.decision,
         )
         vars(episode)[_KEPT] = found
