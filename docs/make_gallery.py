@@ -35,7 +35,7 @@ EPISODES = (  # of (file, scenario, seed, track, navigators, what to see)
     ),
     (
         "groups", "groups/crossing-four", 0, "known", ("orca", "guided-crowd"),
-        "Four groups cross: ORCA for everyone, and leaders with recorded paths that guide followers.",
+        "Four groups cross: ORCA for everyone, and leaders whose recorded paths guide their group.",
     ),
 )  # fmt: skip
 HEAD = """\

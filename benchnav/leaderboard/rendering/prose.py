@@ -98,7 +98,7 @@ def _difference(c: Comparison, metric: Metric) -> str:
     if verb:
         return f"{c.first} {verb} {value}{unit} {'more' if sign > 0 else 'less'} often{ends}"
     way = "higher" if sign > 0 else "lower"
-    parts = [c.verdict] if c.verdict in ("better", "worse") else []
+    parts: list[str] = [c.verdict] if c.verdict in ("better", "worse") else []
     parts += [ARRIVALS] if metric.conditional else []
     good = f" ({', '.join(parts)})" if parts else ""
     return f"{metric.name} of {c.first} is {value}{unit} {way}{ends}{good}"
