@@ -48,7 +48,7 @@ html_theme_options = {
     "navigation_depth": 2,
     "show_toc_level": 2,
 }
-html_sidebars = {"index": []}
+html_sidebars: dict[str, list[str]] = {"index": [], "gallery": []}
 copyright = "The benchnav authors, Apache-2.0"
 
 LISTS = ("components/README", "decisions/README")  # pages that list the other pages of their folder

@@ -53,8 +53,8 @@ def rounded(number: float) -> float | None:
 
 def metric_fields(metric: Metric) -> Mapping[str, Any]:
     """Return what the page needs to know of a metric; rates are shown in points."""
-    judged = None if metric.conditional else metric.better
+    among = ", among agents that arrive" if metric.conditional else ""
     return {
-        "name": metric.name, "title": metric.title, "better": judged,
+        "name": metric.name, "title": f"{metric.title}{among}", "better": metric.better,
         "unit": "points" if metric.rate else metric.unit, "scale": 100 if metric.rate else 1,
     }  # fmt: skip
