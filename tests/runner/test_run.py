@@ -43,6 +43,7 @@ def suite_file(tmp_path, scenario_file, troubled):
 @pytest.fixture
 def small_tasks(monkeypatch):
     monkeypatch.setattr(task_module, "CHUNK", 2)
+    monkeypatch.setattr(task_module, "LARGEST", 1)
 
 
 def digests(run):
