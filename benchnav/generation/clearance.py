@@ -10,7 +10,6 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
 from benchnav.kernels import kernel
 
-
 POINT = np.zeros((1, 5))  # a shape
 _FILLED = np.zeros(1, np.bool_)  # an obstacle is not hollow
 

@@ -54,7 +54,7 @@ def shapes(draw):
 def test_agrees_with_shapely(walls, shape, place, gap, walled):
     if walled:
         walls = [bounds_wall((-5, -5, 5, 5)), *walls]
-    true = slow.gap(shape + [*place, *place, 0.0], walls)
+    true = slow.gap(shape + np.array([*place, *place, 0.0]), walls)
     assume(abs(true - gap) > 1e-3)  # shapely's discs are polygons
     assert clear(shape, place[None], barrier(walls), gap)[0] == (true > gap)
 

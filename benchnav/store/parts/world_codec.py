@@ -48,7 +48,8 @@ def world_from_json(text: str) -> World:
 
 def encode(value: Any) -> Any:
     """Return plain JSON values of a dataclass, array, enum, tuple or number."""
-    return _encoder(type(value))(value)
+    kind: Any = type(value)
+    return _encoder(kind)(value)
 
 
 def decode(kind: Any, value: Any) -> Any:
