@@ -17,6 +17,9 @@ from benchnav.metrics.quantities.encounters import Encounters, encounters, thing
 from benchnav.metrics.quantities.lowpass import smooth_velocity
 from benchnav.metrics.quantities.trajectory import Trajectories, cut, positions_at
 
+TeamMotion = tuple[FloatArray, FloatArray, BoolArray, FloatArray]
+"""Places, steps (n, N, 2) [m] and activity (n, N) of n members, and their radii (n,) [m]."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Endings:
@@ -98,6 +101,28 @@ class Analysis(Endings):
         place = positions_at(self.trajectories, times)
         step = positions_at(self.trajectories, times + 0.25) - place
         return place, step, times[None] < self.trajectories.end[:, None]
+
+    def teams_together(self, members: BoolArray) -> list[TeamMotion]:
+        """Return the `group_motion` of each team, while two or more members are on their way.
+
+        Teams in which this never happens are left out. ``members`` (A,) selects the agents.
+        """
+        key = members.tobytes()
+        if key not in self._together:
+            place, step, active = self.group_motion
+            agents, teams = self.world.agents, []
+            for team in sorted(set(agents.team[members].tolist())):
+                own = np.flatnonzero(members & (agents.team == team))
+                together = active[own].sum(axis=0) > 1
+                if together.any():
+                    now = np.ix_(own, np.flatnonzero(together))
+                    teams.append((place[now], step[now], active[now], agents.radius[own]))
+            self._together[key] = teams
+        return self._together[key]
+
+    @cached_property
+    def _together(self) -> dict[bytes, list[TeamMotion]]:
+        return {}
 
     def smooth_velocity(self, agent: int) -> FloatArray:
         """Return the velocity (N, 2) [m/s] of an agent at a fixed rate, low-passed by `lowpass`."""
