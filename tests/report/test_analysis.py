@@ -169,7 +169,7 @@ def test_a_price_is_a_filled_mark_only_if_its_interval_excludes_0():
     rows += scores({"a": [1.0, 0.0] * 10}, track="known", scenario="a/zero@1")
     rows += scores({"a": [0.0, 1.0] * 10}, track="unknown", scenario="a/zero@1")
     prices = prices_of(_records(rows), "a", "success")
-    (trace,) = price_figure(prices, LineStyle("#0072b2", "solid", "circle"))["data"]
+    (trace,) = price_figure(prices, LineStyle("#0072b2", "solid", "circle", ""))["data"]
     assert trace["y"] == ["all scenarios", "a/one@1", "a/two@1", "a/zero@1"]
     assert trace["x"] == pytest.approx([0.5, 1.0, 0.5, 0.0])
     assert trace["marker"]["symbol"] == ["circle"] * 3 + ["circle-open"]
