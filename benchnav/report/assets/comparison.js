@@ -1,14 +1,16 @@
-"use strict";
 // Shows the comparison of two chosen navigators. `template`, `config` and `areas` are of figures.js.
 
 (() => {
   const read = (id) => JSON.parse(document.getElementById(id).textContent);
   const shared = read("shared");
-  const [first, second, track] = ["first", "second", "track"].map((id) => document.getElementById(id));
+  const [first, second, track] = ["first", "second", "track"].map((id) =>
+    document.getElementById(id),
+  );
   const names = shared.navigators.map((navigator) => navigator.name);
   const MIRRORED = { better: "worse", worse: "better", higher: "lower", lower: "higher" };
   const GREY = "#7a8794";
-  const ROW = 24, FRAME = 110;
+  const ROW = 24,
+    FRAME = 110;
 
   /** Return an element with a text. */
   function element(name, text = "", className = "") {
@@ -20,7 +22,7 @@
 
   /** Fill a menu with options. */
   function fill(menu, texts) {
-    texts.forEach((text, index) => menu.append(new Option(text, index)));
+    for (const [index, text] of texts.entries()) menu.append(new Option(text, index));
   }
 
   /** Return the comparisons of two navigators, seen from the first. */
@@ -32,9 +34,17 @@
       const [scenario, track, role, split] = shared.places[place];
       const word = shared.verdicts[verdict];
       return {
-        metric: shared.metrics[metric], scenario, track, role, split, worlds, p,
-        difference: turned(difference), low: turned(sign > 0 ? low : high), high: turned(sign > 0 ? high : low),
-        verdict: sign > 0 ? word : MIRRORED[word] ?? word,
+        metric: shared.metrics[metric],
+        scenario,
+        track,
+        role,
+        split,
+        worlds,
+        p,
+        difference: turned(difference),
+        low: turned(sign > 0 ? low : high),
+        high: turned(sign > 0 ? high : low),
+        verdict: sign > 0 ? word : (MIRRORED[word] ?? word),
       };
     });
     return { ...pair, rows };
@@ -66,7 +76,9 @@
     const name = unit ? ` ${unit}` : "";
     if (row.low === null) return `${signed(scale * row.difference, 0)}${name}`;
     const width = scale * (row.high - row.low);
-    const [value, low, high] = [row.difference, row.low, row.high].map((x) => signed(scale * x, width));
+    const [value, low, high] = [row.difference, row.low, row.high].map((x) =>
+      signed(scale * x, width),
+    );
     return `${value}${name} [${low}, ${high}]`;
   }
 
@@ -87,26 +99,62 @@
     const shown = rows.filter((row) => row.worlds && row.difference !== null);
     const y = shown.map((row) => plain(placeOf(row, every)));
     const [x, low, high] = ["difference", "low", "high"].map((key) =>
-      shown.map((row) => metric.scale * (row[key] ?? row.difference)));
+      shown.map((row) => metric.scale * (row[key] ?? row.difference)),
+    );
     const marks = shown.map((row) => markOf(row, a, b));
     const reach = 1.08 * Math.max(...[...x, ...low, ...high].map(Math.abs), 0) || 1;
     const bars = shown.map((row, k) => ({
-      type: "scatter", mode: "lines", x: [low[k], high[k]], y: [y[k], y[k]], hoverinfo: "skip",
+      type: "scatter",
+      mode: "lines",
+      x: [low[k], high[k]],
+      y: [y[k], y[k]],
+      hoverinfo: "skip",
       line: { color: marks[k].color, width: row.scenario ? 2 : 4 },
     }));
-    const sides = { better: "", higher: `← ${b.shown} better   ${a.shown} better →`, lower: `← ${a.shown} better   ${b.shown} better →` };
+    const sides = {
+      better: "",
+      higher: `← ${b.shown} better   ${a.shown} better →`,
+      lower: `← ${a.shown} better   ${b.shown} better →`,
+    };
     const order = [...new Set(y)].reverse();
     return {
-      data: [...bars, {
-        type: "scatter", mode: "markers", x, y,
-        marker: { color: marks.map((mark) => mark.color), symbol: marks.map((mark) => mark.symbol), size: 10, line: { width: 1.5, color: marks.map((mark) => mark.color) } },
-        text: shown.map((row) => `${plain(textOf(row))}<br>${row.verdict}, ${row.worlds} worlds`),
-        hovertemplate: "%{y}<br>%{text}<extra></extra>",
-      }],
+      data: [
+        ...bars,
+        {
+          type: "scatter",
+          mode: "markers",
+          x,
+          y,
+          marker: {
+            color: marks.map((mark) => mark.color),
+            symbol: marks.map((mark) => mark.symbol),
+            size: 10,
+            line: { width: 1.5, color: marks.map((mark) => mark.color) },
+          },
+          text: shown.map((row) => `${plain(textOf(row))}<br>${row.verdict}, ${row.worlds} worlds`),
+          hovertemplate: "%{y}<br>%{text}<extra></extra>",
+        },
+      ],
       layout: {
-        title: { text: plain(metric.name), x: 0.02, xanchor: "left" }, showlegend: false, height: FRAME + ROW * Math.max(order.length, 2),
-        xaxis: { range: [-reach, reach], zeroline: true, title: { text: `${plain(metric.unit || "difference")}<br>${sides[metric.better] ?? ""}`, font: { size: 12 } } },
-        yaxis: { type: "category", categoryorder: "array", categoryarray: order, range: [-0.6, order.length - 0.4], fixedrange: true, ticks: "" },
+        title: { text: plain(metric.name), x: 0.02, xanchor: "left" },
+        showlegend: false,
+        height: FRAME + ROW * Math.max(order.length, 2),
+        xaxis: {
+          range: [-reach, reach],
+          zeroline: true,
+          title: {
+            text: `${plain(metric.unit || "difference")}<br>${sides[metric.better] ?? ""}`,
+            font: { size: 12 },
+          },
+        },
+        yaxis: {
+          type: "category",
+          categoryorder: "array",
+          categoryarray: order,
+          range: [-0.6, order.length - 0.4],
+          fixedrange: true,
+          ticks: "",
+        },
         margin: { t: 40, b: 60 },
       },
     };
@@ -121,7 +169,8 @@
   }
 
   /** Return a word as a shell reads it. */
-  const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`);
+  const quoted = (word) =>
+    /^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`;
 
   function drawFigures(rows, a, b) {
     const forests = document.getElementById("forests");
@@ -130,7 +179,15 @@
       Plotly.purge(area);
     }
     const metrics = shared.metrics.filter((metric) => rows.some((row) => row.metric === metric));
-    const figures = metrics.map((metric) => forest(metric, rows.filter((row) => row.metric === metric), rows, a, b));
+    const figures = metrics.map((metric) =>
+      forest(
+        metric,
+        rows.filter((row) => row.metric === metric),
+        rows,
+        a,
+        b,
+      ),
+    );
     const frames = metrics.map((metric, k) => frameOf(metric, figures[k], rows, a, b));
     forests.replaceChildren(...frames); // all before one is drawn, as they share the width
     frames.forEach((frame, k) => {
@@ -149,7 +206,10 @@
     area.style.height = `${figure.layout.height}px`;
     const verdicts = outcome(rows.filter((row) => row.metric === metric));
     const frame = element("figure", "", "plot");
-    frame.append(area, element("figcaption", `${metric.title}. Verdict on ${a.name}: ${verdicts}.`));
+    frame.append(
+      area,
+      element("figcaption", `${metric.title}. Verdict on ${a.name}: ${verdicts}.`),
+    );
     return frame;
   }
 
@@ -162,11 +222,20 @@
     const places = [...new Set(rows.map((row) => placeOf(row, rows)))];
     const body = places.map((place) => {
       const line = element("tr");
-      const cells = metrics.map((metric) => rows.find((row) => row.metric === metric && placeOf(row, rows) === place));
-      line.append(element("td", place), element("td", String(cells.find((row) => row)?.worlds ?? ""), "number"));
+      const cells = metrics.map((metric) =>
+        rows.find((row) => row.metric === metric && placeOf(row, rows) === place),
+      );
+      line.append(
+        element("td", place),
+        element("td", String(cells.find((row) => row)?.worlds ?? ""), "number"),
+      );
       for (const row of cells) {
-        const cell = element("td", row ? textOf(row) : "", row && isDecided(row) ? "number best" : "number");
-        if (row && row.worlds) cell.append(element("div", row.verdict, "muted"));
+        const cell = element(
+          "td",
+          row ? textOf(row) : "",
+          row && isDecided(row) ? "number best" : "number",
+        );
+        if (row?.worlds) cell.append(element("div", row.verdict, "muted"));
         line.append(cell);
       }
       return line;
@@ -198,8 +267,13 @@
     drawFigures(shown, shared.navigators[a], shared.navigators[b]);
     drawTable(shown);
     document.getElementById("family").textContent = family;
-    document.getElementById("command").textContent = `benchnav compare RUN ${quoted(names[a])} ${quoted(names[b])}`;
-    const state = new URLSearchParams({ a: names[a], b: names[b], track: shared.tracks[track.value] });
+    document.getElementById("command").textContent =
+      `benchnav compare RUN ${quoted(names[a])} ${quoted(names[b])}`;
+    const state = new URLSearchParams({
+      a: names[a],
+      b: names[b],
+      track: shared.tracks[track.value],
+    });
     history.replaceState(null, "", `#${state}`);
   }
 
@@ -223,6 +297,9 @@
     [first.value, second.value] = [second.value, first.value];
     show();
   });
-  addEventListener("hashchange", () => { restore(); show(); });
+  addEventListener("hashchange", () => {
+    restore();
+    show();
+  });
   addEventListener("DOMContentLoaded", show); // plotly.js and figures.js are loaded by then
 })();
