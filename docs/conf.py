@@ -33,7 +33,8 @@ napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 
 html_theme = "pydata_sphinx_theme"
-html_static_path = ["_static"]
+REPLAY = "../benchnav/viewer/replay"
+html_static_path = ["_static", f"{REPLAY}/replay.js", f"{REPLAY}/replay.css"]  # for _static/replays
 html_css_files = ["site.css"]
 html_copy_source = False
 html_show_sourcelink = False

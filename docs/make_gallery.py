@@ -78,8 +78,8 @@ def replay(file: str, scenario: str, seed: int, track: str, navigators: tuple[st
     """Write the page that plays navigators side by side in one world."""
     world = benchnav.load_scenario(scenario).world(seed=seed)
     episodes = [benchnav.simulate(world, navigator, track=track) for navigator in navigators]
-    origins = [episode.origin for episode in episodes]
-    Replay([episode.record for episode in episodes], origins=origins).save(REPLAYS / f"{file}.html")
+    page = Replay.of(episodes).page(assets="..")  # conf.py copies the assets to _static
+    (REPLAYS / f"{file}.html").write_text(page, encoding="utf-8")
 
 
 def page() -> str:

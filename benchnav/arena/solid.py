@@ -85,6 +85,11 @@ def edge_chain(solid: Solid) -> tuple[IntArray, IntArray]:
     return before, after
 
 
+def is_outside(solid: Solid) -> bool:
+    """Whether a solid is the outside of a walled arena, which has no end."""
+    return sum(map(signed_area, solid.loops)) < 0.0
+
+
 def signed_area(loop: FloatArray) -> float:
     """Return the area [m²] of a loop (V, 2), negative if it runs clockwise."""
     x, y = loop.T

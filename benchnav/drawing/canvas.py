@@ -5,9 +5,9 @@ import math
 import numpy as np
 from PIL import Image, ImageDraw
 
-from benchnav.arena.solid import Kind, Solid, signed_area
+from benchnav.arena.solid import Kind, Solid, is_outside, signed_area
 from benchnav.arrays import ByteArray, Extent, FloatArray
-from benchnav.drawing.palette import FILL, INK, PAPER
+from benchnav.drawing.palette import FILL, INK, PAPER, channels
 
 
 class Canvas:
@@ -110,11 +110,6 @@ class Canvas:
         return [((px - x) * self._scale, (y - py) * self._scale) for px, py in points.tolist()]
 
 
-def is_outside(solid: Solid) -> bool:
-    """Whether a solid is the outside of a walled arena, which is drawn before all others."""
-    return sum(map(signed_area, solid.loops)) < 0.0
-
-
 def shade(color: str, strength: float) -> str:
     """Return a colour mixed with the paper; ``strength`` in [0, 1]."""
     mixed = (
@@ -122,11 +117,6 @@ def shade(color: str, strength: float) -> str:
         for own, paper in zip(channels(color), channels(PAPER), strict=True)
     )
     return "#{:02x}{:02x}{:02x}".format(*mixed)
-
-
-def channels(color: str) -> list[int]:
-    """Return red, green and blue from 0 to 255 of ``#rrggbb``."""
-    return [int(color[n : n + 2], 16) for n in (1, 3, 5)]
 
 
 def _pixels(length: float) -> int:

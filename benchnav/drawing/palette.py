@@ -27,7 +27,13 @@ def agent_color(world: World, agent: int) -> str:
     return color_of(agent if single else int(world.agents.team[agent]))
 
 
+def channels(color: str) -> tuple[int, int, int]:
+    """Return red, green and blue from 0 to 255 of ``#rrggbb``."""
+    red, green, blue = (int(color[n : n + 2], 16) for n in (1, 3, 5))
+    return red, green, blue
+
+
 def rgb(color: str) -> tuple[float, float, float]:
     """Return red, green and blue in [0, 1] of ``#rrggbb``."""
-    red, green, blue = (int(color[n : n + 2], 16) / 255.0 for n in (1, 3, 5))
-    return red, green, blue
+    red, green, blue = channels(color)
+    return red / 255.0, green / 255.0, blue / 255.0

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from benchnav.arena.solid import is_outside
 from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, Extent, FloatArray
-from benchnav.drawing.canvas import Canvas, is_outside
+from benchnav.drawing.canvas import Canvas
 from benchnav.drawing.palette import INK, agent_color
 
 _RIM = 0.015  # of the longer side: how thick the wall along the bounds is drawn

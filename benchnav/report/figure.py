@@ -14,12 +14,12 @@ HEIGHT = 380  # [px]
 
 
 def figure_html(
-    figure: Mapping[str, Any] | Any, *, label: str, height: int = HEIGHT, caption: str = ""
+    figure: Mapping[str, Any], *, label: str, height: int = HEIGHT, caption: str = ""
 ) -> Markup:
     """Return a figure as HTML, for a page with ``has_figures``.
 
     Args:
-        figure: a plotly figure, or its plain form ``{"data": [...], "layout": {...}}``. The
+        figure: a plotly figure in its plain form, ``{"data": [...], "layout": {...}}``. The
             colours of text, grid and paper are those of the page: it should not set them.
         label: a sentence that says what the figure shows, for screen readers.
         height: [px].
@@ -28,10 +28,8 @@ def figure_html(
     from markupsafe import Markup, escape
     from plotly.io.json import to_json_plotly
 
-    fields = figure if isinstance(figure, Mapping) else figure.to_plotly_json()
-    layout = {k: v for k, v in fields.get("layout", {}).items() if k != "template"}
     # It writes "<" as \u003c, so that no text ends the script element.
-    text = to_json_plotly({"data": fields["data"], "layout": layout}, engine="json")
+    text = to_json_plotly(figure, engine="json")
     below = f"<figcaption>{escape(visible(caption))}</figcaption>" if caption else ""
     return Markup(  # noqa: S704 - each part is escaped
         f'<figure class="plot"><div class="plot-area" role="img" style="height:{height:d}px"'

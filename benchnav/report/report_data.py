@@ -10,7 +10,7 @@ from benchnav.arena.world import World
 from benchnav.episode.episode import Episode
 from benchnav.leaderboard.columns import choose
 from benchnav.leaderboard.from_runs import StoredValues
-from benchnav.leaderboard.record import Leaderboard, Record
+from benchnav.leaderboard.record import Leaderboard
 from benchnav.report.analysis.episode_summary import EpisodeSummary, summarise
 from benchnav.report.line_style import LineStyle, line_styles
 from benchnav.scenario.terms import TRACKS
@@ -58,23 +58,6 @@ class ReportData:
     styles: Mapping[str, LineStyle]  # label → colour, dash and mark
     summaries: tuple[EpisodeSummary, ...]  # of every stored episode
     navigator_configs: Mapping[str, Mapping[str, Any]]  # label → its entry in the manifest
-
-    def records(
-        self,
-        *,
-        navigator: str | None = None,
-        scenario: str | None = None,
-        track: str | None = None,
-        role: str | None = None,
-        metric: str | None = None,
-    ) -> list[Record]:
-        """Return the records of the leaderboard with these fields; None: any."""
-        wanted = {
-            "navigator": navigator, "scenario": scenario, "track": track, "role": role,
-            "metric": metric,
-        }  # fmt: skip
-        fields = {name: value for name, value in wanted.items() if value is not None}
-        return [r for r in self.board.records if all(getattr(r, k) == v for k, v in fields.items())]
 
 
 def family_of(scenario: str) -> str:

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from benchnav.drawing.canvas import channels, shade
-from benchnav.drawing.palette import HIT
+from benchnav.drawing.canvas import shade
+from benchnav.drawing.palette import HIT, channels
 from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.system.plain_file import writing

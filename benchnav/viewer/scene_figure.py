@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchnav.arena.solid import Kind, Solid, signed_area
+from benchnav.arena.solid import Kind, Solid, is_outside
 from benchnav.arena.world import World
 from benchnav.arrays import Extent, FloatArray
 from benchnav.drawing.palette import FILL, INK, agent_color
@@ -191,7 +191,7 @@ def _patch(solid: Solid, frame: Extent, **style: Any) -> Any:
     if solid.is_disc:
         return Circle(solid.center, solid.radius, **style)
     loops = list(solid.loops)
-    if sum(map(signed_area, loops)) < 0.0:
+    if is_outside(solid):
         x0, y0, x1, y1 = frame
         loops.append(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))
     closed = [Path(np.vstack([loop, loop[:1]]), closed=True) for loop in loops]

@@ -122,7 +122,7 @@ class Episode:
         """
         from benchnav.api.records.replay import Replay
 
-        return Replay([self.record], agents, [self.origin])
+        return Replay.of([self], agents)
 
     def _members(self, role: str | None) -> BoolArray:
         """(A,) the agents that are scored in a role."""

@@ -96,9 +96,7 @@ class Episodes(Sequence[Episode]):
         """
         from benchnav.api.records.replay import MOST, Replay
 
-        chosen = list(self[: MOST + 1])
-        origins = [episode.origin for episode in chosen]
-        return Replay([episode.record for episode in chosen], agents, origins)
+        return Replay.of(self[: MOST + 1], agents)
 
     def __repr__(self) -> str:
         navigators = dict.fromkeys(place.navigator for place in self._places)

@@ -2,7 +2,7 @@
 
 import os
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from html import escape
 from os import PathLike
@@ -17,6 +17,7 @@ from benchnav.episode.episode import Episode as Record
 from benchnav.errors import UsageError, did_you_mean
 
 if TYPE_CHECKING:
+    from benchnav.api.records.episode import Episode
     from benchnav.verify.own_map import Origin
 
 PAGE, GIF, FILM = ".html", ".gif", ".mp4"
@@ -57,9 +58,20 @@ class Replay:
         self._agents = agents
         self._origins = tuple(origins or [None] * len(self._records))
 
+    @classmethod
+    def of(cls, episodes: "Iterable[Episode]", agents: Sequence[int] | None = None) -> "Replay":
+        """Return the replay of episodes of the Python API, with the maps that navigators made."""
+        chosen = list(episodes)  # each is read once
+        origins = [episode.origin for episode in chosen]
+        return cls([episode.record for episode in chosen], agents, origins)
+
     @cached_property
     def html(self) -> str:
         """The page."""
+        return self.page()
+
+    def page(self, assets: str = "") -> str:
+        """Return the page; ``assets`` is that of `benchnav.viewer.replay.page.replay_page`."""
         from benchnav.viewer.replay.page import replay_page
         from benchnav.viewer.replay.scene import scene
 
@@ -67,7 +79,8 @@ class Replay:
             [
                 scene(record, self._chosen_agents(record), origin)
                 for record, origin in zip(self._records, self._origins, strict=True)
-            ]
+            ],
+            assets,
         )
 
     def save(self, path: "str | PathLike[str]", times: Sequence[float] = ()) -> Path:

@@ -45,7 +45,6 @@ HITS = {
     Kind.AGENT: Outcome.HIT_AGENT, Kind.DYNAMIC: Outcome.HIT_DYNAMIC,
     Kind.STATIC: Outcome.HIT_STATIC, Kind.WALL: Outcome.HIT_WALL,
 }  # fmt: skip
-COLLISIONS = frozenset(HITS.values())
 NO_CONTACT = -1
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from benchnav.arena.agents import Role
 from benchnav.arena.body import LawKind
-from benchnav.arena.solid import Kind, Solid, signed_area
+from benchnav.arena.solid import Kind, Solid, is_outside
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
 
@@ -30,7 +30,7 @@ def partner_name(world: World, kind: int, partner: int) -> str:
     solid = world.solids[partner]
     if solid.kind == Kind.STATIC:
         return f"static obstacle {_number(world.solids, partner)}"
-    return "outer wall" if _is_outer(solid) else f"wall {_number(world.solids, partner)}"
+    return "outer wall" if is_outside(solid) else f"wall {_number(world.solids, partner)}"
 
 
 def obstacles_of(world: World) -> Iterator[tuple[str, FloatArray, Solid]]:
@@ -87,9 +87,4 @@ def _number(solids: Sequence[Solid], index: int) -> int:
     """Return the number of a solid among those of its kind; an outer wall comes first."""
     kind = solids[index].kind
     count = sum(solid.kind == kind for solid in solids[: index + 1])
-    return count - (kind == Kind.WALL and _is_outer(solids[0]))
-
-
-def _is_outer(solid: Solid) -> bool:
-    """Whether a solid is the outside of a walled arena."""
-    return solid.kind == Kind.WALL and sum(map(signed_area, solid.loops)) < 0.0
+    return count - (kind == Kind.WALL and is_outside(solids[0]))

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from benchnav.drawing.palette import channels
 from benchnav.report.line_style import LineStyle
 
 Figure = dict[str, Any]
@@ -25,7 +26,7 @@ def height_of(rows: int, legend: int = 0) -> int:
 
 def translucent(color: str, share: float) -> str:
     """Return ``#rrggbb`` as a colour that covers only a share of what lies behind it."""
-    red, green, blue = (int(color[n : n + 2], 16) for n in (1, 3, 5))
+    red, green, blue = channels(color)
     return f"rgba({red}, {green}, {blue}, {share:g})"
 
 

@@ -19,10 +19,8 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
 MOST_MARKS = 60  # of one picture
-MARK, LETTER = (
-    0.012,
-    0.05,
-)  # half the size of a cross and font size, of the longer side of the arena
+MARK = 0.012  # half the size of a cross, as a share of the longer side of the arena
+LETTER = 0.05  # the size of numbers, likewise
 Hit = tuple[str, Collision]
 """A navigator, and the collision of one of its agents."""
 

@@ -11,7 +11,6 @@ from benchnav.leaderboard.statistics.all_pairs import duels
 from benchnav.report.analysis.pair_codec import VERDICTS, PairCodec, metric_fields
 from benchnav.report.figure import plain
 from benchnav.report.page import ASSETS, COMPARISON, Page, href
-from benchnav.report.pages.style_sheet import DETAILS
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
 from benchnav.text.visible import visible
@@ -41,7 +40,7 @@ def pages(data: ReportData) -> Iterator[Page]:
         "tracks": data.tracks,
     }
     body = fill(
-        "comparison.html", page=COMPARISON, style_sheet=DETAILS, several=len(labels) > 1,
+        "comparison.html", page=COMPARISON, several=len(labels) > 1,
         shared=_json(shared), pairs=pairs, script=href(COMPARISON, ASSETS / SCRIPT),
     )  # fmt: skip
     yield Page(COMPARISON, "Two navigators compared", body, COMPARISON, has_figures=True)

@@ -24,9 +24,8 @@ from benchnav.report.figures.price import price_figure
 from benchnav.report.figures.profile import profile_figure
 from benchnav.report.figures.style import height_of
 from benchnav.report.page import COMPARISON, FAILURES, NAVIGATORS, Page, href, navigator_path
-from benchnav.report.pages.index import grouped
+from benchnav.report.pages.grouping import grouped
 from benchnav.report.pages.records import records_with
-from benchnav.report.pages.style_sheet import DETAILS
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
 
@@ -113,7 +112,7 @@ def _list(shared: _Shared) -> Page:
     ]  # fmt: skip
     heads = [title_of(view, shared.views) for view in shared.views]
     body = fill(
-        "navigators.html", page=NAVIGATORS, style_sheet=DETAILS, rows=rows, heads=heads,
+        "navigators.html", page=NAVIGATORS, rows=rows, heads=heads,
         figures=figures,
     )  # fmt: skip
     return Page(NAVIGATORS, "Navigators", body, NAVIGATORS, has_figures=True)
@@ -133,7 +132,6 @@ def _page(shared: _Shared, name: str) -> Page:
     body = fill(
         "navigator.html",
         page=navigator_path(name),
-        style_sheet=DETAILS,
         navigator=name,
         style=shared.data.styles[name],
         comparison=f"{href(navigator_path(name), COMPARISON)}#{urlencode({'a': name})}",

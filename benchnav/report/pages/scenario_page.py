@@ -23,9 +23,8 @@ from benchnav.report.figures.intervals import by_value, intervals_figure
 from benchnav.report.figures.style import height_of
 from benchnav.report.figures.world import Hit, hits_text, world_picture
 from benchnav.report.page import SCENARIOS, Page, scenario_path
-from benchnav.report.pages.index import grouped
+from benchnav.report.pages.grouping import grouped
 from benchnav.report.pages.records import records_with
-from benchnav.report.pages.style_sheet import DETAILS
 from benchnav.report.pages.table import metric_table
 from benchnav.report.report_data import ReportData, StoredScenario
 from benchnav.report.template import fill
@@ -65,7 +64,7 @@ def pages(data: ReportData) -> Iterator[Page]:
     yield Page(
         SCENARIOS,
         "Scenarios",
-        fill("scenarios.html", page=SCENARIOS, style_sheet=DETAILS, cards=cards),
+        fill("scenarios.html", page=SCENARIOS, cards=cards),
         SCENARIOS,
     )
     for each in found:
@@ -105,7 +104,6 @@ class _Scenario:
         body = fill(
             "scenario.html",
             page=path,
-            style_sheet=DETAILS,
             scenario=self.scenario,
             title=str(config.get("title", "")),
             description=str(config.get("description", "")),
