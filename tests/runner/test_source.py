@@ -274,9 +274,10 @@ def test_this_process_does_not_run_what_it_imported_before_an_edit(edit, suite_o
 
 
 @pytest.mark.slow
-def test_a_killed_again_ends_as_if_nobody_had_killed_it(edit, suite_of, tmp_path):
+def test_a_killed_again_ends_as_if_nobody_had_killed_it(edit, suite_of, tmp_path, monkeypatch):
     """The real thing: a command, SIGKILL once some new parts are sealed, and the command again."""
     out, path = tmp_path / "r", suite_of("drifts") and tmp_path / "suite.yaml"
+    monkeypatch.setattr(task_module, "CHUNK", 64)  # as in the command
     run_suite(suite_of("drifts", seeds="200"), out, workers=0)
     old = digests(out)
     edit(0.25)
