@@ -6,7 +6,7 @@ OUT ?= runs/quick
 READY := $(VENV)/.ready
 PEERS := .venv-peers
 STEP := $(PYTHON) .ci/step.py
-PIP := $(BIN)/python -m pip install -c constraints.txt
+PIP := $(BIN)/python -m pip install --no-compile -c constraints.txt
 
 .PHONY: setup run test test-all soak wheels check lint types layers docs bench clean
 
@@ -49,7 +49,7 @@ wheels: $(READY)  ## the built wheel, on every Python that is found
 	$(BIN)/python .ci/try_wheels.py
 
 docs: $(VENV)/.docs-ready  ## the documentation site, in build/site; warnings are errors
-	$(BIN)/python -m sphinx -W --keep-going -q -d build/doctrees docs build/site
+	$(BIN)/python -m sphinx -j auto -W --keep-going -q -d build/doctrees docs build/site
 
 $(VENV)/.docs-ready: $(READY)
 	@$(STEP) 'Installing the site generator' $(PIP) --group docs

@@ -164,7 +164,8 @@ def install(trial: Trial, python: Path, wheel: Path, folder: Path) -> Path:
     pip = (str(folder / "bin" / "python"), "-m", "pip", "install", "--quiet")
     command(ROOT, *pip, "--upgrade", "pip")
     prebuilt = () if trial.lowest else ("--only-binary", ":all:")  # users need no compiler
-    command(ROOT, *pip, *prebuilt, "-c", str(constraints), f"{wheel}{trial.extras}")
+    quick = (*pip, "--no-compile", *prebuilt)  # most modules are never imported here
+    command(ROOT, *quick, "-c", str(constraints), f"{wheel}{trial.extras}")
     return folder / "bin"
 
 

@@ -12,6 +12,19 @@ settings.register_profile(
 settings.load_profile("benchnav")
 
 
+def pytest_collection_modifyitems(config, items):
+    """Each worker of pytest-xdist begins with its share of the long tests: none begins last."""
+    workers = getattr(config, "workerinput", {"workercount": 1})["workercount"]
+    long = [item for item in items if item.get_closest_marker("long")]
+    other = [item for item in items if not item.get_closest_marker("long")]
+    items[:] = [
+        item
+        for worker in range(workers)
+        for part in (long, other)
+        for item in part[worker * len(part) // workers : (worker + 1) * len(part) // workers]
+    ]
+
+
 @pytest.fixture(scope="session", autouse=True)
 def receipts(tmp_path_factory):
     """Verifying in a test leaves its receipt to the test."""

@@ -81,7 +81,7 @@ def use_every_command(suite, folder, home, prefix=()):
         )
         assert (code, stdout) == (0, f"{out}\n"), stderr
         assert "failed" not in stderr
-    code, stdout, stderr = call("verify", "a", "--workers", 0)
+    code, stdout, stderr = call("verify", "a", "--workers", 0, "--twin", 0)
     assert code == 0, stdout
     assert "No receipt" not in stderr
     code, table, _ = call("leaderboard", "a")

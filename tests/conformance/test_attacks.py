@@ -17,8 +17,8 @@ def test_the_documents_list_word_for_word_what_is_not_found():
 
 
 @pytest.mark.long
-def test_one_change_of_seven(tmp_path):
-    outcome = attack(honest_run(tmp_path), every=7)
+def test_one_change_of_eleven(tmp_path):
+    outcome = attack(honest_run(tmp_path), every=11)
     assert len(outcome.found) > 20
     assert [name for name in outcome.missed if not is_by_design(name)] == []
 

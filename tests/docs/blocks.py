@@ -17,7 +17,7 @@ NAMED = re.compile(r"# file: (?P<name>\S+)\n")
 SHOWN = {"text", "markdown", "latex", "csv", "json", "bibtex"}  # read by people, not executed
 SITE = {"{eval-rst}"}  # directives of the documentation site, which its build checks
 FEWER = ["--seeds", "1", "--workers", "0"]
-QUICKER = ["--scenario", "circle/antipodal", "--scenario", "trap/u", "--track", "known"]
+QUICKER = ["--scenario", "trap/u", "--track", "known"]
 
 
 @dataclass(frozen=True)
