@@ -37,7 +37,7 @@ def complaint_of(load):
     return None
 
 
-@settings(max_examples=1500, deadline=None)
+@settings(max_examples=700, deadline=None)
 @given(st.data())
 def test_changed_files(data):
     broken = data.draw(st.sampled_from(SOURCES))

@@ -32,7 +32,7 @@ def tried(run, times, seed=0):
 @pytest.mark.slow
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="memory is watched in /proc")
 def test_changed_packs_are_read_or_refused(real):
-    tried(real, 120)
+    tried(real, 60)
 
 
 @pytest.mark.soak

@@ -15,7 +15,7 @@ from benchnav.verify.finding import Report
 from benchnav.verify.part_check import PartCheck
 from benchnav.verify.reference.reference_check import check_twin
 from benchnav.verify.reference.sample import sampled
-from tests.runner.verify.faulty import FAULTS, play
+from tests.runner.verify.faulty import FAULTS, JUDGED, play
 from tests.worlds import random_world
 
 
@@ -66,11 +66,7 @@ def test_faults_in_kernels_are_found():
     assert set(said) == set(FAULTS)
     assert [name for name, (twin, _) in said.items() if not twin] == []
     judged = {name for name, (_, referee) in said.items() if referee}
-    assert {
-        "contact: walls and obstacles are thinner", "contact: agents are smaller",
-        "contact: others are taken to stand", "contact: depths are not seen",
-        "contact: a contact lasts too long", "step: what is re-placed asks nobody",
-    } <= judged  # fmt: skip
+    assert judged >= JUDGED
 
 
 def test_the_sample_is_from_everywhere(genuine):
