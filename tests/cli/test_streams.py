@@ -143,6 +143,6 @@ def test_a_run_is_kept_though_its_streams_fail(suite):
     assert code == 0
     assert b", 1 world\n" in table
     assert "µs".encode("latin-1") in table
-    check = "B verify b --twin 0 --workers 0"
+    check = "B verify b --twin 0"
     status = f"set -o pipefail; {check} | true; echo $?; {check} > /dev/null; echo $?"
     assert shell(status, suite.parent)[1].split() == [b"0", b"0"]
