@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import BoolArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid
 from benchnav.geometry.free_arc import TWO_PI, Arcs

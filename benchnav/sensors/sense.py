@@ -119,8 +119,8 @@ def _edges(simulation: Simulation, chosen: IntArray, sensor: EdgeSensor, occlusi
     )  # fmt: skip
     s = simulation
     run_rows(
-        find_edges, chosen.size, chosen, float(sensor.range), simulation.widest_disc, occlusion, s.records,
-        s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, out.start, out.end,
+        find_edges, chosen.size, chosen, float(sensor.range), s.widest_disc, occlusion,
+        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, out.start, out.end,
         out.before, out.after, out.start_convex, out.end_convex, out.count, least=LEAST,
     )  # fmt: skip
     return out
