@@ -1,5 +1,6 @@
 """Distances from shapes to solids: the one test for all placement."""
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -12,6 +13,8 @@ from benchnav.kernels import kernel
 
 POINT = np.zeros((1, 5))  # a shape
 _FILLED = np.zeros(1, np.bool_)  # an obstacle is not hollow
+_FEW_TESTS = 16  # for which sorting the capsules into bands costs more than it saves
+_FEW_CAPSULES = 64
 
 
 class Barrier(NamedTuple):
@@ -20,6 +23,19 @@ class Barrier(NamedTuple):
     capsules: FloatArray  # (P, 5) x0, y0, x1, y1, radius
     first: IntArray  # (S+1,) capsules of solid s are first[s]:first[s+1]
     hollow: BoolArray  # (S,) True if the solid is the outside of its loops
+
+
+class _Bands(NamedTuple):
+    """The capsules of a barrier that reach each horizontal band, ascending within a band."""
+
+    low: float  # [m] least y of the first band
+    height: float  # [m] of a band
+    start: IntArray  # (bands + 1,) first item of each band
+    item: IntArray  # capsule indices by band
+    owner: IntArray  # (P,) solid of each capsule
+    first: IntArray  # (S+1,)
+    hollow: BoolArray  # (S,)
+    hollows: int
 
 
 def barrier(solids: Sequence[Solid]) -> Barrier:
@@ -84,6 +100,8 @@ def _clear(
 ) -> BoolArray:  # fmt: skip
     result = np.ones(len(points), np.bool_)
     size = len(shape) if whole else 1
+    many = len(points) * (len(shape) // size) > _FEW_TESTS
+    bands = _bands(capsules, first, hollow, many)
     moved = shape.copy()
     for n in range(len(points)):
         x, y = points[n, 0], points[n, 1]
@@ -92,41 +110,116 @@ def _clear(
             moved[q, 2], moved[q, 3] = shape[q, 2] + x, shape[q, 3] + y
         for low in range(0, len(shape), size):
             part = moved[low : low + size]
-            if not _apart(part, capsules, gap) or _nested(part, capsules, first, hollow):
+            if not _apart(part, capsules, bands, gap) or _nested(part, capsules, bands):
                 result[n] = False
                 break
     return result
 
 
 @kernel
-def _apart(shape: FloatArray, capsules: FloatArray, gap: float) -> bool:
+def _bands(capsules: FloatArray, first: IntArray, hollow: BoolArray, many: bool) -> _Bands:
+    """List the capsules by the horizontal bands that they reach; one band if few are tested."""
+    owner = np.empty(len(capsules), np.int64)
+    for s in range(len(hollow)):
+        owner[first[s] : first[s + 1]] = s
+    size = len(capsules)
+    if not many or size < _FEW_CAPSULES:
+        whole = np.array([0, size])
+        return _Bands(0.0, 1.0, whole, np.arange(size), owner, first, hollow, hollow.sum())
+    low, high, tall = math.inf, -math.inf, 0.0
+    for p in range(size):
+        bottom, top = _span(capsules[p])
+        low, high, tall = min(low, bottom), max(high, top), tall + (top - bottom)
+    # about the root of the number of capsules, but not so many that a capsule reaches many
+    height = max((high - low) / math.sqrt(size), tall / size, 1e-9)
+    start = np.zeros(int((high - low) / height) + 2, np.int64)
+    for p in range(size):
+        bottom, top = _span(capsules[p])
+        for k in range(int((bottom - low) / height), int((top - low) / height) + 1):
+            start[k + 1] += 1
+    start = np.cumsum(start)
+    free, item = start.copy(), np.empty(start[-1], np.int64)
+    for p in range(size):
+        bottom, top = _span(capsules[p])
+        for k in range(int((bottom - low) / height), int((top - low) / height) + 1):
+            item[free[k]] = p
+            free[k] += 1
+    return _Bands(low, height, start, item, owner, first, hollow, hollow.sum())
+
+
+@kernel
+def _span(capsule: FloatArray) -> tuple[float, float]:
+    """Return the least and the greatest y of a capsule (5,)."""
+    y0, y1, radius = capsule[1], capsule[3], capsule[4]
+    return min(y0, y1) - radius, max(y0, y1) + radius
+
+
+@kernel
+def _reached(bands: _Bands, low: float, high: float) -> tuple[int, int]:
+    """Return the items of all bands from ``low`` to ``high`` [m], as a range."""
+    last = len(bands.start) - 2
+    if last == 0:
+        return bands.start[0], bands.start[1]
+    k0, k1 = (low - bands.low) / bands.height, (high - bands.low) / bands.height
+    if k1 < 0.0 or k0 >= last + 1:
+        return 0, 0
+    return bands.start[int(max(k0, 0.0))], bands.start[int(min(k1, last)) + 1]
+
+
+@kernel
+def _apart(shape: FloatArray, capsules: FloatArray, bands: _Bands, gap: float) -> bool:
     """Whether no capsule of the shape (Q, 5) is within ``gap`` of any other."""
-    for p in range(len(capsules)):
-        for q in range(len(shape)):
-            if _near(shape[q], capsules[p], gap):
+    for q in range(len(shape)):
+        low, high = _span(shape[q])
+        begin, end = _reached(bands, low - gap, high + gap)
+        for k in range(begin, end):
+            if _near(shape[q], capsules[bands.item[k]], gap):
                 return False
     return True
 
 
 @kernel
-def _nested(shape: FloatArray, capsules: FloatArray, first: IntArray, hollow: BoolArray) -> bool:
+def _nested(shape: FloatArray, capsules: FloatArray, bands: _Bands) -> bool:
     """Whether one contains part of the other; for separate edges, one point per loop decides."""
-    for s in range(len(hollow)):
-        edges = capsules[first[s] : first[s + 1]]
-        if _holds(edges, shape, 1 if hollow[s] else 0):
+    for q in range(len(shape)):
+        x, y = shape[q, 0], shape[q, 1]
+        goes_on = q > 0 and x == shape[q - 1, 2] and y == shape[q - 1, 3]
+        if not goes_on and _inside_any(x, y, capsules, bands):
             return True
-        if len(shape) > 2 and _holds(shape, edges, 0):
-            return True
-    return False
+    return len(shape) > 2 and _holds_any(shape, capsules, bands)
 
 
 @kernel
-def _holds(loops: FloatArray, other: FloatArray, around: int) -> bool:
-    """Whether a loop of ``other`` begins inside ``loops`` (P, 5); ``around``: winding outside."""
-    for q in range(len(other)):
-        x, y = other[q, 0], other[q, 1]
-        goes_on = q > 0 and x == other[q - 1, 2] and y == other[q - 1, 3]
-        if not goes_on and _winding(x, y, loops) + around > 0:
+def _inside_any(x: float, y: float, capsules: FloatArray, bands: _Bands) -> bool:
+    """Whether a point is inside a solid: outside the loops of one that is hollow."""
+    begin, end = _reached(bands, y, y)
+    beside = bands.hollows
+    k = begin
+    while k < end:
+        s, turns = bands.owner[bands.item[k]], 0
+        while k < end and bands.owner[bands.item[k]] == s:
+            turns += _turn(x, y, capsules[bands.item[k]])
+            k += 1
+        if turns + bands.hollow[s] > 0:
+            return True
+        beside -= bands.hollow[s]
+    return beside > 0  # no edge of a hollow solid is in this band
+
+
+@kernel
+def _holds_any(shape: FloatArray, capsules: FloatArray, bands: _Bands) -> bool:
+    """Whether a loop of a solid begins inside the shape (Q, 5)."""
+    low, high = math.inf, -math.inf
+    for q in range(len(shape)):
+        low, high = min(low, shape[q, 1]), max(high, shape[q, 1])
+    begin, end = _reached(bands, low, high)
+    for k in range(begin, end):
+        p = bands.item[k]
+        x, y = capsules[p, 0], capsules[p, 1]
+        begins = p == bands.first[bands.owner[p]]
+        if not begins:
+            begins = x != capsules[p - 1, 2] or y != capsules[p - 1, 3]
+        if begins and _winding(x, y, shape) > 0:
             return True
     return False
 
@@ -164,10 +257,17 @@ def _winding(x: float, y: float, edges: FloatArray) -> int:
     """Return the winding number of the loops (P, 5) about (x, y), counter-clockwise positive."""
     turns = 0
     for p in range(len(edges)):
-        x0, y0, x1, y1 = edges[p, 0], edges[p, 1], edges[p, 2], edges[p, 3]
-        side = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
-        if y0 <= y < y1 and side > 0.0:
-            turns += 1
-        elif y1 <= y < y0 and side < 0.0:
-            turns -= 1
+        turns += _turn(x, y, edges[p])
     return turns
+
+
+@kernel
+def _turn(x: float, y: float, edge: FloatArray) -> int:
+    """Return what an edge (5,) adds to the winding number about (x, y)."""
+    x0, y0, x1, y1 = edge[0], edge[1], edge[2], edge[3]
+    side = (x1 - x0) * (y - y0) - (x - x0) * (y1 - y0)
+    if y0 <= y < y1 and side > 0.0:
+        return 1
+    if y1 <= y < y0 and side < 0.0:
+        return -1
+    return 0

@@ -81,18 +81,12 @@ def _grown(wall: Barrier, reach: float) -> Any:
     import shapely
 
     edges = wall.capsules
-    thin = edges[:, 4] == 0.0
-    grown = []
-    for s in range(len(wall.hollow)):
-        own = slice(wall.first[s], wall.first[s + 1])
-        if thin[own].all():
-            lines = shapely.linestrings(edges[own, :4].reshape(-1, 2, 2))
-            grown.append((shapely.multilinestrings(lines), reach))
-        else:
-            grown += [(shapely.Point(x, y), r + reach) for x, y, _, _, r in edges[own]]
-    if not grown:
+    if not len(edges):
         return shapely.Polygon()
-    shapes, radii = zip(*grown, strict=True)
-    return shapely.union_all(
-        shapely.buffer(np.array(shapes), np.array(radii) * _GROWTH, quad_segs=_QUADRANT)
-    )
+    goes_on = np.all(edges[1:, :2] == edges[:-1, 2:4], axis=1) & (edges[1:, 4] == edges[:-1, 4])
+    lines, radii = [], []
+    for run in np.split(edges, np.flatnonzero(~goes_on) + 1):  # the edges of a loop, or a disc
+        lines.append(shapely.linestrings(np.vstack([run[:, :2], run[-1:, 2:4]])))
+        radii.append((run[0, 4] + reach) * _GROWTH)
+    grown = shapely.buffer(np.array(lines), np.array(radii), quad_segs=_QUADRANT)
+    return shapely.disjoint_subset_union_all(grown)

@@ -5,10 +5,12 @@ import math
 import numpy as np
 
 from benchnav.arrays import FloatArray
+from benchnav.geometry.arc_sight import arc_cells, arcs_in_sight
 from benchnav.geometry.capsule_grid import CapsuleGrid, doubled, is_clear
 from benchnav.geometry.free_arc import TWO_PI, Arcs
 from benchnav.kernels import kernel
 
+_FEW = 256  # arcs, so few that all are tested
 _ON_ARC = 1e-12  # tolerance of the cosine in the test whether a tangent point is on an arc
 
 
@@ -34,8 +36,10 @@ def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
     """Return all free tangents of two arcs (M, 5): arc i, angle on i, arc j, angle on j, length."""
     rows = np.empty((256, 5))
     count = 0
+    cells = arc_cells(grid, arcs)
     for i in range(len(arcs.radius)):
-        for j in range(i):
+        near = arcs_in_sight(grid, cells, arcs, i) if i >= _FEW else np.arange(i)
+        for j in near:
             dx = arcs.center[j, 0] - arcs.center[i, 0]
             dy = arcs.center[j, 1] - arcs.center[i, 1]
             d2 = dx * dx + dy * dy

@@ -86,6 +86,8 @@ def valued(metric: Metric, episode: Episode, members: BoolArray) -> dict[str, An
     try:
         value, defined = evaluate(metric, episode, members)
     except (Exception, SystemExit) as error:
+        if type(error).__module__ == "numba.core.errors" and is_own(metric.name):
+            raise  # a kernel of ours does not compile: this is no property of the episode
         missing, traceback = exception_text(error), trace(error)
     return {
         "metric": metric.name, "value": value, "defined": defined,

@@ -113,15 +113,14 @@ def _neighbours(
 def _edges(simulation: Simulation, chosen: IntArray, sensor: EdgeSensor, occlusion: bool) -> Edges:
     shape = (*chosen.shape, sensor.count)
     points = [np.zeros((*shape, 2)) for _ in range(4)]
-    bulge = float(simulation.capsules["r"].max(initial=0.0))
     out = Edges(
         points[0], points[1], points[2], points[3], np.zeros(shape, np.bool_),
         np.zeros(shape, np.bool_), np.zeros(chosen.shape, np.int64),
     )  # fmt: skip
     s = simulation
     run_rows(
-        find_edges, chosen.size, chosen, float(sensor.range), bulge, occlusion, s.records,
-        s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, out.start, out.end,
+        find_edges, chosen.size, chosen, float(sensor.range), s.widest_disc, occlusion,
+        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, out.start, out.end,
         out.before, out.after, out.start_convex, out.end_convex, out.count, least=LEAST,
     )  # fmt: skip
     return out

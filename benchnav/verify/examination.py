@@ -14,6 +14,7 @@ class Examination:
 
     check: PartCheck
     twin: tuple[int, ...]  # seeds of the episodes that the reference simulator replays
+    twin_seconds: float  # [s] of processor time for each of them
     referee: bool
 
 
@@ -22,7 +23,7 @@ def examine(task: Examination) -> Report:
     report, scored, rehearsed = check_part(task.check)
     for pair in scored + rehearsed:
         if pair.stored.identity.seed in task.twin:
-            check_twin(pair.again.world, pair.again, pair.where, report)
+            check_twin(pair.again.world, pair.again, pair.where, report, task.twin_seconds)
     if task.referee:
         for pair in scored + rehearsed:
             judge(pair, report)

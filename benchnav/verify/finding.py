@@ -91,9 +91,12 @@ class Report:
             f" bit for bit; {n('values', 'value')} within 1e-9"
         ]
         if c["twin episodes"]:
+            every = c["twin decisions"] + c["decisions without twin"]
             lines.append(
                 f"{n('twin episodes', 'episode')} by the slow reference simulator:"
-                f" {n('twin decisions', 'decision')}, {n('twin events', 'event')}"
+                f" {n('twin decisions', 'decision')}"
+                f"{f' of {every}' if c['decisions without twin'] else ''},"
+                f" {n('twin events', 'event')}"
             )
         if c["judged states"]:
             lines.append(

@@ -42,6 +42,7 @@ class Wanted:
     """The checks beyond re-simulation."""
 
     twin: int = 20  # number of episodes that the reference simulator replays
+    twin_seconds: float = 60.0  # [s] of processor time for these replays, shared equally
     referee: bool = False  # judge every contact again with trimesh and python-fcl
     rerun: bool = False  # run the navigators again
 
@@ -142,8 +143,9 @@ def tasks_of(
     ]
     checks.sort(key=lambda c: (c.job.scenario.identity, c.part.first))  # they share worlds
     chosen = sampled(checks, wanted.twin)
+    share = wanted.twin_seconds / max(sum(map(len, chosen)), 1)
     return [
-        Examination(check, tuple(seeds), wanted.referee)
+        Examination(check, tuple(seeds), share, wanted.referee)
         for check, seeds in zip(checks, chosen, strict=True)
     ]
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arena.body import Body, LawKind
+from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import edge_chain
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
@@ -26,25 +26,33 @@ def stack_bodies(worlds: Sequence[World]) -> tuple[AnyArray, AnyArray, AnyArray]
     shape_count = knot_count = 0
     for b, world in enumerate(worlds):
         for m, body in enumerate(world.bodies):
-            row, law = bodies[b, m], body.law
+            row = bodies[b, m]
             before, after = edge_chain(body.solid)
             kind = int(body.solid.kind)
             shapes.append(capsule_records(body.solid.capsules, before, after, m, kind, shape_count))
-            knots.append(_knots(body))
+            knots.append(_set_law(row, body.law, knot_count))
             row["first"], row["last"] = shape_count, shape_count + len(shapes[-1])
-            row["law_first"], row["law_last"] = knot_count, knot_count + len(knots[-1])
             shape_count, knot_count = int(row["last"]), int(row["law_last"])
             row["bound"], row["kind"] = body.solid.bounding_radius, kind
-            row["law"], row["periodic"], row["phase"] = int(law.kind), law.periodic, law.phase
     return bodies, np.concatenate(shapes), np.concatenate(knots)
 
 
-def _knots(body: Body) -> AnyArray:
-    law = body.law
-    out = np.zeros(len(law.points), KNOT)
-    out["t"][: len(law.times)] = law.times
-    out["x"], out["y"] = law.points[:, 0], law.points[:, 1]
-    return out
+def law_records(bodies: Sequence[Body]) -> tuple[AnyArray, AnyArray]:
+    """Return (bodies (M,), knots (L,)) that hold only the laws, for `body_at`."""
+    rows, knots = np.zeros(len(bodies), BODY), [np.zeros(0, KNOT)]
+    for m, body in enumerate(bodies):
+        knots.append(_set_law(rows[m], body.law, sum(map(len, knots))))
+    return rows, np.concatenate(knots)
+
+
+def _set_law(row: AnyArray, law: Law, first: int) -> AnyArray:
+    """Set the law of a body's record, whose knots begin at ``first``; return them."""
+    knots = np.zeros(len(law.points), KNOT)
+    knots["t"][: len(law.times)] = law.times
+    knots["x"], knots["y"] = law.points[:, 0], law.points[:, 1]
+    row["law_first"], row["law_last"] = first, first + len(knots)
+    row["law"], row["periodic"], row["phase"] = int(law.kind), law.periodic, law.phase
+    return knots
 
 
 def top_speed(world: World) -> float:

@@ -38,6 +38,7 @@ class Simulation:
         # wider lists change nothing: an object out of reach is never the next touch
         margin = float((0.5 * self.records["reach"]).max()) + RELEASE
         self.capsules, self.start, self.item = stack_fixed(self.worlds, self.records, margin)
+        self.widest_disc = float(self.capsules["r"].max(initial=0.0))  # [m] of the fixed solids
         self._opened = np.zeros((self.B, self.A, OPEN_CONTACTS), CONTACT)
         self._opened["code"] = -1
         room = 32 + 2 * OPEN_CONTACTS * self.A * (first.clock.substeps + 1)

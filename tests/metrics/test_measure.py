@@ -6,6 +6,7 @@ import re
 import weakref
 from dataclasses import replace
 
+import numba
 import numpy as np
 import pyarrow as pa
 import pytest
@@ -13,6 +14,7 @@ import pytest
 from benchnav.arena.agents import Role
 from benchnav.errors import PluginError
 from benchnav.geometry import geodesic
+from benchnav.kernels import kernel
 from benchnav.metrics.measure import all_metrics, load_metric, measure
 from benchnav.metrics.metric import Metric
 from benchnav.metrics.quantities.episode_analysis import analyse
@@ -133,6 +135,16 @@ def test_a_metric_that_raises_costs_its_own_value_and_says_why():
     assert short.startswith("IndexError: ")
     with pytest.raises(KeyboardInterrupt):
         measure(zoo()["smooth"], [_metric(_interrupted)])
+
+
+def test_a_kernel_of_benchnav_that_does_not_compile_is_no_missing_value():
+    @kernel
+    def wrong(a):
+        return a.no_such_attribute
+
+    metric = replace(load_metric("success"), function=lambda e: wrong(1.0))
+    with pytest.raises(numba.core.errors.TypingError):
+        measure(zoo()["smooth"], [metric])
 
 
 def _interrupted(episode):

@@ -9,9 +9,13 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from typing_extensions import TypeAliasType, TypeVar
 
+from benchnav.arena.world import ContactRule
+from benchnav.store.parts import state_codec
 from benchnav.store.parts.digest import digest
-from benchnav.store.parts.episodes import LATER, from_table, to_table
+from benchnav.store.parts.episodes import LATER, SHAPES, from_table, to_table
 from benchnav.store.parts.world_codec import decode, encode, world_from_json, world_to_json
+from tests.runner.verify.faulty import play
+from tests.worlds import random_world
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 # What NDArray is since NumPy 2.5, whichever NumPy is installed.
@@ -81,7 +85,8 @@ def test_episodes_of_any_shape_come_back_bit_for_bit(tools, shapes, seed):
         tools.same(left, right)
 
 
-def test_parts_that_were_written_before_a_column_was_there_are_read(tools):
+def test_parts_that_were_written_before_a_column_was_there_are_read(tools, monkeypatch):
+    monkeypatch.setattr(state_codec, "can_code", lambda world: False)
     episodes = [tools.episode(np.random.default_rng(n), n) for n in range(3)]
     for left, right in zip(
         episodes, from_table(to_table(episodes).drop_columns(list(LATER))), strict=True
@@ -121,3 +126,50 @@ def test_the_digest_never_changes_its_meaning(tools):
         ),
     )  # fmt: skip
     assert digest(fixed) == "7a58b35d18ab4f6f10c7704f283e143faa7c64fddb96a8eab80c9cd11236cbc5"
+
+
+@pytest.mark.parametrize("contact", list(ContactRule))
+@pytest.mark.parametrize("unicycle", [False, True])
+@pytest.mark.parametrize("twist", [False, True])
+def test_states_of_a_simulation_are_stored_as_zeros_where_nothing_happens(contact, unicycle, twist):
+    world = random_world(3, contact=contact, unicycle=unicycle, steps=60)
+    episode = play(world, 3)
+    if twist:
+        episode = dataclasses.replace(episode, twist=np.ones(len(world.agents), np.bool_))
+    states = {name: getattr(episode, name) for name in SHAPES}
+    turns = np.zeros(len(world.agents), np.bool_) if episode.twist is None else episode.twist
+    coded = state_codec.coded(world, turns, states)
+    back = state_codec.decoded(world, turns, {**states, **coded})
+    assert back.keys() == {*state_codec.CODED, state_codec.BODIES}
+    for name, array in back.items():
+        assert array.tobytes() == states[name].tobytes()
+    if not twist:
+        for name, array in coded.items():
+            assert (array.view(np.int64) == 0).mean() > 0.3, (
+                name,
+                (array.view(np.int64) == 0).mean(),
+            )
+
+
+def test_coded_states_of_a_strange_world_are_refused(tools):
+    episode = tools.episode(np.random.default_rng(0))
+    world, twist = episode.world, np.zeros(len(episode.world.agents), np.bool_)
+    states = {name: getattr(episode, name) for name in SHAPES}
+    bad = [
+        dataclasses.replace(world, clock=dataclasses.replace(world.clock, substeps=10**9)),
+        dataclasses.replace(
+            world, agents=dataclasses.replace(world.agents, start=world.agents.start[:, :1])
+        ),
+        dataclasses.replace(
+            world,
+            bodies=tuple(
+                dataclasses.replace(b, law=dataclasses.replace(b.law, points=np.zeros((0, 2))))
+                for b in world.bodies
+            ),
+        ),
+    ]
+    for strange in bad:
+        with pytest.raises(ValueError, match=r"substeps|reshape|points"):
+            state_codec.decoded(strange, twist, states)
+    with pytest.raises(ValueError, match="reshape"):
+        state_codec.decoded(world, twist[:1], states)

@@ -1,6 +1,7 @@
 """The placement kernel against shapely."""
 
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
@@ -83,3 +84,30 @@ def test_every_shape_is_judged_for_itself():
     assert clear(POINT, points, wall, 0.0).tolist() == [False, True, True]
     assert clear(POINT, points, wall, 0.2).tolist() == [False, True, False]
     assert clear(POINT, points, barrier([]), 9.0).all()
+
+
+@pytest.mark.parametrize("walled", [False, True])
+@pytest.mark.parametrize("kind", ["point", "box", "tracks"])
+def test_many_points_among_many_solids_are_judged_like_each_alone(walled, kind):
+    rng = np.random.default_rng(7)
+    square = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]])
+    walls = [bounds_wall((-20, -20, 20, 20))] if walled else []
+    for _ in range(40):
+        size, turn, at = rng.uniform(0.2, 2.0), rng.uniform(0, 6.2), rng.uniform(-20, 20, 2)
+        outer = rotated(size * square, turn)
+        walls.append(Solid(Kind.WALL, (outer, 0.8 * outer[::-1])).moved(at))
+        walls.append(Solid(Kind.STATIC, (), (0.0, 0.0), 0.3 * size).moved(at[::-1]))
+    shape = {
+        "point": POINT,
+        "box": Solid(Kind.STATIC, (0.7 * square,)).capsules,
+        "tracks": np.array([[0.0, 0.0, 1.0, 0.5, 0.1], [2.0, 0.0, 2.0, 3.0, 0.2]]),
+    }[kind]
+    points = rng.uniform(-22, 22, (500, 2))
+    for gap in (0.0, 0.4):
+        together = clear(shape, points, barrier(walls), gap, whole=kind != "tracks")
+        alone = [
+            clear(shape, point[None], barrier(walls), gap, whole=kind != "tracks")[0]
+            for point in points
+        ]
+        assert together.tolist() == alone
+        assert 20 < together.sum() < 480

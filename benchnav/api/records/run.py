@@ -182,6 +182,7 @@ class Run:
         self,
         *,
         twin: int = 20,
+        twin_seconds: float = 60.0,
         referee: str | None = None,
         rerun: bool = False,
         workers: int | None = None,
@@ -194,6 +195,7 @@ class Run:
 
         Args:
             twin: episodes that the slow, plain simulator replays as well.
+            twin_seconds: [s] of processor time for these replays; each has an equal share.
             referee: "fcl": judge every contact again with python-fcl.
             rerun: run the navigators again where they are deterministic.
             workers: processes; None: one per core; 0: this process.
@@ -208,7 +210,7 @@ class Run:
         stop_import_of_main()
         if referee not in (None, "fcl"):
             raise UsageError(f"The referee must be fcl. Got {referee!r} instead.")
-        wanted, began = Wanted(twin, referee is not None, rerun), perf_counter()
+        wanted, began = Wanted(twin, twin_seconds, referee is not None, rerun), perf_counter()
         report = verify(self.folder, wanted, workers=workers, progress=progress(quiet))
         seconds = perf_counter() - began
         write_receipt(self.folder, report, message)

@@ -16,6 +16,12 @@ def verify(
             metavar="N", min=0, help="Episodes that the slow twin of the kernels replays as well."
         ),
     ] = 20,
+    twin_seconds: Annotated[
+        float,
+        typer.Option(
+            metavar="S", min=0.0, help="Processor time for these replays; each has an equal share."
+        ),
+    ] = 60.0,
     referee: Annotated[
         str | None,
         typer.Option(help="Library that checks every contact a second time: fcl."),
@@ -40,7 +46,10 @@ def verify(
 
     delay_pandas()
     with open_run(run) as opened:
-        found = opened.verify(twin=twin, referee=referee, rerun=rerun, workers=workers, quiet=quiet)
+        found = opened.verify(
+            twin=twin, twin_seconds=twin_seconds, referee=referee, rerun=rerun, workers=workers,
+            quiet=quiet,
+        )  # fmt: skip
     put(found.to_json() if json else found.text())
     if not found.verified:
         raise typer.Exit(1)

@@ -1,7 +1,8 @@
 """Episodes ↔ rows of a table: one row per episode, arrays flattened in C order.
 
 A column of states holds the numbers of all agents and times of one episode; its
-shape follows from ``steps`` T, ``agents`` A and ``bodies`` M by `SHAPES`.
+shape follows from ``steps`` T, ``agents`` A and ``bodies`` M by `SHAPES`. Rows with ``coded``
+hold some states as their difference from a prediction, see `state_codec`.
 """
 
 from collections.abc import Iterator, Sequence
@@ -10,8 +11,10 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from benchnav.arrays import AnyArray
+from benchnav.arena.world import World
+from benchnav.arrays import AnyArray, BoolArray
 from benchnav.episode.episode import Contacts, Episode, Identity, Timings
+from benchnav.store.parts import state_codec
 from benchnav.store.parts.world_codec import world_from_json, world_to_json
 
 SHAPES = {  # column → its shape in T, A, M
@@ -63,6 +66,7 @@ EPISODES = pa.schema(
         ("twist", pa.large_list(pa.bool_())),  # of every agent; null: unknown
         ("source_hash", pa.string()),  # of the navigator's code and data; null: unknown
         ("traceback", pa.string()),  # of the failure; null if no exception was raised
+        ("coded", pa.bool_()),  # whether states are coded; null: they are not
     ]
 )
 LATER = (
@@ -77,6 +81,7 @@ LATER = (
     "twist",
     "source_hash",
     "traceback",
+    "coded",
 )  # columns that older parts do not have; null there
 DICTIONARY = [*_IDENTITY, "navigator_hash", "source_hash", "failure"]  # with repeated values
 
@@ -94,8 +99,10 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
     columns["agents"] = [len(e.world.agents) for e in episodes]
     columns["bodies"] = [len(e.world.bodies) for e in episodes]
     columns["world"] = [world_to_json(e.world) for e in episodes]
+    columns["coded"] = [state_codec.can_code(e.world) for e in episodes]
+    states = [_stored_states(e) for e in episodes]
     for name in SHAPES:
-        columns[name] = _lists([getattr(e, name) for e in episodes], _item(name))
+        columns[name] = _lists([arrays[name] for arrays in states], _item(name))
     for name, kind in _CONTACTS.items():
         columns[f"contact_{name}"] = _lists([getattr(e.contacts, name) for e in episodes], kind)
     columns["decision_seconds"] = _lists([e.timings.decision for e in episodes], pa.float64())
@@ -113,6 +120,18 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
         for values in [columns[field.name]]
     ]
     return pa.Table.from_arrays(arrays, schema=EPISODES)
+
+
+def _stored_states(episode: Episode) -> dict[str, AnyArray]:
+    """Return the arrays of `SHAPES` as they are stored."""
+    states = {name: getattr(episode, name) for name in SHAPES}
+    if state_codec.can_code(episode.world):
+        states |= state_codec.coded(episode.world, _twist(episode.twist, episode.world), states)
+    return states
+
+
+def _twist(twist: BoolArray | None, world: World) -> BoolArray:
+    return np.zeros(len(world.agents), np.bool_) if twist is None else twist
 
 
 def from_table(table: pa.Table, order: Sequence[int] | None = None) -> Iterator[Episode]:
@@ -185,6 +204,9 @@ def _episode(batch: _Columns, row: int) -> Episode:
         raise ValueError(f"its world must have {agents} agents and {bodies} bodies")
     if len({len(array) for array in contacts.values()}) > 1:
         raise ValueError("its contacts must have one value in each column")
+    held = None if twist is None else np.array(twist, np.bool_)
+    if scalar("coded"):
+        arrays |= state_codec.decoded(world, _twist(held, world), arrays)
     identity = {name: scalar(name) for name in (*_IDENTITY, "seed")}
     identity["navigator_hash"] = scalar("navigator_hash") or ""
     identity["source_hash"] = scalar("source_hash") or ""
@@ -201,7 +223,7 @@ def _episode(batch: _Columns, row: int) -> Episode:
         rehearsal_decisions=scalar("rehearsal_decisions") or 0,
         remarks=tuple(scalar("remarks") or ()),
         traceback=scalar("traceback") or "",
-        twist=None if twist is None else np.array(twist, np.bool_),
+        twist=held,
         **arrays,
     )
 

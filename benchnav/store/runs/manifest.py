@@ -20,8 +20,8 @@ from benchnav.store.runs.config_key import RENAMED_IN, new_form, old_form
 from benchnav.store.runs.manifest_schema import ManifestSchema
 from benchnav.store.runs.run_path import RunPath, run_path
 
-SCHEMA = 6  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source;
-#            5: provenance; 6: key `config`
+SCHEMA = 7  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source;
+#            5: provenance; 6: key `config`; 7: coded states
 MANIFEST = "manifest.json"
 MAX_BYTES = 64 << 20  # of a manifest
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")

@@ -1,6 +1,7 @@
 """Replay an episode in the reference simulator, each decision from the stored state."""
 
 import math
+from time import process_time
 
 import numpy as np
 
@@ -14,16 +15,22 @@ from benchnav.verify.reference.reference_simulator import Twin
 
 TOLERANCE = 1e-7  # [m], [rad], [m/s] after one decision
 TIME = 1e-6  # [s] of an event: the uncertainty of a touch at grazing incidence
+LATE = "replay in the slow reference simulator, stopped when its time was over"
 MAX_TOUCHES = 5000  # after which a replay ends: jammed agents touch all the time
 GRAZE = 1e-6  # [m/s] and [m] of events that rounding alone may open
 
 
-def check_twin(world: World, episode: Episode, where: str, report: Report) -> None:
+def check_twin(
+    world: World, episode: Episode, where: str, report: Report, seconds: float = math.inf
+) -> None:
     """Report the first decision, and every event, on which the reference simulator disagrees.
+
+    The replay ends after ``seconds`` [s] of processor time, and at the latest when agents jam.
 
     A disagreement in a decision where rounding may decide the order of touches is counted, but
     is not a finding; nor are later events of the agents concerned.
     """
+    end = process_time() + seconds
     twin, doubted = Twin(world), np.zeros(len(world.agents), np.bool_)
     twist = np.zeros(len(doubted), np.bool_) if episode.twist is None else episode.twist
     report.counts["twin episodes"] += 1
@@ -40,6 +47,10 @@ def check_twin(world: World, episode: Episode, where: str, report: Report) -> No
         _follow(twin, episode, t + 1)
         if twin.touches > MAX_TOUCHES:
             report.notes["replay in the slow reference simulator, stopped in a jam"] += 1
+            break
+        if process_time() > end and t + 1 < len(episode.requested):
+            report.notes[LATE] += 1
+            report.counts["decisions without twin"] += len(episode.requested) - (t + 1)
             break
     _check_arrivals(twin, episode, doubted, where, report)
     _check_events(twin, episode, doubted, where, report)

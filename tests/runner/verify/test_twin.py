@@ -40,6 +40,17 @@ def test_a_crowd_in_a_grid():
     assert report.counts["twin events"] > 20
 
 
+def test_a_replay_ends_with_its_time_and_says_so():
+    drawn = random_world(1, count=20, steps=30)
+    episode, report = play(drawn, 1), Report()
+    check_twin(drawn, episode, "", report, seconds=0.0)
+    assert report.findings == []
+    assert report.counts["twin decisions"] == 1
+    decisions = len(episode.requested)
+    assert f"1 decision of {decisions}, " in report.checked[1]
+    assert any("stopped when its time was over" in line for line in report.unchecked)
+
+
 @pytest.mark.parametrize("name", ["position", "heading", "executed", "status", "body_position"])
 def test_a_state_that_is_a_little_off_is_named(name):
     drawn = random_world(1, steps=30)
