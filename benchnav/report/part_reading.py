@@ -24,7 +24,7 @@ Advance = Callable[[int], None]
 
 @dataclass(frozen=True)
 class PartReading:
-    """A part, and what the report needs of it."""
+    """A part, and the seeds, worlds and replays to read from it."""
 
     part: Part
     scenario: str
@@ -42,7 +42,7 @@ class PartReading:
 
 @dataclass(frozen=True, eq=False)
 class PartContent:
-    """What was read from a part."""
+    """The summaries, worlds and replays of a part."""
 
     summaries: tuple[EpisodeSummary, ...]
     worlds: dict[int, World]  # by seed
