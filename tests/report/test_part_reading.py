@@ -1,5 +1,11 @@
 """The stored episodes are read once, in this process or in several, with the same result."""
 
+import shutil
+
+import pytest
+
+import benchnav
+from benchnav.errors import CorruptPartError
 from benchnav.leaderboard.from_runs import stored_values
 from benchnav.report import part_reading
 from benchnav.report.failed_episodes import choose_replays, find_failures
@@ -47,3 +53,14 @@ def test_an_episode_of_two_runs_is_read_once(run):
     assert sum(len(r.seeds) for r in twice) == sum(len(r.seeds) for r in once)
     assert {w for r in twice if r.scenario == "trap/u@1" for w in r.worlds} == {0, 1}
     assert sum(len(r.worlds) for r in twice) == 4  # two scenarios, two seeds
+
+
+def test_a_damaged_part_is_named_by_a_process_too(run, tmp_path, monkeypatch):
+    copy = benchnav.open_run(shutil.copytree(run.path, tmp_path / "copy"))
+    values = stored_values([copy.folder], notify=print)
+    damaged = next((tmp_path / "copy" / "parts").glob("*/*episodes*"))
+    damaged.write_bytes(b"x" + damaged.read_bytes()[1:])
+    monkeypatch.setattr(part_reading, "MANY", 1)
+    monkeypatch.setattr(part_reading, "core_count", lambda: 2)
+    with pytest.raises(CorruptPartError, match="is damaged"):
+        read_runs([copy.folder], values)
