@@ -8,6 +8,7 @@ starts again with the next world of the pool, unless the batch has no autoreset.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from enum import Enum
 
 import numpy as np
 
@@ -46,6 +47,14 @@ class Transition:
         return self.arrived | self.touched | self.timed_out
 
 
+class Autoreset(Enum):
+    """When a row starts again after its last attempt, with the names of Gymnasium."""
+
+    DISABLED = "Disabled"  # only with `reset`: the row still shows the world of its last attempt
+    SAME_STEP = "SameStep"  # in the step in which the last attempt ends
+    NEXT_STEP = "NextStep"  # in the step after it, whose actions for the row are ignored
+
+
 Correction = Callable[[Observation, Bodies, FloatArray, FloatArray], FloatArray]
 """(observation, bodies, twists (B, A, 2), goal tolerance (B, A) [m]) → twists."""
 
@@ -63,7 +72,7 @@ class AgentBatch:
         correct: Correction | None = None,
         drivers: Sequence[Spec] = (),
         *,
-        autoreset: bool = True,
+        autoreset: Autoreset = Autoreset.SAME_STEP,
     ) -> None:
         """Prepare the batch. No world is drawn before `reset`.
 
@@ -76,8 +85,7 @@ class AgentBatch:
             correct: changes the learners' commands before their execution; its observation
                 has the needs of the encoder, and neighbours.
             drivers: navigators of the teams that are not evaluated.
-            autoreset: whether a row starts again by itself; otherwise it waits for `reset`, and
-                still shows the world in which its last attempt ended.
+            autoreset: when a row starts again.
 
         Raises UsageError if no world of the pool has an agent that learns.
         """
@@ -160,7 +168,7 @@ class AgentBatch:
         )
         final = self._encoded(seen)
         reward = np.where(acted, self.weights.scale * terms.total, 0.0)
-        done = np.flatnonzero(~self.active.any(1) & self._autoreset)
+        done = self._to_restart(acted)
         restarted = np.zeros_like(acted)
         observation = final.copy()
         if len(done):
@@ -172,6 +180,13 @@ class AgentBatch:
         return Transition(
             acted, reward, terms, arrived, touched, timed_out, restarted, observation, final
         )
+
+    def _to_restart(self, acted: BoolArray) -> IntArray:
+        """Return the rows that start again; ``acted`` (B, A) had an attempt before the decision."""
+        if self._autoreset is Autoreset.DISABLED:
+            return np.zeros(0, np.int64)
+        before = self._autoreset is Autoreset.NEXT_STEP
+        return np.flatnonzero(~(acted if before else self.active).any(1))
 
     def _commands(self, action: AnyArray) -> FloatArray:
         command = np.clip(action.astype(np.float64), -1.0, 1.0)

@@ -9,7 +9,7 @@ from pydantic import ValidationError
 from benchnav.arena.world import World
 from benchnav.arrays import IntArray
 from benchnav.config.model_errors import parameter_errors
-from benchnav.envs.agent_batch import AgentBatch
+from benchnav.envs.agent_batch import AgentBatch, Autoreset
 from benchnav.envs.encoders.catalogue import encoder as encoder_called
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import ConfigError, UsageError, did_you_mean
@@ -60,7 +60,7 @@ def weights_of(reward: Reward) -> RewardWeights:
 
 def make_batch(
     scenario: str, encoder: str, split: str, worlds: int, reward: Reward, slots: int | None = None,
-    *, rows: int = 1, autoreset: bool = True,
+    *, rows: int = 1, autoreset: Autoreset = Autoreset.SAME_STEP,
 ) -> AgentBatch:  # fmt: skip
     """Return a batch of rows with ``slots`` learning agents in total, or of ``rows`` rows.
 

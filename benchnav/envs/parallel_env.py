@@ -7,6 +7,7 @@ from gymnasium.utils.seeding import np_random
 from pettingzoo import ParallelEnv  # type: ignore[import-untyped]
 
 from benchnav.arrays import ByteArray
+from benchnav.envs.agent_batch import Autoreset
 from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.factory import Reward, check_render_mode, drawn_index, make_batch
 from benchnav.envs.gym.spaces import Space, action_space, last_seen, observation_space, terms
@@ -48,7 +49,9 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         """
         check_render_mode(render_mode, RENDER_MODES)
         self.render_mode = render_mode
-        self.batch = make_batch(scenario, encoder, split, worlds, reward, autoreset=False)
+        self.batch = make_batch(
+            scenario, encoder, split, worlds, reward, autoreset=Autoreset.DISABLED
+        )
         self._slots = LearnerSlots(self.batch)
         self.possible_agents = [f"leader_{a}" for a in range(self._slots.size)]
         self.agents: list[str] = []

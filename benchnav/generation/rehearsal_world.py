@@ -20,10 +20,7 @@ def rehearsal_world(world: World, rng: np.random.Generator) -> tuple[World, IntA
     paths and speeds, each with a new phase from ``rng``; a recorded track keeps its
     time. Of the evaluated agents, only `leaders_of` take part; of the others, all.
     """
-    leading = leaders_of(world.agents)
-    present = ~world.agents.evaluated
-    present[leading] = True
-    index = np.flatnonzero(present)
+    index = rehearsing(world.agents)
     agents = Agents(**{f.name: getattr(world.agents, f.name)[index] for f in fields(Agents)})
     role = np.where(agents.evaluated, int(Role.LEADER), agents.role).astype(np.int8)
     standing = [body for body in world.bodies if body.solid.kind == Kind.STATIC]
@@ -38,6 +35,13 @@ def rehearsal_world(world: World, rng: np.random.Generator) -> tuple[World, IntA
         stale_solids=None if stale is None else stale + placed,
     )
     return rehearsed, index
+
+
+def rehearsing(agents: Agents) -> IntArray:
+    """Return the indices of the agents in a rehearsal, ascending: leaders and background agents."""
+    present = ~agents.evaluated
+    present[leaders_of(agents)] = True
+    return np.flatnonzero(present)
 
 
 def leaders_of(agents: Agents) -> IntArray:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from benchnav.leaderboard.record import ALL, Record
-from benchnav.navigation.command_check import grouped
+from benchnav.navigation.command_check import grouped, kind_of
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -61,9 +61,10 @@ def _worlds(rows: pa.Table, column: str) -> Iterator[dict[str, Any]]:
 def _counted(found: Iterator[tuple[dict[str, Any], list[str]]]) -> Texts:
     texts: dict[tuple[str, ...], Counter[str]] = {}
     for row, remarked in found:
+        kinds = {kind_of(text): text for text in reversed(remarked)}  # a world counts once for each
         for scenario in (row["scenario"], ALL):
             key = *(str(row[name]) for name in KEYS), str(scenario)
-            texts.setdefault(key, Counter()).update(set(remarked))
+            texts.setdefault(key, Counter()).update(kinds.values())
     return texts
 
 

@@ -2,30 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from benchnav.arena.world import World
-from benchnav.episode.episode import Episode
 from benchnav.leaderboard.columns import choose
 from benchnav.leaderboard.from_runs import StoredValues
 from benchnav.leaderboard.record import Leaderboard
-from benchnav.report.analysis.episode_summary import EpisodeSummary, summarise
+from benchnav.report.analysis.episode_summary import EpisodeSummary
+from benchnav.report.failed_episodes import Cell
 from benchnav.report.line_style import LineStyle, line_styles
+from benchnav.report.part_reading import read_parts, readings_of
+from benchnav.report.replays import ReplayPlan
+from benchnav.runner.execute.progress import Progress
 from benchnav.scenario.terms import TRACKS
 from benchnav.store.runs.run_folder import RunFolder
-
-WORLDS = 6  # of each scenario that are kept for its pictures
 
 MORE = (
     "timeout", "stuck", "failed", "min_clearance", "path_length", "efficiency",
     "personal_space_intimate", "planning_time", "latency_p95",
 )  # fmt: skip
 """Metrics of a report besides those of a leaderboard."""
-
-Receive = Callable[[Episode, tuple[str, ...]], None]
-"""Receives each stored episode once, and the tracks for which it stands."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,7 +33,7 @@ class StoredScenario:
     identity: str  # "trap/u@1"
     hash: str
     config: Mapping[str, Any]  # title, description, parameters, teams, …
-    worlds: tuple[World, ...]  # of the first stored seeds, at most `WORLDS`
+    worlds: tuple[World, ...]  # of the first stored seeds, at most six
     seeds: tuple[int, ...]  # of these worlds
 
     @property
@@ -57,6 +55,7 @@ class ReportData:
     tracks: tuple[str, ...]  # in the order of `TRACKS`
     styles: Mapping[str, LineStyle]  # label → colour, dash and mark
     summaries: tuple[EpisodeSummary, ...]  # of every stored episode
+    replays: frozenset[Cell]  # whose first failed episode has a replay
     navigator_configs: Mapping[str, Mapping[str, Any]]  # label → its entry in the manifest
 
 
@@ -69,26 +68,32 @@ def read_runs(
     folders: Sequence[RunFolder],
     values: StoredValues,
     metrics: Sequence[str] | None = None,
-    receive: Receive | None = None,
+    plan: ReplayPlan | None = None,
+    progress: Progress | None = None,
 ) -> ReportData:
-    """Read each stored episode of some runs once.
+    """Read each stored episode of some runs once, and write the replays.
 
     Args:
         folders: the runs.
         values: their measured values.
         metrics: names of metrics on the board, or "all"; None: the usual ones and `MORE`.
-        receive: also receives each episode.
+        plan: the replays to write; None: none.
+        progress: is notified of every episode that was read; None: no progress.
 
     Raises UsageError for an unknown metric, CorruptPartError for a damaged part.
     """
     shown = _metrics(values.names, metrics)
     worlds: dict[str, dict[int, World]] = {}
-    summaries = []
-    for episode, tracks in _episodes(folders):
-        summaries.append(summarise(episode, tracks))
-        _keep_world(worlds.setdefault(episode.identity.scenario, {}), episode)
-        if receive is not None:
-            receive(episode, tracks)
+    summaries, replays = list[EpisodeSummary](), list[Cell]()
+    readings, display = readings_of(folders, plan), progress or Progress()
+    display.begin(sum(len(reading.seeds) for reading in readings), 0)
+    try:
+        for reading, content in zip(readings, read_parts(readings, display.advance), strict=True):
+            summaries += content.summaries
+            replays += content.replays
+            worlds.setdefault(reading.scenario, {}).update(content.worlds)
+    finally:
+        display.end()
     entries = [e for folder in folders for e in folder.manifest.suite["navigators"]]
     held = set(values.results["navigator"].unique().to_pylist())
     held |= {cell.navigator for cell in values.not_applicable}
@@ -96,35 +101,9 @@ def read_runs(
     return ReportData(
         folders=tuple(folders), values=values, board=values.board(shown), metrics=shown,
         navigators=navigators, scenarios=_scenarios(folders, worlds), tracks=_tracks(folders),
-        styles=line_styles(navigators), summaries=tuple(summaries),
+        styles=line_styles(navigators), summaries=tuple(summaries), replays=frozenset(replays),
         navigator_configs={e["label"]: e for e in reversed(entries)},
     )  # fmt: skip
-
-
-def _episodes(folders: Sequence[RunFolder]) -> Iterator[tuple[Episode, tuple[str, ...]]]:
-    """Yield each episode once, although several runs may hold it, and its tracks."""
-    known = set()
-    for folder in folders:
-        for cell in folder.manifest.cells:
-            if cell["reason"]:
-                continue
-            tracks = (*cell.get("also", ()), cell["track"])
-            for part in folder.parts_in(cell):
-                for episode in part.episodes():
-                    key = (cell["key"], episode.identity.seed)
-                    if key not in known:
-                        known.add(key)
-                        yield episode, tracks
-
-
-def _keep_world(kept: dict[int, World], episode: Episode) -> None:
-    """Keep the worlds of the smallest seeds."""
-    seed = episode.identity.seed
-    if seed in kept or (len(kept) == WORLDS and seed > max(kept)):
-        return
-    kept[seed] = episode.world
-    if len(kept) > WORLDS:
-        del kept[max(kept)]
 
 
 def _metrics(held: Sequence[str], named: Sequence[str] | None) -> tuple[str, ...]:

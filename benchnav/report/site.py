@@ -9,7 +9,7 @@ from itertools import chain
 from pathlib import Path
 
 from benchnav.leaderboard.from_runs import StoredValues
-from benchnav.report.failures import choose_replays, find_failures
+from benchnav.report.failed_episodes import choose_replays, find_failures
 from benchnav.report.page import (
     ABOUT,
     ASSETS,
@@ -30,10 +30,11 @@ from benchnav.report.pages import (
     navigator_page,
     scenario_page,
 )
-from benchnav.report.replays import ReplayWriter
+from benchnav.report.replays import ReplayPlan
 from benchnav.report.report_data import ReportData, read_runs
 from benchnav.report.report_folder import replaced_folder, require_replaceable
 from benchnav.report.shared_files import require_libraries, write_assets
+from benchnav.runner.execute.progress import Progress, progress
 from benchnav.store.runs.manifest import versions
 from benchnav.store.runs.run_folder import RunFolder
 
@@ -61,6 +62,7 @@ def write_report(
     *,
     metrics: Sequence[str] | None = None,
     replays: int = REPLAYS,
+    quiet: bool = True,
 ) -> Written:
     """Write the report of some runs into the folder ``out``; an earlier report is replaced.
 
@@ -70,6 +72,7 @@ def write_report(
         out: the folder.
         metrics: names of metrics on the leaderboard, or "all"; None: the usual ones and some more.
         replays: the largest number of failed episodes that get a page which plays them.
+        quiet: show no progress.
 
     Raises:
         UsageError: the folder holds something else, or is part of a run.
@@ -83,26 +86,35 @@ def write_report(
     failures = find_failures(measured.results)
     with replaced_folder(out) as folder:
         write_assets(folder / ASSETS)
-        writer = ReplayWriter(choose_replays(failures, replays), folder)
-        data = read_runs(folders, measured, metrics, writer)
+        chosen = choose_replays(failures, replays)
+        plan = ReplayPlan({(f.navigator, f.scenario, f.track): f.seed for f in chosen}, folder)
+        data = read_runs(folders, measured, metrics, plan, progress(quiet))
         pages = chain(
             leaderboard_page.pages(data), scenario_page.pages(data), navigator_page.pages(data),
-            comparison_page.pages(data), failures_page.pages(data, failures, writer.written),
+            comparison_page.pages(data), failures_page.pages(data, failures, data.replays),
             about_page.pages(data, datetime.now(UTC)),
         )  # fmt: skip
-        count = _write_pages(pages, _site(data), folder)
+        total = len(ENTRIES) + len(data.scenarios) + len(data.navigators)
+        count = _write_pages(pages, _site(data), folder, total, progress(quiet, "page"))
     size = sum(p.stat().st_size for p in _files(out) if ASSETS.name not in p.relative_to(out).parts)
-    return Written(out / LEADERBOARD, count, len(writer.written), size)
+    return Written(out / LEADERBOARD, count, len(data.replays), size)
 
 
-def _write_pages(pages: Iterator[Page], site: Site, folder: Path) -> int:
-    """Write the pages and return their number."""
+def _write_pages(
+    pages: Iterator[Page], site: Site, folder: Path, total: int, display: Progress
+) -> int:
+    """Write the pages, ``total`` or so, and return their number."""
     count = 0
-    for page in pages:
-        target = folder / page.path
-        target.parent.mkdir(parents=True, exist_ok=True)
-        target.write_text(render(page, site), encoding="utf-8")
-        count += 1
+    display.begin(total, 0)
+    try:
+        for page in pages:
+            target = folder / page.path
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_text(render(page, site), encoding="utf-8")
+            display.advance(1)
+            count += 1
+    finally:
+        display.end()
     return count
 
 

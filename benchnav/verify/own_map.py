@@ -14,6 +14,7 @@ from benchnav.errors import BenchnavError
 from benchnav.navigation.command_check import CallFailed, exception_text
 from benchnav.navigation.map import Map
 from benchnav.navigation.observe import deciding
+from benchnav.navigation.rehearsal import Rehearsal
 from benchnav.runner.rollouts.navigator_driver import Driver
 from benchnav.runner.rollouts.rollout import Assignment, drivers_of
 from benchnav.runner.rollouts.seeding import generator
@@ -22,8 +23,17 @@ from benchnav.world.simulation import Simulation
 
 INTERVAL = 1.0  # [s] between two maps of an agent at least
 
-Origin = Callable[[], Assignment | str]
-"""How an episode was made: the assignment, or why its navigator cannot be run again."""
+
+@dataclass(frozen=True)
+class Production:
+    """How an episode was made."""
+
+    assignment: Assignment
+    rehearsals: tuple[Rehearsal, ...] = ()  # that the navigator received
+
+
+Origin = Callable[[], Production | str]
+"""How an episode was made, or why its navigator cannot be run again."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,15 +47,16 @@ class OwnMaps:
 def own_maps(origin: Origin, episode: Episode, agents: IntArray) -> OwnMaps | str | None:
     """Return the maps of ``agents`` (n,), why they are unknown, or None: it makes none."""
     try:
-        assignment = origin()
-        if isinstance(assignment, str):
-            return assignment
+        made = origin()
+        if isinstance(made, str):
+            return made
         simulation = Simulation([episode.world])
-        (driver, *_) = drivers_of(replace(assignment, background=(), isolated=False), simulation)
+        alone = replace(made.assignment, background=(), isolated=False)
+        (driver, *_) = drivers_of(alone, simulation, [made.rehearsals])
         if not driver.navigator.has_own_map:
             return None
-        why = _obstacle(assignment, episode)
-        return why or _recorded(assignment, driver, episode, agents)
+        why = _obstacle(made, episode)
+        return why or _recorded(alone, driver, episode, agents)
     except CallFailed as failed:
         return failed.reason
     except BenchnavError as error:
@@ -54,10 +65,10 @@ def own_maps(origin: Origin, episode: Episode, agents: IntArray) -> OwnMaps | st
         return f"its navigator raised {exception_text(error)}"
 
 
-def _obstacle(assignment: Assignment, episode: Episode) -> str:
+def _obstacle(made: Production, episode: Episode) -> str:
     """Return why the navigator cannot be run again; "" if it can."""
-    if assignment.rehearsals:
-        return "it rehearses, and a replay repeats no rehearsals"
+    if len(made.rehearsals) != made.assignment.rehearsals:
+        return "not all of its rehearsals were run"
     if not episode.reproducible:
         return "a clock decides what it does"
     return unfit(episode.world, episode)

@@ -1,22 +1,31 @@
 """How a stored episode was made, so that its navigator can be run again."""
 
-from benchnav.episode.episode import Identity
+from benchnav.episode.episode import Episode
+from benchnav.runner.rollouts.rehearsal import stored_grant
 from benchnav.runner.rollouts.rollout import Assignment
+from benchnav.store.parts.part import Part
 from benchnav.store.runs.run_folder import RunFolder
+from benchnav.verify.own_map import Production
 from benchnav.verify.untrusted_spec import is_by_module, is_program
 
 
-def stored_origin(run: RunFolder, identity: Identity) -> Assignment | str:
-    """Return the assignment of an episode, or why its navigator must not be run again.
+def stored_origin(run: RunFolder, part: Part, episode: Episode) -> Production | str:
+    """Return how an episode of ``part`` was made, or why its navigator must not be run again.
 
     A pack may come from a stranger: only registered navigators are used for it.
     """
+    identity = episode.identity
     label = identity.navigator
     fields = next(each for each in run.manifest.suite["navigators"] if each["label"] == label)
     spec = fields["config"]
     if run.packed is not None and (is_program(spec) or is_by_module(spec)):
         return "it is a program or is named by its module, and packs are not trusted"
-    return Assignment(
+    assignment = Assignment(
         identity.scenario, identity.scenario_hash, identity.split, identity.track, label,
         dict(spec), salt=run.manifest.salt, rehearsals=int(fields.get("rehearsal", 0)),
     )  # fmt: skip
+    if not assignment.rehearsals:
+        return Production(assignment)
+    stored = [each for each in part.rehearsals() if each.identity.seed == identity.seed]
+    stored.sort(key=lambda each: each.identity.rehearsal)
+    return Production(assignment, stored_grant(episode.world, stored))

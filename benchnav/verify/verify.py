@@ -1,19 +1,15 @@
 """Verify a whole run, part by part, in worker processes."""
 
-import os
-import signal
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
-from concurrent.futures.process import BrokenProcessPool
+from concurrent.futures import as_completed
 from dataclasses import dataclass
-from multiprocessing import active_children, get_context
 from pathlib import Path
 
-from benchnav.errors import BenchnavError, StoreError
+from benchnav.errors import StoreError
 from benchnav.metrics.declared import declared_metrics
 from benchnav.plugins import registrations
-from benchnav.processes.main_module import main_of, without_main
-from benchnav.processes.process_tree import end_with_parent
+from benchnav.processes.main_module import main_of
+from benchnav.processes.worker_pool import submitted, worker_pool
 from benchnav.runner.execute.progress import Progress
 from benchnav.runner.plan.installed_differences import caveats_of
 from benchnav.runner.plan.limits import Limits
@@ -180,35 +176,7 @@ def _done(tasks: Sequence[Examination], workers: int) -> Iterator[tuple[Examinat
         for task in tasks:
             yield task, examine(task)
         return
-    context = get_context("spawn")
-    with ProcessPoolExecutor(min(workers, max(len(tasks), 1)), context, _begin) as pool:
-        try:
-            yield from _collected(pool, tasks)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            for process in active_children():
-                process.kill()
-            raise
-
-
-def _collected(
-    pool: Executor, tasks: Sequence[Examination]
-) -> Iterator[tuple[Examination, Report]]:
-    with without_main():  # the workers need no definitions of the script
-        running: dict[Future[Report], Examination] = {pool.submit(examine, t): t for t in tasks}
-    try:
+    with worker_pool(min(workers, max(len(tasks), 1)), "Try 1 worker.") as pool:
+        running = dict(zip(submitted(pool, examine, tasks), tasks, strict=True))
         for future in as_completed(running):
             yield running[future], future.result()
-    except BrokenProcessPool as error:
-        raise BenchnavError(
-            "Worker processes must stay alive; one was killed (see stderr for the cause; memory"
-            " may be short). Try 1 worker."
-        ) from error
-
-
-def _begin() -> None:
-    """Prepare a worker: one core, Ctrl-C handled by the parent, end with it, output to stderr."""
-    end_with_parent()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    os.environ["BENCHNAV_THREADS"] = "1"
-    os.dup2(2, 1)

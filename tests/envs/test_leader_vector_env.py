@@ -9,7 +9,7 @@ from gymnasium.wrappers.vector import RecordEpisodeStatistics
 from benchnav.envs.factory import make_batch
 from benchnav.envs.gym.leader_vector_env import LeaderVectorEnv
 from benchnav.envs.gym.registration import LEADER
-from benchnav.errors import BenchnavError
+from benchnav.errors import BenchnavError, UsageError
 
 STEPS = 260  # longer than an episode of the scenario
 
@@ -151,3 +151,37 @@ def test_gymnasium_s_statistics_wrap_it():
 def test_mistakes_are_explained(wrong, says):
     with pytest.raises(BenchnavError, match=says):
         LeaderVectorEnv(**{"worlds": 1, **wrong})
+
+
+def test_a_row_starts_again_in_the_next_step_if_that_is_asked_for():
+    """The step shows the end; the one after it ignores actions and shows another world."""
+    same, late = (
+        LeaderVectorEnv(8, "leaders/static", worlds=3, autoreset_mode=mode)
+        for mode in ("SameStep", AutoresetMode.NEXT_STEP)
+    )
+    assert late.metadata["autoreset_mode"] is AutoresetMode.NEXT_STEP
+    assert same.metadata["autoreset_mode"] is AutoresetMode.SAME_STEP
+    first, _ = same.reset(seed=0)
+    assert np.array_equal(late.reset(seed=0)[0], first)
+    action = np.tile(np.float32([-1.0, 0.0]), (8, 1))  # stands until time runs out
+    worlds = late.batch.simulation.worlds
+    done = np.zeros(8, np.bool_)
+    while not done.any():
+        seen, reward, _, done, info = late.step(action)
+        next_seen, other_reward, _, same_done, final = same.step(action)
+        assert np.array_equal(reward, other_reward)
+    assert done.all()
+    assert same_done.all()
+    assert np.array_equal(seen, np.stack(list(final["final_obs"])))
+    assert "final_obs" not in info
+    assert np.array_equal(info["is_success"], final["final_info"]["is_success"])
+    assert late.batch.simulation.worlds == worlds
+    fresh, reward, terminated, truncated, info = late.step(action)
+    assert np.array_equal(fresh, next_seen)
+    assert not (reward.any() | terminated.any() | truncated.any() | info["acted"].any())
+    assert not info["idle"].any()
+
+
+def test_a_mode_without_restarts_is_refused():
+    with pytest.raises(UsageError, match="must be 'SameStep' or 'NextStep'"):
+        LeaderVectorEnv(8, "leaders/static", worlds=3, autoreset_mode="Disabled")

@@ -42,6 +42,13 @@ def test_remarks_are_counted_in_worlds_not_in_rows(rows):
     assert {text for (name, _), text in found.items() if name == "navmesh+orca"} == {""}
 
 
+def test_a_world_counts_once_for_remarks_that_differ_in_numbers():
+    both = [f"the leader of team {team} succeeded in none of 5 rehearsals" for team in (0, 1)]
+    rows = [row("guided-crowd", seed, "success", 1.0, remarks=both) for seed in range(3)]
+    (found,) = {r.remark for r in board(rows).records}
+    assert found == f"in 3 of 3 worlds: {both[0]}"
+
+
 @pytest.mark.parametrize("format", ["markdown", "latex", "html"])
 def test_tables_for_people_tell_them_below(rows, format):
     text = render(board(rows), format)

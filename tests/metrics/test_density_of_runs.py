@@ -133,3 +133,43 @@ def test_density_of_a_symmetric_crowd_is_that_of_one_a_little_aside(monkeypatch)
         found.append(density.voronoi_density(episode.world, trajectories)[0])
     assert found[0] == pytest.approx(found[1], abs=1e-5)
     assert found[0] > 0.5
+
+
+# fmt: off
+GRID = [  # nearly on a grid: GEOS 3.13 cannot cut its own Voronoi diagram of them
+    (-0.9991180787356626, 1.7995286032631554), (-0.5991180787356569, 0.5995286032631668),
+    (0.6008819212643459, 0.9995286032631725), (0.6008819212643459, 1.7995286032631554),
+    (1.8008819212643346, 0.9995286032631725),
+]
+# fmt: on
+
+
+def test_density_of_agents_nearly_on_a_grid_is_that_of_agents_a_little_aside(monkeypatch):
+    bounds = (-4.0, -4.0, 4.0, 4.0)
+    setting = Setting(
+        dt=0.5, horizon=1.0, bounds=bounds, solids=(room(bounds),), area=(-2.0, -1.0, 2.0, 3.0)
+    )
+    stand = Walk(lambda t: np.zeros((len(t), 2)), (3.0, 3.0), radius=0.1)
+    episode, found = record([stand], setting), []
+    for aside in (0.0, 1e-6):
+        points = np.array(GRID) + aside * np.arange(5)[:, None] ** 2
+        seen = np.arange(len(points)), np.zeros(len(points), np.int64), points
+        monkeypatch.setattr(density, "bodies_at", lambda *_, seen=seen: seen)
+        found.append(density.voronoi_density(episode.world, analyse(episode).trajectories)[0])
+    assert found[0] == pytest.approx(found[1], abs=1e-5)
+    assert found[0] > 0.1
+
+
+def test_cells_by_half_planes_are_pedpys():
+    rng = np.random.default_rng(0)
+    wall = shapely.box(2.0, 1.0, 2.05, 4.0)
+    free = shapely.box(0, 0, 6, 5).difference(wall)
+    for _ in range(20):
+        points = rng.uniform((0, 0), (6, 5), (12, 2))
+        points = points[shapely.contains_xy(free, points[:, 0], points[:, 1])]
+        table = density._table(np.arange(len(points)), np.zeros(len(points), int), points)
+        theirs, own = density._pedpys_cells(table, free), density._own_cells(table, free)
+        apart = shapely.symmetric_difference(theirs.polygon.to_numpy(), own.polygon.to_numpy())
+        assert shapely.area(apart).max() < 1e-9
+        np.testing.assert_allclose(own.density, theirs.density, rtol=1e-9)
+        assert list(own.columns) == list(theirs.columns)

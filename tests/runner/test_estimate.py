@@ -102,7 +102,7 @@ def test_a_worker_that_dies_gives_its_task_back():
 
 def test_lines_tell_the_time_once_it_is_known(capsys):
     clock = Clock()
-    lines = Lines(clock)
+    lines = Lines(clock=clock)
     lines.begin(40, 0)
     lines.expect([Load("a", 1.0)] * 4)
     for seconds in (100.0, 10.0, 10.0, 10.0):
@@ -118,7 +118,7 @@ def test_lines_tell_the_time_once_it_is_known(capsys):
 
 def test_without_tasks_episodes_are_counted(capsys):
     clock = Clock()
-    lines = Lines(clock)
+    lines = Lines(clock=clock)
     lines.begin(20, 10)
     clock.now = 10.0
     lines.advance(5)

@@ -1,5 +1,7 @@
 """The maps that a navigator made: equal to those during the episode, or left out with a reason."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -116,6 +118,29 @@ def test_a_stored_run_shows_its_maps(tmp_path):
     mapping, by_module = pack.episodes()
     assert len(own_maps(mapping.origin, mapping.record, ALL[:1]).maps[0]) > 1
     assert "packs are not trusted" in own_maps(by_module.origin, by_module.record, ALL)
+
+
+class Rehearsed(Breadcrumbs):
+    """Aims at the places where its leaders were in the rehearsal, so that it needs them."""
+
+    rehearsal = 1
+    leader = "straight-line"
+
+    def act_agent(self, view, briefing):
+        (way,) = [r.position[-1].mean(axis=0) for r in briefing.rehearsals]
+        return super().act_agent(view, briefing) + 0.1 * way
+
+
+def test_an_episode_after_rehearsals_shows_its_maps(tmp_path):
+    spec = {"type": "tests.viewer.test_own_map:Rehearsed", "label": "rehearsed"}
+    suite = {"name": "maps", "scenarios": ["groups/diagonal"], "seeds": 1, "navigators": [spec]}
+    run = benchnav.run(suite, out=tmp_path / "run", workers=0, quiet=True)
+    (episode, *_) = run.episodes()
+    assert (episode.record.rehearsals, episode.failure) == (1, "")
+    assert len(own_maps(episode.origin, episode.record, ALL).maps[0]) > 1
+    made = episode.origin()
+    why = own_maps(lambda: replace(made, rehearsals=()), episode.record, ALL)
+    assert why == "not all of its rehearsals were run"
 
 
 @needs_chromium

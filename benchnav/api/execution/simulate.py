@@ -12,6 +12,7 @@ from benchnav.runner.plan.job import Job
 from benchnav.runner.rollouts.rehearsal import perform
 from benchnav.runner.rollouts.seeding import check_salt, draw_salt
 from benchnav.scenario.terms import TRACKS
+from benchnav.verify.own_map import Production
 
 
 def simulate(
@@ -45,7 +46,8 @@ def simulate(
         raise UsageError(f"{contestant.label!r} cannot be run here: {job.reason}.")
     assignment = replace(job.assignment, salt=_salt(salt))
     (batch,) = perform(assignment, [(world.seed, world.record)])
-    return Episode(batch[0].episode, lambda: assignment)
+    made = Production(assignment, tuple(batch[0].rehearsed.grant))
+    return Episode(batch[0].episode, lambda: made)
 
 
 def _salt(text: str | None) -> str:

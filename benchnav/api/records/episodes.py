@@ -160,7 +160,7 @@ def _read(places: Sequence[Place]) -> Iterator[Episode]:
         place = wanted.get(record.identity.seed)
         if place is not None:
             shown = replace(record, identity=replace(record.identity, track=place.track))
-            yield Episode(shown, partial(stored_origin, place.folder, record.identity))
+            yield Episode(shown, partial(stored_origin, place.folder, place.part, record))
 
 
 def _require(what: str, name: str | None, known: Sequence[str]) -> None:

@@ -30,7 +30,7 @@ def write(
     runs, verified = with_receipts(folders, verify, progress(quiet), say)
     written = write_report(
         runs, lambda: stored_values(runs, verified=verified, notify=say), out,
-        metrics=metrics, replays=most,
+        metrics=metrics, replays=most, quiet=quiet,
     )  # fmt: skip
     say(
         f"{counted(written.pages, 'page')} and {counted(written.replays, 'replay')},"

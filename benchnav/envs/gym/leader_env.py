@@ -6,6 +6,7 @@ import gymnasium
 import numpy as np
 
 from benchnav.arrays import ByteArray
+from benchnav.envs.agent_batch import Autoreset
 from benchnav.envs.background_agents import BackgroundNavigator
 from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.factory import Reward, check_render_mode, drawn_index, make_batch
@@ -57,7 +58,9 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
                 'others must name the navigator of the other agents: others="NAME".'
                 " 'benchnav list navigators' shows all."
             )
-        self.batch = make_batch(scenario, encoder, split, worlds, reward, autoreset=False)
+        self.batch = make_batch(
+            scenario, encoder, split, worlds, reward, autoreset=Autoreset.DISABLED
+        )
         self.observation_space = observation_space(self.batch.encoder)
         self.action_space = action_space()
         self.agent = 0

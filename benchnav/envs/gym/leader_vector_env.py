@@ -8,7 +8,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
 from benchnav.arrays import BoolArray, ByteArray, FloatArray
-from benchnav.envs.agent_batch import Transition
+from benchnav.envs.agent_batch import Autoreset, Transition
 from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.factory import Reward, check_render_mode, make_batch
 from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
@@ -25,7 +25,8 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
     """Slots of a batch, row by row. A slot is terminated or truncated once in each attempt.
 
     It is idle from then until its row starts again: it observes zeros and gets no reward. The
-    row starts again in the step in which its last attempt ends. ``info["idle"]`` (N,) marks slots
+    row starts again in the step in which its last attempt ends, or, with
+    `AutoresetMode.NEXT_STEP`, in the step after it. ``info["idle"]`` (N,) marks slots
     that are idle now, ``info["acted"]`` (N,) slots with a decision in the last step: a learner
     ignores the others, and `AttemptStatistics` excludes them from the lengths of episodes.
     """
@@ -48,13 +49,16 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         others: None = None,
         render_mode: str | None = None,
         num_worlds: int = 1,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
     ) -> None:
-        """Draw the worlds. The parameters are those of `LeaderEnv`, except for four.
+        """Draw the worlds. The parameters are those of `LeaderEnv`, except for five.
 
         ``num_envs`` is N = B L, a multiple of the learning agents of a world, or None: then
         ``num_worlds`` gives B. ``others`` must be None, because all agents without a driver of the
         scenario learn. ``render_mode`` is "rgb_array" or None; Gymnasium's wrapper
-        `HumanRendering` shows the pictures in a window.
+        `HumanRendering` shows the pictures in a window. ``autoreset_mode`` is SAME_STEP or
+        NEXT_STEP, as a member of `AutoresetMode` or its value; films need NEXT_STEP to show the
+        last picture of an attempt.
 
         Raises BenchnavError for a mistake in any of these.
         """
@@ -64,7 +68,12 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
                 "Every agent learns here: `others` must be None. Got"
                 f" {others!r} instead; vectorization_mode='sync' has others."
             )
-        self.batch = make_batch(scenario, encoder, split, worlds, reward, num_envs, rows=num_worlds)
+        self._mode = _mode(autoreset_mode)
+        self.metadata = {**self.metadata, "autoreset_mode": self._mode}  # type: ignore[misc]
+        self.batch = make_batch(
+            scenario, encoder, split, worlds, reward, num_envs, rows=num_worlds,
+            autoreset=Autoreset(self._mode.value),
+        )  # fmt: skip
         self._slots = LearnerSlots(self.batch)
         self.render_mode, self._renderer = render_mode, Renderer(self.batch.simulation, PICTURE)
         self.num_envs, self._begun = self._slots.size, False
@@ -104,12 +113,15 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         terminated = (step.arrived | step.touched).reshape(-1)
         reward: FloatArray = step.reward.reshape(-1)
         seen = self._flat(step.observation)
+        if self._mode is AutoresetMode.NEXT_STEP:
+            over = step.over.reshape(-1, 1)
+            seen = np.where(over, self._flat(last_seen(step)), seen)
         return seen, reward, terminated, step.timed_out.reshape(-1), self._info(step)
 
     def render(self) -> tuple[ByteArray, ...] | None:
         """Return a picture (H, W, 3) for each slot, with a ring around its agent if it acts.
 
-        Slots of a row share a world. A row that starts again shows its next world. Returns None
+        Slots of a row share a world. A row that started again shows its next world. Returns None
         without a render mode. Raises UsageError before the first reset.
         """
         if self.render_mode is None:
@@ -128,13 +140,16 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         always = {"idle": self._idle(), "acted": acted}
         info = self._masked(always, np.ones(self.num_envs, np.bool_))
         info |= self._masked({"terms": self._masked(named, acted)}, acted)
-        if over.any():
+        ended = {"is_success": step.arrived.reshape(-1)}
+        if over.any() and self._mode is AutoresetMode.NEXT_STEP:
+            info |= self._masked(ended, over)
+        elif over.any():
             final = np.full(self.num_envs, None, dtype=object)
             last = self._flat(last_seen(step))
             for slot in np.flatnonzero(over):
                 final[slot] = last[slot]
-            ended = self._masked({"is_success": step.arrived.reshape(-1)}, over)
-            info |= self._masked({"final_obs": final, "final_info": ended}, over)
+            result = self._masked(ended, over)
+            info |= self._masked({"final_obs": final, "final_info": result}, over)
         return info
 
     def _idle(self) -> BoolArray:
@@ -147,3 +162,13 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
     def _masked(values: dict[str, Any], mask: BoolArray) -> dict[str, Any]:
         """Return ``values`` in Gymnasium's form, with the mask (N,) of its slots for each key."""
         return values | {f"_{key}": mask for key in values}
+
+
+def _mode(given: AutoresetMode | str) -> AutoresetMode:
+    """Return the mode. Raises UsageError for one in which rows do not start again."""
+    known = (AutoresetMode.SAME_STEP, AutoresetMode.NEXT_STEP)
+    for mode in known:
+        if given in (mode, mode.value):
+            return mode
+    allowed = " or ".join(repr(mode.value) for mode in known)
+    raise UsageError(f"The autoreset_mode must be {allowed}. Got {given!r} instead.")

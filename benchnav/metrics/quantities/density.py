@@ -16,6 +16,7 @@ from benchnav.arena.solid import Solid
 from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, Extent, FloatArray, IntArray
 from benchnav.metrics.quantities.trajectory import Trajectories, positions_at, present_at
+from benchnav.metrics.quantities.voronoi_cells import voronoi_cells
 
 FRAME_RATE = 2.0  # [Hz] of quantities that are quick to compute
 DENSITY_RATE = 1.0  # [Hz]
@@ -30,7 +31,6 @@ def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
     area = world.measurement_area
     if area is None:
         return np.zeros(0)
-    import pedpy
     import shapely
     import shapely.affinity
 
@@ -45,17 +45,47 @@ def voronoi_density(world: World, trajectories: Trajectories) -> FloatArray:
     if not counts.any():
         return density
     there = shapely.affinity.translate(walkable, AWAY, AWAY)
-    cells = pedpy.compute_individual_voronoi_polygons(
-        traj_data=_table(ids[counts], frames[counts], points[counts] + AWAY),
-        walkable_area=pedpy.WalkableArea(there),
-        cut_off=pedpy.Cutoff(radius=REACH, quad_segments=QUARTER),
-    )
+    table = _table(ids[counts], frames[counts], points[counts] + AWAY)
     box = shapely.box(*(np.array(area) + AWAY))
-    measured, _ = pedpy.compute_voronoi_density(
-        individual_voronoi_data=cells, measurement_area=pedpy.MeasurementArea(box)
-    )
+    try:
+        measured = _measured(_pedpys_cells(table, there), box)
+    except shapely.errors.GEOSException:
+        measured = _measured(_own_cells(table, there), box)
     density[measured["frame"].to_numpy()] = measured["density"].to_numpy()
     return density
+
+
+def _measured(cells: Any, box: Any) -> Any:
+    """Return a table of densities, with one row for each frame."""
+    import pedpy
+
+    found, _ = pedpy.compute_voronoi_density(
+        individual_voronoi_data=cells, measurement_area=pedpy.MeasurementArea(box)
+    )
+    return found
+
+
+def _pedpys_cells(table: Any, walkable: Any) -> Any:
+    """Return PedPy's cells. Raises GEOSException if GEOS cannot cut its own Voronoi diagram."""
+    import pedpy
+
+    return pedpy.compute_individual_voronoi_polygons(
+        traj_data=table,
+        walkable_area=pedpy.WalkableArea(walkable),
+        cut_off=pedpy.Cutoff(radius=REACH, quad_segments=QUARTER),
+    )
+
+
+def _own_cells(table: Any, walkable: Any) -> Any:
+    """Return the cells of `voronoi_cells`, as PedPy returns its own."""
+    import pandas as pd
+
+    found = []
+    for _, rows in table.data.groupby("frame"):
+        cells = voronoi_cells(rows[["x", "y"]].to_numpy(), walkable, REACH, QUARTER)
+        density = [1.0 / cell.area for cell in cells]
+        found.append(rows[["id", "frame"]].assign(polygon=cells, density=density))
+    return pd.concat(found, ignore_index=True)
 
 
 def _relevant(area: Extent, frames: IntArray, points: FloatArray) -> BoolArray:

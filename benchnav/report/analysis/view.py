@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from benchnav.leaderboard.record import PRICE, Record
 from benchnav.scenario.terms import SPLITS, TRACKS
 
-_ROLES = ("leader", "follower")
+ROLES = ("leader", "follower")
 
 
 @dataclass(frozen=True)
@@ -34,13 +34,13 @@ def views_of(records: Iterable[Record]) -> list[View]:
 
 
 def _place(view: View) -> tuple[int, int, int]:
-    return SPLITS.index(view.split), TRACKS.index(view.track), _ROLES.index(view.role)
+    return SPLITS.index(view.split), TRACKS.index(view.track), ROLES.index(view.role)
 
 
 def title_of(view: View, others: Collection[View]) -> str:
     """Return the heading of a view: its track, and what distinguishes it from the others."""
     parts = [f"Track {view.track}"]
-    if len({v.role for v in others}) > 1 or view.role != _ROLES[0]:
+    if len({v.role for v in others}) > 1 or view.role != ROLES[0]:
         parts.append(f"{view.role}s")
     if len({v.split for v in others}) > 1 or view.split != "test":
         parts.append(f"split {view.split}")

@@ -7,6 +7,7 @@
     document.getElementById(id),
   );
   const names = shared.navigators.map((navigator) => navigator.name);
+  const LONG = 600; // characters: longer notes are folded
   const MIRRORED = { better: "worse", worse: "better", higher: "lower", lower: "higher" };
   const GREY = "#7a8794";
   const ROW = 24,
@@ -113,8 +114,8 @@
     }));
     const sides = {
       better: "",
-      higher: `← ${b.shown} better   ${a.shown} better →`,
-      lower: `← ${a.shown} better   ${b.shown} better →`,
+      higher: `← ${b.shown} better<br>${a.shown} better →`,
+      lower: `← ${a.shown} better<br>${b.shown} better →`,
     };
     const order = [...new Set(y)].reverse();
     return {
@@ -155,7 +156,7 @@
           fixedrange: true,
           ticks: "",
         },
-        margin: { t: 40, b: 60 },
+        margin: { t: 40, b: 76 },
       },
     };
   }
@@ -246,6 +247,14 @@
     table.replaceChildren(...parts);
   }
 
+  /** Return a list behind a heading that opens it. */
+  function folded(list, count) {
+    const details = element("details");
+    const noun = count === 1 ? "note" : "notes";
+    details.append(element("summary", `${count} ${noun} on this comparison`), list);
+    return details;
+  }
+
   function show() {
     const [a, b] = [first, second].map((menu) => Number(menu.value));
     const notes = document.getElementById("notes");
@@ -260,7 +269,7 @@
       const list = element("ul");
       list.append(...texts.map((text) => element("li", text)));
       const box = element("div", rows.length ? "" : "Both never ran in the same world.", "note");
-      box.append(list);
+      box.append(texts.join().length > LONG ? folded(list, texts.length) : list);
       notes.append(box);
     }
     const shown = rows.filter((row) => row.track === shared.tracks[track.value]);

@@ -1,6 +1,6 @@
 // Makes tables of the class "data" sortable, and connects them to the filters above them.
 
-const ROWS = 100; // a longer table has several pages
+const ROWS = 50; // a longer table has several pages
 
 /** Show the rows whose data attributes are those of the filters. */
 function filter(table, form) {

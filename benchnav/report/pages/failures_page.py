@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
-from benchnav.report.failures import Cell, Failures
+from benchnav.report.failed_episodes import Cell, Failures
 from benchnav.report.line_style import LineStyle
 from benchnav.report.page import FAILURES, Page, replay_path
 from benchnav.report.report_data import ReportData, family_of

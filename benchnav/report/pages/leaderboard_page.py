@@ -12,6 +12,7 @@ from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Record
 from benchnav.leaderboard.rendering.cell import cell, rank, training
 from benchnav.leaderboard.rendering.layout import legend
 from benchnav.leaderboard.statistics.order import by_merit, leading
+from benchnav.report.analysis.view import ROLES
 from benchnav.report.line_style import LineStyle
 from benchnav.report.page import LEADERBOARD, Page
 from benchnav.report.report_data import ReportData, family_of
@@ -80,7 +81,7 @@ def pages(data: ReportData) -> Iterator[Page]:
             ("track", "Track", list(dict.fromkeys(r.track for r in rows)), 0),
             ("family", "Family", sorted({r.family for r in rows if r.family}), None),
             ("scenario", "Scenario", list(dict.fromkeys(r.scenario for r in rows)), 0),
-            ("role", "Role", list(dict.fromkeys(r.role for r in rows)), 0),
+            ("role", "Role", [role for role in ROLES if role in {r.role for r in rows}], 0),
         ],
         has_training=any(r.training for r in rows), has_notes=any(r.notes for r in rows),
         summary=_summary(data), verification=_verification(data),

@@ -137,6 +137,7 @@ def _page(shared: _Shared, name: str) -> Page:
         comparison=f"{href(navigator_path(name), COMPARISON)}#{urlencode({'a': name})}",
         failures=FAILURES,
         facts=facts_of(entry),
+        trained=bool(entry.get("training")),
         parameters=parameters_of(entry["config"]),
         profiles=list(_profiles(shared, name)),
         question=QUESTION,

@@ -1,4 +1,4 @@
-"""The progress of a run on stderr: a bar on a terminal, plain lines elsewhere, or nothing."""
+"""The progress of long work on stderr: a bar on a terminal, plain lines elsewhere, or nothing."""
 
 import sys
 from collections.abc import Callable, Hashable, Iterable
@@ -9,6 +9,7 @@ from benchnav.runner.plan.estimate import Estimate, Load
 from benchnav.text.plural import counted
 
 UNKNOWN = "estimating the time left"
+EPISODE = "episode"
 
 
 class Progress:
@@ -39,8 +40,8 @@ class Progress:
 class _Shown(Progress):
     """Counts episodes, and estimates the remaining time."""
 
-    def __init__(self, clock: Callable[[], float] = monotonic) -> None:
-        self._clock = clock
+    def __init__(self, noun: str = EPISODE, clock: Callable[[], float] = monotonic) -> None:
+        self._noun, self._clock = noun, clock
         self._estimate = Estimate(clock)
 
     def begin(self, total: int, stored: int) -> None:
@@ -102,11 +103,11 @@ class Bar(_Shown):
                 return Text("" if task.finished else left())
 
         self._bar = RichProgress(
-            TextColumn("episodes"), BarColumn(), MofNCompleteColumn(), TextColumn("elapsed"),
+            TextColumn(f"{self._noun}s"), BarColumn(), MofNCompleteColumn(), TextColumn("elapsed"),
             TimeElapsedColumn(), Left(), console=Console(stderr=True),
         )  # fmt: skip
         self._bar.start()
-        self._task: Any = self._bar.add_task("episodes", total=total, completed=stored)
+        self._task: Any = self._bar.add_task("", total=total, completed=stored)
 
     def advance(self, episodes: int) -> None:
         super().advance(episodes)
@@ -130,18 +131,21 @@ class Lines(_Shown):
         if tenth == self._tenth or (now - self._reported < 2.0 and self._done < self._total):
             return
         self._tenth, self._reported = tenth, now
-        text = f"{self._done} of {counted(self._total, 'episode')}"
+        text = f"{self._done} of {counted(self._total, self._noun)}"
         if self._done < self._total:
             text += f", {self.left()}"
         sys.stderr.write(text + "\n")
         sys.stderr.flush()
 
 
-def progress(quiet: bool) -> Progress:
-    """Return the display for stderr: a bar on a terminal, lines elsewhere, none if ``quiet``."""
+def progress(quiet: bool, noun: str = EPISODE) -> Progress:
+    """Return the display for stderr: a bar on a terminal, lines elsewhere, none if ``quiet``.
+
+    ``noun`` names the things that are counted, with a plural in s.
+    """
     if quiet:
         return Progress()
-    return Bar() if sys.stderr.isatty() else Lines()
+    return Bar(noun) if sys.stderr.isatty() else Lines(noun)
 
 
 def _span(seconds: float) -> str:

@@ -142,7 +142,8 @@ def _members(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
             listed = ", ".join(map(_short, others[:_SHOWN])) + more
             yield f"{counted(len(others), what)} that it does not have ({listed})"
     if changed:
-        yield f"{counted(len(changed), 'navigator')} with other parameters ({', '.join(changed)})"
+        listed = ", ".join(sorted(changed))
+        yield f"{counted(len(changed), 'navigator')} with other parameters ({listed})"
     if bool(here.blocks) != bool(suite.get("blocks")):
         yield "other combinations of them"
 

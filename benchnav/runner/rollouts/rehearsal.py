@@ -5,14 +5,15 @@ leaders with the navigator that the entry names and with the map of the track. I
 rehearsal as an episode, gives the trajectories to the navigator and adds the cost to its own.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from benchnav.arena.world import World
 from benchnav.arrays import IntArray
 from benchnav.episode.episode import Episode, Status
-from benchnav.generation.rehearsal_world import rehearsal_world
+from benchnav.generation.rehearsal_world import rehearsal_world, rehearsing
 from benchnav.metrics.safety import collided
 from benchnav.navigation.plugin.configure import split
 from benchnav.navigation.rehearsal import Rehearsal
@@ -104,6 +105,15 @@ def _rehearse(
                 name = split(NAVIGATORS, leading)[0]
                 done.failure = f"in rehearsal {k}, {name!r} that led: {episode.failure}"
                 done.traceback = episode.traceback
+
+
+def stored_grant(world: World, episodes: Iterable[Episode]) -> tuple[Rehearsal, ...]:
+    """Return what a navigator received before the scored episode in ``world``.
+
+    ``episodes`` are the rehearsals, by number.
+    """
+    place = (np.cumsum(world.agents.evaluated) - 1)[rehearsing(world.agents)]
+    return tuple(granted(episode, place) for episode in episodes)
 
 
 def granted(episode: Episode, place: IntArray) -> Rehearsal:

@@ -8,7 +8,7 @@ from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.drawing.palette import TEAMS
-from benchnav.episode.episode import Episode, Status
+from benchnav.episode.episode import Contacts, Episode, Status
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.navigation.tracks import granted_map
 from benchnav.verify.own_map import Origin, OwnMaps, map_changes, own_maps
@@ -65,11 +65,12 @@ def events(episode: Episode) -> list[dict[str, Any]]:
     """
     contacts, world = episode.contacts, episode.world
     last = len(episode.position) - 1
+    mirrored = _mirrored(contacts)
     out: list[dict[str, Any]] = []
     for n in range(len(contacts)):
         agent, partner = int(contacts.agent[n]), int(contacts.partner[n])
         kind = Kind(int(contacts.kind[n]))
-        if kind == Kind.AGENT and partner < agent and _mirrored(episode, n):
+        if mirrored[n]:
             continue
         out.append({
             "kind": "contact",
@@ -93,11 +94,20 @@ def events(episode: Episode) -> list[dict[str, Any]]:
     return sorted(out, key=lambda event: float(event["time"]))
 
 
-def _mirrored(episode: Episode, n: int) -> bool:
-    """Whether the partner has a record of the same contact."""
-    c = episode.contacts
-    same = (c.agent == c.partner[n]) & (c.partner == c.agent[n]) & (c.kind == int(Kind.AGENT))
-    return bool((same & (np.abs(c.start - c.start[n]) < 1e-9)).any())
+def _mirrored(contacts: Contacts) -> list[bool]:
+    """Return for each contact whether the partner, an agent before its own, has a record of it."""
+    keys = zip(contacts.agent.tolist(), contacts.partner.tolist(), strict=True)
+    starts = dict[tuple[int, int], list[float]]()
+    between = (contacts.kind == int(Kind.AGENT)).tolist()
+    times = contacts.start.tolist()
+    rows = list(zip(keys, between, times, strict=True))
+    for key, is_agent, time in rows:
+        if is_agent:
+            starts.setdefault(key, []).append(time)
+    return [
+        is_agent and b < a and any(abs(s - time) < 1e-9 for s in starts.get((b, a), ()))
+        for (a, b), is_agent, time in rows
+    ]
 
 
 def _agents(episode: Episode) -> dict[str, Any]:
