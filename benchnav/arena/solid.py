@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from benchnav.arrays import FloatArray, IntArray
+from benchnav.arrays import FloatArray
 
 
 class Kind(IntEnum):
@@ -58,7 +58,7 @@ class Solid:
             first = end
         return edges
 
-    @property
+    @cached_property
     def bounding_radius(self) -> float:
         """Radius [m] of the smallest circle around the origin that contains the shape."""
         c = self.capsules
@@ -70,19 +70,6 @@ class Solid:
         x, y = float(offset[0]), float(offset[1])
         loops = tuple(loop + np.array([x, y]) for loop in self.loops)
         return Solid(self.kind, loops, (self.center[0] + x, self.center[1] + y), self.radius)
-
-
-def edge_chain(solid: Solid) -> tuple[IntArray, IntArray]:
-    """Return the previous and next capsule (P,), (P,) in each capsule's loop; -1 for a disc."""
-    if solid.is_disc:
-        return np.array([-1]), np.array([-1])
-    index = np.arange(sum(len(loop) for loop in solid.loops))
-    before, after, first = index - 1, index + 1, 0
-    for loop in solid.loops:
-        last = first + len(loop) - 1
-        before[first], after[last] = last, first
-        first = last + 1
-    return before, after
 
 
 def is_outside(solid: Solid) -> bool:

@@ -6,13 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arena.body import Body, Law, LawKind
-from benchnav.arena.solid import edge_chain
+from benchnav.arena.body import Body, LawKind
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel
-from benchnav.world.records import BODY, CAPSULE, KNOT, capsule_records
+from benchnav.world.records import BODY, KNOT, capsule_records
 
 _TRACK = int(LawKind.TRACK)
 _CIRCLE = int(LawKind.CIRCLE)
@@ -20,39 +19,38 @@ _CIRCLE = int(LawKind.CIRCLE)
 
 def stack_bodies(worlds: Sequence[World]) -> tuple[AnyArray, AnyArray, AnyArray]:
     """Return (bodies (B, M), shapes (Q,) capsules in body frames, knots (L,) of the laws)."""
-    most = max(len(world.bodies) for world in worlds)
-    bodies = np.zeros((len(worlds), most), BODY)
-    shapes, knots = [np.zeros(0, CAPSULE)], [np.zeros(0, KNOT)]
-    shape_count = knot_count = 0
-    for b, world in enumerate(worlds):
-        for m, body in enumerate(world.bodies):
-            row = bodies[b, m]
-            before, after = edge_chain(body.solid)
-            kind = int(body.solid.kind)
-            shapes.append(capsule_records(body.solid.capsules, before, after, m, kind, shape_count))
-            knots.append(_set_law(row, body.law, knot_count))
-            row["first"], row["last"] = shape_count, shape_count + len(shapes[-1])
-            shape_count, knot_count = int(row["last"]), int(row["law_last"])
-            row["bound"], row["kind"] = body.solid.bounding_radius, kind
-    return bodies, np.concatenate(shapes), np.concatenate(knots)
+    counts = [len(world.bodies) for world in worlds]
+    number = [m for count in counts for m in range(count)]
+    solids = [body.solid for world in worlds for body in world.bodies]
+    rows, knots = law_records([body for world in worlds for body in world.bodies])
+    rows["last"] = np.cumsum([len(solid.capsules) for solid in solids])
+    rows["first"][1:] = rows["last"][:-1]
+    rows["bound"] = [solid.bounding_radius for solid in solids]
+    rows["kind"] = [int(solid.kind) for solid in solids]
+    bodies = np.zeros((len(worlds), max(counts)), BODY)
+    bodies[np.repeat(np.arange(len(worlds)), counts), number] = rows
+    return bodies, capsule_records(solids, number, 0), knots
 
 
 def law_records(bodies: Sequence[Body]) -> tuple[AnyArray, AnyArray]:
-    """Return (bodies (M,), knots (L,)) that hold only the laws, for `body_at`."""
-    rows, knots = np.zeros(len(bodies), BODY), [np.zeros(0, KNOT)]
-    for m, body in enumerate(bodies):
-        knots.append(_set_law(rows[m], body.law, sum(map(len, knots))))
-    return rows, np.concatenate(knots)
+    """Return (bodies (M,), knots (L,)) that hold only the laws, for `body_at`.
 
-
-def _set_law(row: AnyArray, law: Law, first: int) -> AnyArray:
-    """Set the law of a body's record, whose knots begin at ``first``; return them."""
-    knots = np.zeros(len(law.points), KNOT)
-    knots["t"][: len(law.times)] = law.times
-    knots["x"], knots["y"] = law.points[:, 0], law.points[:, 1]
-    row["law_first"], row["law_last"] = first, first + len(knots)
-    row["law"], row["periodic"], row["phase"] = int(law.kind), law.periodic, law.phase
-    return knots
+    Raises ValueError if a law has more times than points.
+    """
+    laws = [body.law for body in bodies]
+    points = np.vstack([np.zeros((0, 2)), *(law.points for law in laws)])
+    knots, rows = np.zeros(len(points), KNOT), np.zeros(len(laws), BODY)
+    knots["x"], knots["y"] = points[:, 0], points[:, 1]
+    rows["law_last"] = np.cumsum([len(law.points) for law in laws])
+    rows["law_first"][1:] = rows["law_last"][:-1]
+    for law, first in zip(laws, rows["law_first"].tolist(), strict=True):
+        if len(law.times) > len(law.points):
+            raise ValueError("a law of motion must not have more times than points")
+        knots["t"][first : first + len(law.times)] = law.times
+    rows["law"] = [int(law.kind) for law in laws]
+    rows["periodic"] = [law.periodic for law in laws]
+    rows["phase"] = [law.phase for law in laws]
+    return rows, knots
 
 
 def top_speed(world: World) -> float:

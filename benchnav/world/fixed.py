@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arena.solid import Solid, edge_chain
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
@@ -41,7 +40,7 @@ def stack_fixed(
             for name in ("origin_x", "origin_y", "side", "nx", "ny", "grid", "first", "last"):
                 row[name] = records[known][name]
             continue
-        part = _capsules(world.solids, count)
+        part = capsule_records(world.solids, range(len(world.solids)), count)
         capsules.append(part)
         row["first"], row["last"] = count, count + len(part)
         count += len(part)
@@ -49,19 +48,10 @@ def stack_fixed(
         row["grid"] = cells
         cells += int(row["nx"] * row["ny"]) + 1
         frames.append(b)
-    flat = np.concatenate([np.zeros(0, CAPSULE), *capsules])
+    flat = np.concatenate([np.zeros(0, CAPSULE), *capsules], dtype=CAPSULE)
     start = np.zeros(cells, np.int64)
     item = _fill(records[frames], flat, start, margin)
     return flat, start, item
-
-
-def _capsules(solids: Sequence[Solid], first: int) -> AnyArray:
-    parts, n = [np.zeros(0, CAPSULE)], first
-    for index, solid in enumerate(solids):
-        before, after = edge_chain(solid)
-        parts.append(capsule_records(solid.capsules, before, after, index, int(solid.kind), n))
-        n += len(parts[-1])
-    return np.concatenate(parts)
 
 
 def _frame(row: Any, world: World, capsules: AnyArray, margin: float) -> None:

@@ -5,9 +5,12 @@ Sixty plain arrays as arguments of every call made the step a hundred times slow
 and its compilation longer. Outside the kernels, `field` gives plain array views.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from benchnav.arrays import AnyArray
+from benchnav.arena.solid import Solid
+from benchnav.arrays import AnyArray, IntArray
 
 OPEN_CONTACTS = 8  # of an agent at one time; one more closes the oldest
 
@@ -74,10 +77,19 @@ def field(records: AnyArray, name: str, width: int = 1) -> AnyArray:
     )
 
 
-def capsule_records(
-    capsules: AnyArray, before: AnyArray, after: AnyArray, solid: int, kind: int, shift: int
-) -> AnyArray:
-    """Return CAPSULE records of one solid; ``shift`` is added to the indices along its loops."""
+def capsule_records(solids: Sequence[Solid], number: Sequence[int], shift: int) -> AnyArray:
+    """Return CAPSULE records of solids, one after another.
+
+    Args:
+        solids: N of them.
+        number: of each solid, for the records.
+        shift: is added to the indices along the loops.
+    """
+    if not solids:
+        return np.zeros(0, CAPSULE)
+    parts = [solid.capsules for solid in solids]
+    sizes = [len(part) for part in parts]
+    capsules = np.vstack(parts)
     out = np.zeros(len(capsules), CAPSULE)
     for k, name in enumerate(("x0", "y0", "x1", "y1", "r")):
         out[name] = capsules[:, k]
@@ -85,7 +97,20 @@ def capsule_records(
     length = np.sqrt(ex * ex + ey * ey)
     edge = length > 0.0
     out["nx"][edge], out["ny"][edge] = ey[edge] / length[edge], -ex[edge] / length[edge]
-    out["before"] = np.where(before >= 0, before + shift, -1)
-    out["after"] = np.where(after >= 0, after + shift, -1)
-    out["solid"], out["kind"] = solid, kind
+    out["before"], out["after"] = _chain(solids, shift)
+    out["solid"] = np.repeat(number, sizes)
+    out["kind"] = np.repeat([int(solid.kind) for solid in solids], sizes)
     return out
+
+
+def _chain(solids: Sequence[Solid], shift: int) -> tuple[IntArray, IntArray]:
+    """Return the previous and next capsule (P,), (P,) in each capsule's loop; -1 for a disc."""
+    loops = [len(loop) for solid in solids for loop in solid.loops or ((),)]  # a disc has no length
+    ends = np.cumsum(np.maximum(loops, 1))
+    index = np.arange(ends[-1]) + shift
+    before, after = index - 1, index + 1
+    last = ends - 1
+    first = np.concatenate([[0], ends[:-1]])
+    disc = np.array(loops) == 0
+    before[first], after[last] = np.where(disc, -1, last + shift), np.where(disc, -1, first + shift)
+    return before, after
