@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from benchnav.arrays import AnyArray, IntArray
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 
 
 def hash_table(batch: int, points: int) -> IntArray:
@@ -19,13 +19,17 @@ def hash_table(batch: int, points: int) -> IntArray:
     return np.zeros((batch, size + 1), np.int64)
 
 
-@kernel
+@kernel_without_allocation
 def bucket(i: int, j: int, size: int) -> int:
-    """Return the bucket of cell (i, j) in a table of ``size`` (a power of two)."""
-    return ((i * 73856093) ^ (j * 19349663)) & (size - 1)
+    """Return the bucket of cell (i, j) in a table of ``size`` (a power of two).
+
+    Cells that follow each other in a row have buckets that follow each other. Rows begin a golden
+    section of the table apart, so that near rows share few buckets.
+    """
+    return (i + j * ((size * 40503 >> 16) | 1)) & (size - 1)
 
 
-@kernel
+@kernel_without_allocation
 def fill(points: AnyArray, hashed: IntArray, spots: AnyArray, side: float) -> None:
     """Sort the present points (A,) into cells of ``side`` [m].
 

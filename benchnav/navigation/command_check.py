@@ -46,15 +46,15 @@ def checked(answer: Any, active: BoolArray) -> FloatArray:
         )
     with np.errstate(over="ignore"):  # a number that float64 cannot hold is not finite
         command = np.where(active[..., None], command.astype(np.float64), 0.0)
-    finite = np.isfinite(command).all(axis=2)
-    if not finite.all():
+    if not np.isfinite(command).all():
+        finite = np.isfinite(command).all(axis=2)
         world, agent = np.argwhere(~finite)[0]
         got = ", ".join(f"{x:g}" for x in command[world, agent])
         raise CallFailed(
             f"act must return finite numbers. Got ({got}) for agent {agent} instead",
             np.flatnonzero(~finite.all(axis=1)),
         )
-    return command
+    return np.ascontiguousarray(command)
 
 
 def exception_text(error: BaseException) -> str:

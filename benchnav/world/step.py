@@ -14,7 +14,7 @@ from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
 from benchnav.geometry.hash_grid import fill
 from benchnav.geometry.rotation import angle_of, wrap
-from benchnav.kernels import inlined, kernel
+from benchnav.kernels import inlined, kernel_without_allocation
 from benchnav.world.bodies import body_at
 from benchnav.world.contacts import MAX_HITS, follow_up, touch
 from benchnav.world.dynamics import limited, planar_velocity
@@ -25,7 +25,7 @@ _ACTIVE = int(Status.ACTIVE)
 _STATIC = int(Kind.STATIC)
 
 
-@kernel
+@kernel_without_allocation
 def step_worlds(
     low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
     worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
@@ -41,7 +41,7 @@ def step_worlds(
             )  # fmt: skip
 
 
-@kernel
+@kernel_without_allocation
 def step_world(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
     bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
@@ -67,7 +67,7 @@ def step_world(
     world.running = goes_on(world, agents)
 
 
-@kernel
+@kernel_without_allocation
 def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots: AnyArray) -> None:
     """Relocate the static obstacles that are due and whose new place is free.
 
@@ -96,7 +96,7 @@ def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots:
             world.revision += 1
 
 
-@kernel
+@kernel_without_allocation
 def _within(dx: float, dy: float, reach: float) -> bool:
     return bool(dx * dx + dy * dy < reach * reach)
 
@@ -166,30 +166,31 @@ def advance(
 ) -> None:  # fmt: skip
     """Advance from touch to touch, to the end of the substep."""
     left = world.h
-    while True:
-        i = earliest(world, agents)
-        if i < 0 or agents[i].tau > left:
-            break
+    i = earliest(world, agents)
+    while i >= 0 and agents[i].tau <= left:
         elapsed = agents[i].tau
         drift(elapsed, world, agents, bodies)
         left -= elapsed
         now = begin + (world.h - left)
         j = touch(i, now, world, agents, bodies, shapes, capsules, opened, closed)
+        best, first = math.inf, -1
         for k in range(world.agents):
             a = agents[k]
-            if k != i and k != j and not _affected(a, i, j, world.reach, agents):
-                continue
-            a.tau = math.inf
-            # a wedged agent is left alone until the next substep
-            if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
-                find_next(
-                    k, left, world.tolerance, agents, bodies, shapes, capsules, start, item,
-                    hashed, spots, world.bodies,
-                )  # fmt: skip
+            if k in (i, j) or _affected(a, i, j, world.reach, agents):
+                a.tau = math.inf
+                # a wedged agent is left alone until the next substep
+                if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
+                    find_next(
+                        k, left, world.tolerance, agents, bodies, shapes, capsules, start, item,
+                        hashed, spots, world.bodies,
+                    )  # fmt: skip
+            if a.tau < best:
+                best, first = a.tau, k
+        i = first
     drift(left, world, agents, bodies)
 
 
-@kernel
+@kernel_without_allocation
 def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
     """Whether the next touch of a could be with i or j, after their motion changed."""
     if _within(a.x - agents[i].x, a.y - agents[i].y, reach):
@@ -197,7 +198,7 @@ def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
     return j >= 0 and _within(a.x - agents[j].x, a.y - agents[j].y, reach)
 
 
-@kernel
+@kernel_without_allocation
 def earliest(world: Any, agents: AnyArray) -> int:
     """Return the agent with the earliest next touch; -1 if there is none."""
     best, first = math.inf, -1
