@@ -4,7 +4,10 @@ import pickle
 import subprocess
 import sys
 
-from benchnav.kernels import inlined, kernel
+import numpy as np
+import pytest
+
+from benchnav.kernels import inlined, kernel, kernel_without_allocation
 
 
 @kernel
@@ -26,6 +29,29 @@ def test_kernels_call_kernels():
     assert both(3.0) == 10.0
     assert double(3.0) == 6.0
     assert double.py_func(3.0) == 6.0
+
+
+@kernel_without_allocation
+def add_one(values):
+    row = values[:]
+    for i in range(len(row)):
+        row[i] += 1.0
+
+
+@kernel_without_allocation
+def allocating(n):
+    return len(np.empty(n))
+
+
+def test_a_kernel_without_allocation_counts_no_references_and_refuses_to_allocate():
+    from numba.core.errors import NumbaError
+
+    values = np.zeros(2)
+    add_one(values)
+    assert values.tolist() == [1.0, 1.0]
+    assert "NRT_incref" not in "".join(add_one.for_python.inspect_llvm().values())
+    with pytest.raises(NumbaError, match="No implementation of function"):
+        allocating(2)
 
 
 def test_what_only_kernels_call_has_no_wrapper_for_python():

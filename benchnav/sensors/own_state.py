@@ -1,4 +1,4 @@
-"""What agents know of themselves without a sensor, and which of them decide now."""
+"""The part of an observation that needs no sensor, and the agents that decide now."""
 
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
