@@ -28,6 +28,7 @@ check: lint types layers  ## everything but the tests
 lint: $(READY)
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
+	@test ! -x $(BIN)/biome || $(BIN)/biome ci  # JavaScript and CSS; it has wheels for few machines
 
 types: $(READY)
 	$(BIN)/mypy benchnav baselines scenarios

@@ -34,8 +34,6 @@ _CONSTANTS = ("arena", "episode")  # packages with enumerations that kernels com
 class Kernel:
     """A function that Numba compiles when Python or another kernel first calls it."""
 
-    __slots__ = ("__dict__",)
-
     def __init__(self, function: Callable[..., Any], **options: Any) -> None:
         update_wrapper(self, function)
         self.py_func = function

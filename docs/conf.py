@@ -33,7 +33,8 @@ napoleon_google_docstring = True
 napoleon_numpy_docstring = False
 
 html_theme = "pydata_sphinx_theme"
-html_static_path = ["_static"]
+REPLAY = "../benchnav/viewer/replay"
+html_static_path = ["_static", f"{REPLAY}/replay.js", f"{REPLAY}/replay.css"]  # for _static/replays
 html_css_files = ["site.css"]
 html_copy_source = False
 html_show_sourcelink = False
@@ -48,7 +49,7 @@ html_theme_options = {
     "navigation_depth": 2,
     "show_toc_level": 2,
 }
-html_sidebars = {"index": []}
+html_sidebars: dict[str, list[str]] = {"index": [], "gallery": []}
 copyright = "The benchnav authors, Apache-2.0"
 
 LISTS = ("components/README", "decisions/README")  # pages that list the other pages of their folder

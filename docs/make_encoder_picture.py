@@ -79,6 +79,9 @@ def draw_rays(axes: Any, batch: AgentBatch) -> None:
     rays, _, _ = sense(s, chosen, frozenset({str(Need.RAYS)}))
     assert rays is not None  # noqa: S101 - the scenario has rays
     here, radius = s.position[0, LEADER], float(s.agents["radius"][0, LEADER])
+    labels = Labels()
+    for a in np.flatnonzero(s.present[0]):
+        labels.avoid(s.position[0, a], float(s.agents["radius"][0, a]))
     for k, relative in enumerate(rays.angle):
         kind, length = Kind(int(rays.kind[0, LEADER, k])), float(rays.distance[0, LEADER, k])
         if np.isfinite(rays.goal[0, LEADER, k]):
@@ -89,7 +92,8 @@ def draw_rays(axes: Any, batch: AgentBatch) -> None:
         axes.add_patch(_swath(here, way, length, radius, colour))
         far = "" if kind == Kind.NOTHING else f"\n{length:.1f} m"
         place = here + way * max(length - 0.4, 2.3)
-        _label(axes, place, f"{k} {word}{far}", colour)
+        labels.add(place, f"{k} {word}{far}", colour)
+    labels.draw(axes)
 
 
 def draw_scan(axes: Any, batch: AgentBatch, values: Float32Array) -> None:
@@ -106,13 +110,18 @@ def draw_scan(axes: Any, batch: AgentBatch, values: Float32Array) -> None:
         axes.plot(*zip(here, tip, strict=True), color=colour, linewidth=1.1, alpha=0.75, zorder=2)
         if near > 0:
             axes.plot(*tip, marker="o", markersize=4.5, color=colour, zorder=3)
+    labels = Labels()
+    labels.avoid(here, float(s.agents["radius"][0, LEADER]))
     for k in range(OTHERS):
         own = [values[names[f"other{k}.{part}"]] for part in ("cos", "sin", "close", "p", "mover")]
         if own[2] > 0:
-            _draw_other(axes, batch, k, float(own[3]), bool(own[4]))
+            _draw_other(axes, batch, k, float(own[3]), bool(own[4]), labels)
+    labels.draw(axes)
 
 
-def _draw_other(axes: Any, batch: AgentBatch, k: int, p: float, mover: bool) -> None:
+def _draw_other(
+    axes: Any, batch: AgentBatch, k: int, p: float, mover: bool, labels: "Labels"
+) -> None:
     s = batch.simulation
     chosen = np.where(np.arange(s.A) == LEADER, LEADER, -1)[None]
     _, seen, _ = sense(s, chosen, frozenset({str(Need.NEIGHBOURS)}))
@@ -124,8 +133,9 @@ def _draw_other(axes: Any, batch: AgentBatch, k: int, p: float, mover: bool) -> 
     axes.add_patch(Circle(place, radius, zorder=6, **style))
     arrow = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.8, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", place + drift, place, arrowprops=arrow, zorder=7)
-    aside = np.array([0.0, radius + 0.55 if drift[1] <= 0 else -radius - 0.55])
-    _label(axes, place + aside, f"{k}  p = {p:.2f}", colour)
+    labels.avoid(place, radius)
+    labels.avoid(place + drift, 0.2)
+    labels.add(place, f"{k}  p = {p:.2f}", colour, radius + 0.1)
 
 
 def _swath(here: FloatArray, way: FloatArray, length: float, radius: float, colour: str) -> Any:
@@ -137,9 +147,52 @@ def _swath(here: FloatArray, way: FloatArray, length: float, radius: float, colo
     return Polygon(ring, facecolor=colour, edgecolor=colour, alpha=0.22, linewidth=0.8, zorder=2)
 
 
-def _label(axes: Any, place: FloatArray, text: str, colour: str) -> None:
-    box = {"boxstyle": "round,pad=0.22", "facecolor": PAPER, "edgecolor": colour, "linewidth": 0.8}
-    axes.text(*place, text, fontsize=7.5, color=INK, ha="center", va="center", bbox=box, zorder=9)
+class Labels:
+    """Labels beside their places, moved so that they cover neither discs nor each other."""
+
+    def __init__(self) -> None:
+        self._wanted: list[tuple[FloatArray, str, str, float]] = []
+        self._taken: list[FloatArray] = []  # boxes (4,): x, y of the middle, half sizes [m]
+
+    def avoid(self, place: FloatArray, radius: float) -> None:
+        """Keep a disc free of labels."""
+        self._taken.append(np.array([*place, radius, radius]))
+
+    def add(self, place: FloatArray, text: str, colour: str, gap: float = 0.0) -> None:
+        """Add a label at a place, or beside a disc of ``gap`` [m] around it."""
+        self._wanted.append((place, text, colour, gap))
+
+    def draw(self, axes: Any) -> None:
+        """Draw all labels; a line leads from a label that is moved to its place."""
+        style = {"boxstyle": "round,pad=0.22", "facecolor": PAPER, "linewidth": 0.8}
+        for place, text, colour, gap in self._wanted:
+            middle = self._free_place(place, _half_size(text), gap)
+            if np.hypot(*(middle - place)) > gap + 0.7:
+                axes.plot(*zip(place, middle, strict=True), color=colour, linewidth=0.7, zorder=8)
+            axes.text(
+                *middle, text, fontsize=7.5, color=INK, ha="center", va="center", zorder=9,
+                bbox={**style, "edgecolor": colour},
+            )  # fmt: skip
+
+    def _free_place(self, place: FloatArray, half: FloatArray, gap: float) -> FloatArray:
+        """Return the nearest place for a label around ``place``, and take it."""
+        angles = np.pi * (np.arange(16) / 8 - 0.5)  # below is tried first
+        ways = np.column_stack([np.cos(angles), np.sin(angles)])
+        first = place + ways * (half + gap) if gap else place[None]
+        rings = [place + ways * (half + gap + reach) for reach in np.arange(0.1, 4.0, 0.2)]
+        for middle in np.concatenate([first, *rings]):
+            boxes = np.array(self._taken)
+            apart = np.abs(middle - boxes[:, :2]) >= half + boxes[:, 2:]
+            if apart.any(axis=1).all():
+                self._taken.append(np.array([*middle, *half]))
+                return np.asarray(middle)
+        raise RuntimeError("There is no room for a label.")
+
+
+def _half_size(text: str) -> FloatArray:
+    """Return half of the width and height [m] of a label."""
+    lines = text.splitlines()
+    return np.array([0.12 * max(map(len, lines)) + 0.2, 0.22 * len(lines) + 0.17])
 
 
 def _patch(solid: Solid, colour: str) -> Any:
@@ -166,7 +219,10 @@ def main() -> None:
     batch, values = moment()
     figure, row = pyplot.subplots(1, 2, figsize=(11.0, 5.75), dpi=110, facecolor=PAPER)
     figure.subplots_adjust(0.006, 0.01, 0.994, 0.945, 0.015)
-    titles = ("paper, ego: seven rays as wide as the body", "surround: a scan, and who is near")
+    titles = (
+        "paper, ego: seven rays as wide as the body",
+        "surround: a scan, and the nearest others",
+    )
     draw_rays(row[0], batch)
     draw_scan(row[1], batch, values)
     for axes, title in zip(row, titles, strict=True):

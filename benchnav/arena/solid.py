@@ -76,13 +76,18 @@ def edge_chain(solid: Solid) -> tuple[IntArray, IntArray]:
     """Return the previous and next capsule (P,), (P,) in each capsule's loop; -1 for a disc."""
     if solid.is_disc:
         return np.array([-1]), np.array([-1])
-    before, after, first = [], [], 0
+    index = np.arange(sum(len(loop) for loop in solid.loops))
+    before, after, first = index - 1, index + 1, 0
     for loop in solid.loops:
-        index = np.arange(len(loop))
-        before.append(first + np.roll(index, 1))
-        after.append(first + np.roll(index, -1))
-        first += len(loop)
-    return np.concatenate(before), np.concatenate(after)
+        last = first + len(loop) - 1
+        before[first], after[last] = last, first
+        first = last + 1
+    return before, after
+
+
+def is_outside(solid: Solid) -> bool:
+    """Whether a solid is the outside of a walled arena, which has no end."""
+    return sum(map(signed_area, solid.loops)) < 0.0
 
 
 def signed_area(loop: FloatArray) -> float:

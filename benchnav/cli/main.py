@@ -24,6 +24,7 @@ from benchnav.cli.tables.leaderboard import leaderboard
 from benchnav.cli.viewing.doctor import doctor
 from benchnav.cli.viewing.list import list_
 from benchnav.cli.viewing.replay import replay
+from benchnav.cli.viewing.report import report
 from benchnav.cli.viewing.show import show
 from benchnav.cli.viewing.watch import watch
 from benchnav.errors import (
@@ -63,6 +64,7 @@ app.command("pack")(stoppable(pack))
 app.command("compare")(stoppable(compare))
 app.command("merge")(stoppable(merge))
 app.command("replay")(stoppable(replay))
+app.command("report")(stoppable(report))
 app.command("watch")(stoppable(watch))
 app.command("train")(stoppable(train))
 app.command("list")(stoppable(list_))

@@ -1,95 +1,78 @@
 """A world from above as pixels: fast enough to draw at each step of an environment."""
 
-import math
-
 import numpy as np
-from PIL import Image, ImageDraw
 
-from benchnav.arena.solid import Kind, Solid, signed_area
+from benchnav.arena.solid import is_outside
 from benchnav.arena.world import World
-from benchnav.arrays import BoolArray, ByteArray, FloatArray
-from benchnav.drawing.palette import FILL, INK, PAPER, color_of
+from benchnav.arrays import BoolArray, Extent, FloatArray
+from benchnav.drawing.canvas import Canvas
+from benchnav.drawing.palette import INK, agent_color
 
-_FINER = 2  # lines are drawn so many times finer, and averaged
 _RIM = 0.015  # of the longer side: how thick the wall along the bounds is drawn
 
 
 class TopView:
-    """Draws one world. Walls and obstacles that stand still are drawn once."""
+    """Draws one world. Walls, goals, and obstacles that stand still are drawn once."""
 
-    def __init__(self, world: World, size: int = 480) -> None:
-        """Prepare pictures whose longer side has ``size`` pixels."""
+    def __init__(
+        self, world: World, size: int = 480, *, span: FloatArray | None = None, finer: int = 2
+    ) -> None:
+        """Prepare pictures whose longer side has ``size`` pixels.
+
+        Args:
+            world: the world.
+            size: [pixels].
+            span: (2,) [m] width and height of the pictures, with the world in the middle; None:
+                those of the world.
+            finer: see `Canvas`.
+        """
         self.world = world
-        x0, y0, x1, y1 = world.bounds
-        rim = _RIM * max(x1 - x0, y1 - y0)
-        self._scale = _FINER * size / (max(x1 - x0, y1 - y0) + 2.0 * rim)  # [pixels/m]
-        self._corner = x0 - rim, y1 + rim
-        wide = max(1, round((x1 - x0 + 2.0 * rim) * self._scale / _FINER))
-        high = max(1, round((y1 - y0 + 2.0 * rim) * self._scale / _FINER))
-        self._size = _FINER * wide, _FINER * high
-        self._background = Image.new("RGB", self._size, PAPER)
-        draw = ImageDraw.Draw(self._background)
-        for solid in sorted(world.solids, key=_is_inside):
-            self._solid(draw, solid)
-        for place, radius, team in zip(
-            world.agents.goal, world.agents.radius, world.agents.team, strict=True
+        self.background = Canvas(_area(world, span), size, finer)
+        for solid in sorted(world.solids, key=is_outside, reverse=True):
+            self.background.solid(solid)
+        for a, (place, radius) in enumerate(
+            zip(world.agents.goal, world.agents.radius, strict=True)
         ):
-            self._disc(draw, place, radius, outline=color_of(int(team)))
+            self.background.disc(place, radius, outline=agent_color(world, a))
 
     def draw(
         self, position: FloatArray, heading: FloatArray, bodies: FloatArray, present: BoolArray,
-        marked: int | None = None,
-    ) -> ByteArray:  # fmt: skip
-        """Return the picture (height, width, 3) of bytes.
+        canvas: Canvas | None = None,
+    ) -> Canvas:  # fmt: skip
+        """Return a picture of the moving obstacles and the agents.
 
         Args:
             position: (A, 2) [m] of the agents.
             heading: (A,) [rad].
             bodies: (M, 2) [m] of the moving obstacles.
             present: (A,) which agents are drawn.
-            marked: the agent with a ring around it.
+            canvas: is drawn upon; None: a copy of the background.
         """
-        picture = self._background.copy()
-        draw = ImageDraw.Draw(picture)
+        picture = self.background.copy() if canvas is None else canvas
         for body, place in zip(self.world.bodies, bodies, strict=False):
-            self._solid(draw, body.solid.moved(place))
+            picture.solid(body.solid.moved(place))
         agents = self.world.agents
         for a in np.flatnonzero(present[: len(agents)]):
-            radius, team = float(agents.radius[a]), int(agents.team[a])
-            self._disc(draw, position[a], radius, fill=color_of(team))
-            ahead = radius * np.array([math.cos(heading[a]), math.sin(heading[a])])
-            tip = self._pixels(np.array([position[a], position[a] + ahead]))
-            draw.line(tip, fill=PAPER, width=_FINER * 2)
-            if a == marked:
-                self._disc(draw, position[a], 1.35 * radius, outline=INK)
-        return np.asarray(picture.reduce(_FINER))
+            radius = float(agents.radius[a])
+            picture.disc(position[a], radius, fill=agent_color(self.world, int(a)))
+            picture.heading(position[a], radius, float(heading[a]))
+        return picture
 
-    def _solid(self, draw: ImageDraw.ImageDraw, solid: Solid) -> None:
-        color = FILL.get(Kind(solid.kind), INK)
-        if solid.is_disc:
-            self._disc(draw, np.array(solid.center), solid.radius, fill=color)
-            return
-        if _is_inside(solid) < 0.0:  # the outside of a walled arena
-            draw.rectangle((0, 0, *self._size), fill=color)
-        for loop in sorted(solid.loops, key=signed_area, reverse=True):
-            points = self._pixels(loop)
-            area = signed_area(loop)
-            if area != 0.0 and len(points) > 2:
-                draw.polygon(points, fill=color if area > 0.0 else PAPER)
-            draw.line([*points, points[0]], fill=color, width=_FINER)
-
-    def _disc(
-        self, draw: ImageDraw.ImageDraw, place: FloatArray, radius: float, **style: str
-    ) -> None:
-        (x, y), r = self._pixels(place[None])[0], radius * self._scale
-        draw.ellipse((x - r, y - r, x + r, y + r), width=_FINER, **style)
-
-    def _pixels(self, points: FloatArray) -> list[tuple[float, float]]:
-        """Return points (N, 2) [m] as pixels; y of a picture runs downwards."""
-        x, y = self._corner
-        return [((px - x) * self._scale, (y - py) * self._scale) for px, py in points]
+    def ring(self, picture: Canvas, agent: int, place: FloatArray) -> None:
+        """Draw a ring around an agent at ``place`` (2,) [m]."""
+        picture.disc(place, 1.35 * float(self.world.agents.radius[agent]), outline=INK)
 
 
-def _is_inside(solid: Solid) -> float:
-    """Return -1.0 for the outside of a walled arena, which is drawn first; else 1.0."""
-    return -1.0 if sum(map(signed_area, solid.loops)) < 0.0 else 1.0
+def spans(worlds: tuple[World, ...]) -> FloatArray:
+    """Return the width and height (2,) [m] that contain each of the worlds."""
+    bounds = np.array([world.bounds for world in worlds])
+    largest: FloatArray = (bounds[:, 2:] - bounds[:, :2]).max(axis=0)
+    return largest
+
+
+def _area(world: World, span: FloatArray | None) -> Extent:
+    """Return the area of a picture: a span around the middle of the world, and the rim."""
+    half = 0.5 * (spans((world,)) if span is None else span)
+    half = half + _RIM * 2.0 * half.max()
+    x, y = 0.5 * (np.array(world.bounds[:2]) + np.array(world.bounds[2:]))
+    return float(x - half[0]), float(y - half[1]), float(x + half[0]), float(y + half[1])

@@ -3,7 +3,7 @@
 A slot is one agent of one row; agents that the scenario's own drivers move have no attempts.
 When an attempt is over (the agent arrived, touched something, or time ran out), the slot is
 idle, without observation and reward, until the last attempt of the row is over. Then the row
-starts again with the next world of the pool.
+starts again with the next world of the pool, unless the batch has no autoreset.
 """
 
 from collections.abc import Callable, Sequence
@@ -62,6 +62,8 @@ class AgentBatch:
         rng: np.random.Generator,
         correct: Correction | None = None,
         drivers: Sequence[Spec] = (),
+        *,
+        autoreset: bool = True,
     ) -> None:
         """Prepare the batch. No world is drawn before `reset`.
 
@@ -74,6 +76,8 @@ class AgentBatch:
             correct: changes the learners' commands before their execution; its observation
                 has the needs of the encoder, and neighbours.
             drivers: navigators of the teams that are not evaluated.
+            autoreset: whether a row starts again by itself; otherwise it waits for `reset`, and
+                still shows the world in which its last attempt ended.
 
         Raises UsageError if no world of the pool has an agent that learns.
         """
@@ -84,6 +88,7 @@ class AgentBatch:
                 " agent has a driver: leave out `driver` of the team that must learn."
             )
         self.encoder, self.weights, self.correct = encoder, weights, correct
+        self._autoreset = autoreset
         self.simulation = AutoresetSimulation([_strict(world) for world in pool], rows)
         self._rng = rng
         self._queue = np.zeros(0, np.int64)
@@ -155,7 +160,7 @@ class AgentBatch:
         )
         final = self._encoded(seen)
         reward = np.where(acted, self.weights.scale * terms.total, 0.0)
-        done = np.flatnonzero(~self.active.any(1))
+        done = np.flatnonzero(~self.active.any(1) & self._autoreset)
         restarted = np.zeros_like(acted)
         observation = final.copy()
         if len(done):

@@ -60,7 +60,7 @@ def weights_of(reward: Reward) -> RewardWeights:
 
 def make_batch(
     scenario: str, encoder: str, split: str, worlds: int, reward: Reward, slots: int | None = None,
-    *, rows: int = 1,
+    *, rows: int = 1, autoreset: bool = True,
 ) -> AgentBatch:  # fmt: skip
     """Return a batch of rows with ``slots`` learning agents in total, or of ``rows`` rows.
 
@@ -83,7 +83,9 @@ def make_batch(
                 f" {most if nearest else least}, the agents of a world of {scenario}."
                 f" Got {slots} instead{nearest}."
             )
-    return AgentBatch(pool, rows, chosen, weights, np.random.default_rng(), drivers=drivers)
+    return AgentBatch(
+        pool, rows, chosen, weights, np.random.default_rng(), drivers=drivers, autoreset=autoreset
+    )
 
 
 def drawn_index(

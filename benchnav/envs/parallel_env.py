@@ -11,7 +11,7 @@ from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.factory import Reward, check_render_mode, drawn_index, make_batch
 from benchnav.envs.gym.spaces import Space, action_space, last_seen, observation_space, terms
 from benchnav.envs.learner_slots import LearnerSlots
-from benchnav.envs.rendering import RENDER_MODES, Renderer
+from benchnav.envs.rendering import FPS, RENDER_MODES, Display
 from benchnav.envs.seeding import plain_seed
 from benchnav.errors import UsageError
 
@@ -29,7 +29,7 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
     """
 
     metadata: ClassVar[dict[str, Any]] = {
-        "render_modes": list(RENDER_MODES), "render_fps": 5, "name": "benchnav_leaders_v0",
+        "render_modes": list(RENDER_MODES), "render_fps": FPS, "name": "benchnav_leaders_v0",
     }  # fmt: skip
 
     def __init__(
@@ -47,8 +47,8 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         Raises BenchnavError for a mistake in any of these.
         """
         check_render_mode(render_mode, RENDER_MODES)
-        self.render_mode, self._renderer = render_mode, Renderer()
-        self.batch = make_batch(scenario, encoder, split, worlds, reward)
+        self.render_mode = render_mode
+        self.batch = make_batch(scenario, encoder, split, worlds, reward, autoreset=False)
         self._slots = LearnerSlots(self.batch)
         self.possible_agents = [f"leader_{a}" for a in range(self._slots.size)]
         self.agents: list[str] = []
@@ -57,6 +57,7 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         }
         self.action_spaces = {agent: action_space() for agent in self.possible_agents}
         self._rng: np.random.Generator | None = None
+        self._display = Display(render_mode, self.batch.simulation, scenario)
 
     def observation_space(self, agent: str) -> Space:
         """Return the space (D,) of one agent, always the same object."""
@@ -77,6 +78,7 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         seen = self._slots.reset(np.array([world]))[0]
         learners = int(self._slots.active[0].sum())
         self.agents = self.possible_agents[:learners]
+        self._display.refresh()
         return (
             {agent: seen[a].copy() for a, agent in enumerate(self.agents)},
             {agent: {"world": world} for agent in self.agents},
@@ -99,6 +101,7 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         for agent, a in slots.items():
             action[0, a] = actions[agent]
         step = self._slots.step(action)
+        self._display.refresh()
         seen, named, ended = last_seen(step)[0], terms(step), step.arrived | step.touched
         stepped: Stepped = (
             {agent: seen[a].copy() for agent, a in slots.items()},
@@ -117,12 +120,17 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         return stepped
 
     def render(self) -> ByteArray | None:
-        """Return the world now as a picture (H, W, 3); None without a render mode.
+        """Return the world now as a picture (H, W, 3).
 
-        Raises UsageError before the first reset.
+        Returns None in the mode "human", which shows it, and without a mode. Raises UsageError
+        before the first reset.
         """
         if self.render_mode is None:
             return None
         if self._rng is None:
             raise UsageError("There is no world to draw: call reset() before render().")
-        return self._renderer.frame(self.batch.simulation)
+        return self._display.frame()
+
+    def close(self) -> None:
+        """Close the window of the mode "human"."""
+        self._display.close()

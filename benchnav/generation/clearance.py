@@ -10,6 +10,9 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
 from benchnav.kernels import kernel
 
+POINT = np.zeros((1, 5))  # a shape
+_FILLED = np.zeros(1, np.bool_)  # an obstacle is not hollow
+
 
 class Barrier(NamedTuple):
     """Solids as arrays for kernels."""
@@ -48,50 +51,50 @@ def joined(one: Barrier, other: Barrier) -> Barrier:
 
 def added(one: Barrier, capsules: FloatArray) -> Barrier:
     """Return the barrier with one more obstacle (P, 5)."""
-    last = one.first[-1] + len(capsules)
     return Barrier(
-        np.concatenate([one.capsules, capsules]),
-        np.append(one.first, last),
-        np.append(one.hollow, False),
+        np.concatenate((one.capsules, capsules)),
+        np.concatenate((one.first, one.first[-1:] + len(capsules))),
+        np.concatenate((one.hollow, _FILLED)),
     )
 
 
-def point_shapes(points: FloatArray) -> FloatArray:
-    """Return points (N, 2) as shapes (N, 1, 5) for `clear`."""
-    shapes = np.zeros((len(points), 1, 5))
-    shapes[:, 0, 0:2] = points
-    shapes[:, 0, 2:4] = points
-    return shapes
+def clear(
+    shape: FloatArray, points: FloatArray, wall: Barrier, gap: float, whole: bool = True
+) -> BoolArray:
+    """Whether a shape is farther than ``gap`` [m] ≥ 0 from every solid at each point, (N,).
 
-
-def shifted(shape: FloatArray, points: FloatArray) -> FloatArray:
-    """Return one shape (Q, 5) about the origin, moved to each of points (N, 2): (N, Q, 5)."""
-    shapes = np.repeat(shape[None], len(points), axis=0)
-    shapes[:, :, 0:2] += points[:, None]
-    shapes[:, :, 2:4] += points[:, None]
-    return shapes
-
-
-def clear(shapes: FloatArray, wall: Barrier, gap: float) -> BoolArray:
-    """Whether each shape (N, Q, 5) is farther than ``gap`` [m] ≥ 0 from every solid, (N,).
-
-    A shape is one capsule (Q = 1) or the edges of loops (Q > 2), counter-clockwise around it.
+    Args:
+        shape: (Q, 5) about the origin: one capsule, or the edges of loops, counter-clockwise
+            around it.
+        points: (N, 2) [m] the places of its origin.
+        wall: the solids.
+        gap: [m].
+        whole: False if the capsules are separate, as those of a path are: they enclose nothing.
     """
-    far: BoolArray = _clear(
-        np.ascontiguousarray(shapes), wall.capsules, wall.first, wall.hollow, gap
+    free: BoolArray = _clear(
+        shape, np.ascontiguousarray(points), wall.capsules, wall.first, wall.hollow, gap, whole
     )
-    return far
+    return free
 
 
 @kernel
 def _clear(
-    shapes: FloatArray, capsules: FloatArray, first: IntArray, hollow: BoolArray, gap: float
-) -> BoolArray:
-    result = np.empty(len(shapes), np.bool_)
-    for n in range(len(shapes)):
-        result[n] = _apart(shapes[n], capsules, gap) and not _nested(
-            shapes[n], capsules, first, hollow
-        )
+    shape: FloatArray, points: FloatArray, capsules: FloatArray, first: IntArray,
+    hollow: BoolArray, gap: float, whole: bool,
+) -> BoolArray:  # fmt: skip
+    result = np.ones(len(points), np.bool_)
+    size = len(shape) if whole else 1
+    moved = shape.copy()
+    for n in range(len(points)):
+        x, y = points[n, 0], points[n, 1]
+        for q in range(len(shape)):
+            moved[q, 0], moved[q, 1] = shape[q, 0] + x, shape[q, 1] + y
+            moved[q, 2], moved[q, 3] = shape[q, 2] + x, shape[q, 3] + y
+        for low in range(0, len(shape), size):
+            part = moved[low : low + size]
+            if not _apart(part, capsules, gap) or _nested(part, capsules, first, hollow):
+                result[n] = False
+                break
     return result
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from benchnav.arena.body import Body, Law
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arrays import BoolArray, Extent, FloatArray
-from benchnav.generation.clearance import Barrier, clear, shifted
+from benchnav.generation.clearance import Barrier, clear
 from benchnav.generation.motion_law import draw_law, moved_law, recorded_laws, swept
 from benchnav.generation.placement import FEW, NoPlaceError, draw_points, find_place
 from benchnav.generation.solids import draw_solid
@@ -37,7 +37,7 @@ def check_clear(bodies: list[Body], group: DynamicGroup, name: str, standing: Ba
     """Raise NoPlaceError unless the paths of all bodies keep the group's gap."""
     for k, body in enumerate(bodies):
         path = swept(body.law, body.solid.bounding_radius)
-        if not clear(path[:, None], standing, group.gap).all():
+        if not clear(path, np.zeros((1, 2)), standing, group.gap, whole=False)[0]:
             raise NoPlaceError(
                 f"the path of {name} (number {k + 1}) is not clear of walls and static obstacles"
             )
@@ -76,10 +76,7 @@ def _place(
         path = swept(law, solid.bounding_radius)
 
         def accept(points: FloatArray, path: FloatArray = path) -> BoolArray:
-            good = np.ones(len(points), np.bool_)
-            for capsule in path:  # one by one: a path is not a loop that could enclose a solid
-                good &= clear(shifted(capsule[None], points), standing, group.gap)
-            return good
+            return clear(path, points, standing, group.gap, whole=False)
 
         try:
             place = find_place(lambda n: draw_points(region, bounds, n, rng), accept, subject, FEW)

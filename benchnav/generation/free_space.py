@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from benchnav.arrays import Extent, FloatArray, IntArray
-from benchnav.generation.clearance import Barrier, clear, point_shapes
+from benchnav.generation.clearance import POINT, Barrier, clear
 
 _QUADRANT = 8  # segments in a quarter of a grown outline
 _GROWTH = 1.0 / math.cos(math.pi / (4 * _QUADRANT))  # the polygon then contains the circle
@@ -33,7 +33,7 @@ class JoinedSpace(Space):
         self._wall, self._least = wall, radius + _TOUCH
 
     def labels(self, points: FloatArray) -> IntArray:
-        return np.where(clear(point_shapes(points), self._wall, self._least), 0, -1)
+        return np.where(clear(POINT, points, self._wall, self._least), 0, -1)
 
 
 class PartedSpace(Space):
@@ -54,7 +54,7 @@ class PartedSpace(Space):
         parts = [p for p in shapely.get_parts(rest) if p.area > 0.0]
         if parts:
             inner = shapely.get_coordinates(shapely.point_on_surface(parts))
-            outside = clear(point_shapes(inner), wall, 0.0)
+            outside = clear(POINT, inner, wall, 0.0)
             parts = [part for part, free in zip(parts, outside, strict=True) if free]
         parts.sort(key=lambda part: -part.area)
         shapely.prepare(parts)

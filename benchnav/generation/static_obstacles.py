@@ -10,7 +10,7 @@ import numpy as np
 from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arrays import BoolArray, Extent, FloatArray
-from benchnav.generation.clearance import Barrier, added, clear, joined, shifted
+from benchnav.generation.clearance import Barrier, added, clear, joined
 from benchnav.generation.placement import NoPlaceError, directions, draw_points, find_place, within
 from benchnav.generation.solids import draw_solid
 from benchnav.scenario.obstacle import StaticGroup
@@ -196,7 +196,7 @@ class _Search:
             return away + group.moved * directions(count, rng)
 
         def accept(points: FloatArray) -> BoolArray:
-            free = clear(shifted(shape.capsules, points), around, group.gap)
+            free = clear(shape.capsules, points, around, group.gap)
             return free if away is None else free & within(self.bounds, points)
 
         return find_place(propose, accept, subject)

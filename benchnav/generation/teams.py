@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from benchnav.arrays import BoolArray, Extent, FloatArray, IntArray
-from benchnav.generation.clearance import Barrier, clear, point_shapes
+from benchnav.generation.clearance import POINT, Barrier, clear
 from benchnav.generation.free_space import Space
 from benchnav.generation.placement import MANY, NoPlaceError, distances, draw_points, find_place
 from benchnav.geometry.rotation import TWO_PI, cos_sin
@@ -174,7 +174,7 @@ class _Placing:
         good = _apart(points, crowd.start, crowd.radius + gap)
         if isinstance(team.start, CircleStart) and team.start.clear_of_goals:
             good &= _apart(points, crowd.goal, crowd.radius + gap)
-        good[good] = clear(point_shapes(points[good]), self.bodies, gap)
+        good[good] = clear(POINT, points[good], self.bodies, gap)
         labels = self._labels(points[good])
         joined = np.all(labels >= 0, axis=0)
         if isinstance(team.goal, AntipodalGoal | ShiftedGoal):

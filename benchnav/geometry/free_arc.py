@@ -69,7 +69,11 @@ def _circles(capsules: FloatArray, reach: FloatArray) -> FloatArray:
     ends = np.vstack(
         [np.column_stack([begin, reach])[~inward], np.column_stack([end, reach])[open_end]]
     )
-    return np.unique(ends, axis=0)
+    # np.unique(ends, axis=0), which takes five times as long
+    ordered = ends[np.lexsort(ends.T[::-1])]
+    another = np.ones(len(ordered), np.bool_)
+    another[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    return ordered[another]
 
 
 @kernel

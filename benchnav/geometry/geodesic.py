@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchnav.arrays import FloatArray
+from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.arc_polyline import around_arc
 from benchnav.geometry.capsule_grid import SLACK, capsule_grid, is_clear
 from benchnav.geometry.free_arc import Arcs, free_arcs
@@ -33,6 +33,12 @@ class _Route(NamedTuple):
     leave: FloatArray | None = None  # (3,) link from the start; None: straight to the end
     arrive: FloatArray | None = None  # (3,) link to the end
     found: Found | None = None
+
+
+class _Arrivals(NamedTuple):
+    links: FloatArray  # (L, 3) to the goal disc
+    rim: FloatArray  # (E, 2) [m] points of the goal disc at the boundary of free space
+    owner: IntArray  # (L,) index of the rim point where a link ends; -1: at the nearest point
 
 
 class FreeSpace:
@@ -107,9 +113,9 @@ class FreeSpace:
         ex, ey = sx + share * (gx - sx), sy + share * (gy - sy)
         if is_clear(self._grid, sx, sy, ex, ey):
             return _Route(distance - tolerance, np.array([ex, ey]))
-        arrive, ends = self._arrivals(gx, gy, tolerance)
+        arrive, rim, owner = self._arrivals(gx, gy, tolerance)
         best = no_route
-        for x, y in ends[len(arrive) :]:
+        for x, y in rim:
             straight = math.hypot(x - sx, y - sy)
             if not straight >= best.length and is_clear(self._grid, sx, sy, x, y):
                 best = _Route(straight, np.array([x, y]))
@@ -120,18 +126,22 @@ class FreeSpace:
         if found.length == math.inf or found.length >= best.length:
             return best
         first, last = found.first, found.last
-        return _Route(found.length, ends[last], leave[first], arrive[last], found)
+        if owner[last] >= 0:
+            end = rim[owner[last]]
+        else:
+            share = tolerance / max(arrive[last, 2] + tolerance, 1e-300)
+            end = (gx, gy) + share * (self._rim(arrive[last : last + 1])[0] - (gx, gy))
+        return _Route(found.length, end, leave[first], arrive[last], found)
 
-    def _arrivals(self, x: float, y: float, tolerance: float) -> tuple[FloatArray, FloatArray]:
-        """Return links (L, 3) to the goal disc; their ends and the E rim points (L + E, 2)."""
+    def _arrivals(self, x: float, y: float, tolerance: float) -> _Arrivals:
         links = point_tangents(self._grid, self._arcs, x, y, tolerance)
-        touch = self._rim(links)
-        share = tolerance / np.maximum(links[:, 2:] + tolerance, 1e-300)
-        ends = [(x, y) + share * (touch - (x, y))]
         rim = rim_points(self._grid, x, y, tolerance) if tolerance > 0.0 else np.zeros((0, 2))
+        if not len(rim):
+            return _Arrivals(links, rim, np.full(len(links), -1))
         more = [point_tangents(self._grid, self._arcs, px, py, 0.0) for px, py in rim]
-        ends += [np.tile(point, (len(m), 1)) for point, m in zip(rim, more, strict=True)]
-        return np.vstack([links, *more]), np.vstack([*ends, rim])
+        counts = [len(links), *map(len, more)]
+        owner = np.repeat(np.arange(-1, len(rim)), counts)
+        return _Arrivals(np.concatenate([links, *more]), rim, owner)
 
     def _rim(self, links: FloatArray) -> FloatArray:
         """Return the points (L, 2) on arcs of rows (L, ·) that begin with arc, angle."""

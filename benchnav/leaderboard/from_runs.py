@@ -167,7 +167,7 @@ def curve(
         if metric != SUCCESS:
             raise UsageError(f"Against horizon there is success alone. Got {metric!r} instead.")
         return horizon_curves(e for f in folders for e in episodes_in_every_track(f))
-    settings = _settings(folders, axis)
+    settings = settings_of(folders, axis)
     results = _joined(folders, _tables(folders, metrics, recompute))
     choose(_held(results, metrics), [metric])
     return parameter_curves(results, metrics[metric], axis, settings)
@@ -203,8 +203,11 @@ def _within(results: pa.Table, wanted: Sequence[str]) -> pa.Table:
     return results.filter(pc.is_in(results["scenario"], pa.array(sorted(chosen))))
 
 
-def _settings(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
-    """The values of the parameter ``axis`` in the scenarios that have it."""
+def settings_of(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
+    """Return scenario → its value of the parameter ``axis``, for the scenarios that have it.
+
+    Raises UsageError if no scenario that was run has it.
+    """
     found, axes = {}, {HORIZON}
     for entry in (e for folder in folders for e in folder.manifest.suite["scenarios"]):
         declared = entry["config"].get("parameters", {})

@@ -60,16 +60,10 @@ Instants = Callable[[FloatArray, FloatArray, BoolArray, FloatArray], FloatArray]
 
 def _over_teams(episode: Episode, members: BoolArray, value: Instants) -> float:
     """Return the mean over teams and time of ``value(place, step, active, radius)``."""
-    agents, found = episode.world.agents, analyse(episode)
-    place, step, active = found.group_motion
     means = []
-    for team in np.unique(agents.team[members]):
-        own = np.flatnonzero(members & (agents.team == team))
-        together = active[own].sum(axis=0) > 1
-        if together.any():
-            now = np.ix_(own, np.flatnonzero(together))
-            values = value(place[now], step[now], active[now], agents.radius[own])
-            means.append(values[~np.isnan(values)])
+    for team in analyse(episode).teams_together(members):
+        values = value(*team)
+        means.append(values[~np.isnan(values)])
     defined = [float(mean.mean()) for mean in means if len(mean)]
     return float(np.mean(defined)) if defined else math.nan
 

@@ -11,7 +11,7 @@ import numpy as np
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.metrics.metric import metric
-from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.metrics.quantities.episode_analysis import analyse, endings
 from benchnav.metrics.quantities.trajectory import positions_at
 
 STUCK_WINDOW = 10.0  # [s]
@@ -88,7 +88,7 @@ def failed(episode: Episode) -> FloatArray:
 
 def success_time(episode: Episode) -> FloatArray:
     """Return success times (A,) [s], inf for agents without success, for `success_by_horizon`."""
-    found = analyse(episode)
+    found = endings(episode)
     return np.where(found.success, found.arrival, math.inf)
 
 

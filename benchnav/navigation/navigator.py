@@ -20,6 +20,7 @@ from benchnav.arena.sensing import Sensing
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.navigation.agent_view import AgentView
 from benchnav.navigation.briefing import Briefing
+from benchnav.navigation.map import Map
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.plugin.configure import Spec
 from benchnav.plugins import Source
@@ -124,6 +125,19 @@ class Navigator(ABC):
         Each is a short sentence for readers of the results, for example why there is no path.
         """
         return ()
+
+    @property
+    def has_own_map(self) -> bool:
+        """Whether `own_map` returns maps; True if a class overrides it."""
+        return type(self).own_map is not Navigator.own_map
+
+    def own_map(self, row: int, agent: int) -> Map | None:
+        """Return the map that an agent of the world in ``row`` made itself until now, or None.
+
+        A replay shows it. It is the same object until it changes. The call must not affect
+        commands.
+        """
+        return None
 
     @abstractmethod
     def act(self, observation: Observation) -> FloatArray:

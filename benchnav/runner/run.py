@@ -17,7 +17,7 @@ from benchnav.runner.plan.prepare import planned, refuse_limits, start
 from benchnav.runner.plan.renewal import Renewal
 from benchnav.runner.plan.shard import Shard
 from benchnav.runner.plan.suite import Suite
-from benchnav.runner.plan.task import Outcome, Task, chunks
+from benchnav.runner.plan.task import Outcome, Task, chunks, joined_chunks
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.run_path import RunPath, run_path
 from benchnav.store.runs.scenario_files import keep_files
@@ -139,7 +139,8 @@ def run_suite(
         folder = renewal.begin(folder.amend(reasons))  # reasons change if packages were installed
         target = renewal.target(folder)
         folder.drop_others(target)
-        tasks = _tasks(suite, target, jobs, wanted, summary)
+        count = default_workers() if workers is None else workers
+        tasks = _tasks(suite, target, jobs, wanted, summary, None if executor else count)
         keys = {job.key for job in here}
         folder = folder.unguard(t.job.contestant.label for t in tasks if t.job.key in keys)
         reporter.begin(summary.total, summary.stored)
@@ -187,10 +188,10 @@ def _wanted(suite: Suite, jobs: list[Job], shard: Shard | None) -> dict[str, set
 
 def _tasks(
     suite: Suite, folder: RunFolder, jobs: list[Job], wanted: Mapping[str, set[int]],
-    summary: Summary,
+    summary: Summary, workers: int | None,
 ) -> list[Task]:  # fmt: skip
-    """Return the missing tasks, the longest first."""
-    tasks = []
+    """Return the missing tasks, the longest first; ``workers`` is None if it is unknown."""
+    found: list[tuple[Task, set[int]]] = []
     for job in jobs:
         if job.reason:
             summary.not_applicable.append((job, job.reason))
@@ -202,9 +203,15 @@ def _tasks(
         task = Task(
             job, folder.cell(job.key), 0, 0, salt=folder.manifest.salt, probe=suite.seeds.start
         )
-        for first, stop in chunks(missing, job.effort):
-            tasks.append(replace(task, first=first, stop=stop))
+        found.append((task, missing))
     summary.found = summary.stored
+    total = sum(len(missing) for _, missing in found)
+    joined = 1 if workers is None else joined_chunks(total, workers)
+    tasks = [
+        replace(task, first=first, stop=stop)
+        for task, missing in found
+        for first, stop in chunks(missing, task.job.effort, joined)
+    ]
     return sorted(tasks, key=lambda task: -task.job.effort * len(task.seeds))
 
 

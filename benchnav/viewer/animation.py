@@ -1,37 +1,33 @@
 """Episodes as moving pictures: GIF and MP4 files."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from itertools import chain
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from PIL import Image
 
-from benchnav.arrays import AnyArray
+from benchnav.drawing.canvas import shade
+from benchnav.drawing.palette import HIT, channels
 from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.system.plain_file import writing
-from benchnav.viewer.picture import blank
-from benchnav.viewer.scene_figure import aspect, draw_episode
+from benchnav.viewer.episode_film import film
 
 FRAMES = 100  # of a GIF at most, whatever the length of the episode
 RATE = 10  # [frames/s]
 _COLORS = 64
-_WIDTH, _DPI = 4.0, 90  # [inch] of one arena, [dots/inch]
 
 
 def save_gif(episodes: Sequence[Episode], path: Path) -> None:
     """Write episodes side by side as a GIF that repeats: at most 10 s, faster if need be.
 
-    Raises MissingExtraError without matplotlib, StoreError if the file cannot be written.
+    Raises StoreError if the file cannot be written.
     """
-    from PIL.Image import Dither, fromarray
-
-    frames = [fromarray(frame) for frame in _frames(episodes, frame_times(episodes, FRAMES))]
-    palette = frames[len(frames) // 2].quantize(_COLORS)
-    same = [frame.quantize(palette=palette, dither=Dither.NONE) for frame in frames]
+    times = frame_times(episodes, FRAMES)
+    frames = [Image.fromarray(frame) for frame in film(episodes, times)]
+    palette = _palette(frames)
+    same = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     with writing(path):
         same[0].save(
             path, save_all=True, append_images=same[1:], duration=1000 // RATE, loop=0,
@@ -42,14 +38,13 @@ def save_gif(episodes: Sequence[Episode], path: Path) -> None:
 def save_mp4(episodes: Sequence[Episode], path: Path) -> None:
     """Write episodes side by side as an MP4 film (H.264) in real time.
 
-    Raises MissingExtraError without matplotlib or the encoder, StoreError if the file cannot be
-    written.
+    Raises MissingExtraError without the encoder, StoreError if the file cannot be written.
     """
     try:
         from imageio_ffmpeg import write_frames
     except ImportError as error:
         raise MissingExtraError("A film", "video") from error
-    frames = _frames(episodes, frame_times(episodes))
+    frames = film(episodes, frame_times(episodes))
     first = next(frames)
     high, wide = first.shape[0] // 2 * 2, first.shape[1] // 2 * 2  # H.264 needs even sizes
     rate = 1.0 / min(episode.world.clock.dt for episode in episodes)
@@ -73,19 +68,16 @@ def frame_times(episodes: Sequence[Episode], most: int | None = None) -> list[fl
     return [float(time) for time in longest.times[chosen]]
 
 
-def _frames(episodes: Sequence[Episode], times: Sequence[float]) -> Iterator[AnyArray]:
-    """Yield pictures (height, width, 3) of bytes."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    ratio = min(aspect(episode.world) for episode in episodes)
-    figure = blank(_WIDTH * len(episodes), _WIDTH / ratio + 0.3)
-    figure.set_dpi(_DPI)
-    canvas: Any = FigureCanvasAgg(figure)
-    panels = figure.subplots(1, len(episodes), squeeze=False)[0]
-    for time in times:
-        for axes, episode in zip(panels, episodes, strict=True):
-            axes.clear()
-            draw_episode(axes, episode, min(time, float(episode.times[-1])))
-            axes.set_title(f"{episode.identity.navigator}, {time:.1f} s", fontsize=9)
-        canvas.draw()
-        yield np.asarray(canvas.buffer_rgba())[..., :3]
+def _palette(frames: Sequence[Image.Image]) -> Image.Image:
+    """Return the colours of a GIF: those of some frames, and those of contacts, which are rare."""
+    chosen = frames[:: max(1, len(frames) // 8)]
+    wide, high = frames[0].size
+    sheet = Image.new("RGB", (wide, high * len(chosen)))
+    for n, frame in enumerate(chosen):
+        sheet.paste(frame, (0, n * high))
+    contacts = [channels(shade(HIT, strength)) for strength in (0.25, 0.5, 0.75, 1.0)]
+    table = np.array(sheet.quantize(_COLORS - len(contacts)).getpalette()).reshape(-1, 3)
+    table[(table > 245).all(axis=1)] = 255  # paper, which the mean of its edges tints
+    palette = Image.new("P", (1, 1))
+    palette.putpalette([*table.ravel().tolist(), *chain.from_iterable(contacts)])
+    return palette

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from benchnav.leaderboard.record import ALL
-from benchnav.leaderboard.rendering.prose import scaled
+from benchnav.leaderboard.rendering.prose import ARRIVALS, scaled
 from benchnav.leaderboard.statistics.comparison import Comparison
 from benchnav.leaderboard.statistics.head_to_head import Duel
 from benchnav.metrics.metric import Metric
@@ -87,16 +87,18 @@ def _panel(axes: Axes, found: Sequence[Comparison | None], metric: Metric) -> No
 
 def _sides(metric: Metric) -> str:
     """Return the label of the better navigator on each side of 0."""
-    if metric.better is None or metric.conditional:
+    if metric.better is None:
         return ""
-    return "\n← B better   A better →" if metric.better == "higher" else "\n← A better   B better →"
+    among = f"\n{ARRIVALS}" if metric.conditional else ""
+    left, right = ("B", "A") if metric.better == "higher" else ("A", "B")
+    return f"\n← {left} better   {right} better →{among}"
 
 
 def _colour(c: Comparison, metric: Metric) -> str:
     """Return blue if the first navigator is better, red if it is worse, grey for a tie."""
     if c.verdict not in DECIDED:
         return GREY
-    if metric.better is None or metric.conditional:
+    if metric.better is None:
         return "0.2"
     return BLUE if c.verdict == "better" else RED
 

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from benchnav.arena.solid import Kind, Solid, signed_area
+from benchnav.arena.solid import Kind, Solid, is_outside
 from benchnav.arena.world import World
 from benchnav.arrays import Extent, FloatArray
-from benchnav.drawing.palette import FILL, INK, TEAMS
+from benchnav.drawing.palette import FILL, INK, agent_color
 from benchnav.episode.episode import Episode, Status
 from benchnav.errors import UsageError
 from benchnav.metrics.quantities.episode_analysis import analyse
@@ -107,7 +107,7 @@ def draw_agents(
         if here is not None and not here[a]:
             continue
         radius = float(world.agents.radius[a])
-        axes.add_patch(Circle((x, y), radius, color=_color(world, a), linewidth=0, zorder=4))
+        axes.add_patch(Circle((x, y), radius, color=agent_color(world, a), linewidth=0, zorder=4))
         tip = radius * np.array([np.cos(heading[a]), np.sin(heading[a])])
         axes.plot([x, x + tip[0]], [y, y + tip[1]], color="white", linewidth=0.8, zorder=5)
 
@@ -118,7 +118,7 @@ def draw_goals(axes: Axes, world: World) -> None:
 
     for a, (x, y) in enumerate(world.agents.goal):
         ring = Circle(
-            (x, y), float(world.agents.radius[a]), fill=False, edgecolor=_color(world, a),
+            (x, y), float(world.agents.radius[a]), fill=False, edgecolor=agent_color(world, a),
             linewidth=1.0, zorder=3,
         )  # fmt: skip
         axes.add_patch(ring)
@@ -135,7 +135,7 @@ def draw_trails(axes: Axes, episode: Episode, until: float) -> None:
         last = min(int(trajectories.last[a]), round(until / dt))
         points = trajectories.position[a, : last + 1]
         pieces = list(np.stack([points[:-1], points[1:]], axis=1))
-        color = _color(episode.world, a)
+        color = agent_color(episode.world, a)
         shades = [to_rgba(color, alpha) for alpha in np.linspace(0.3, 1.0, max(len(pieces), 1))]
         axes.add_collection(LineCollection(pieces, colors=shades, linewidths=1.3, zorder=3.5))
         times = np.arange(MARK, min(trajectories.end[a], until) + 1e-9, MARK)
@@ -191,7 +191,7 @@ def _patch(solid: Solid, frame: Extent, **style: Any) -> Any:
     if solid.is_disc:
         return Circle(solid.center, solid.radius, **style)
     loops = list(solid.loops)
-    if sum(map(signed_area, loops)) < 0.0:
+    if is_outside(solid):
         x0, y0, x1, y1 = frame
         loops.append(np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]]))
     closed = [Path(np.vstack([loop, loop[:1]]), closed=True) for loop in loops]
@@ -202,9 +202,3 @@ def aspect(world: World) -> float:
     """Return the width of the bounds over their height."""
     x0, y0, x1, y1 = world.bounds
     return (x1 - x0) / (y1 - y0)
-
-
-def _color(world: World, agent: int) -> str:
-    """Return a colour for each team; where there is one team of few agents, one for each agent."""
-    single = len(world.teams) == 1 and len(world.agents) <= len(TEAMS)
-    return TEAMS[agent if single else int(world.agents.team[agent]) % len(TEAMS)]

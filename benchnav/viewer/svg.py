@@ -1,6 +1,6 @@
 """A drawn world, and the paths of an episode, as SVG text."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
@@ -12,11 +12,14 @@ from benchnav.world.simulation import Simulation
 WIDTH = 480  # of the picture [pixels]
 
 
-def world_svg(world: World) -> str:
-    """Return a picture of a world: walls, obstacles, agents at their starts, rings at goals."""
+def world_svg(world: World, marks: Iterable[str] = ()) -> str:
+    """Return a picture of a world: walls, obstacles, agents at their starts, rings at goals.
+
+    ``marks`` are SVG elements to draw above, in metres with y upwards.
+    """
     bodies = Simulation([world]).body_position[0]
     starts = _discs(world, world.agents.start)
-    return _svg(world, [*_scene(world, bodies), *_goals(world), *starts])
+    return _svg(world, [*_scene(world, bodies), *_goals(world), *starts, *marks])
 
 
 def episode_svg(episode: Episode) -> str:

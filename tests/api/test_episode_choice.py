@@ -19,7 +19,7 @@ ROWS = (  # seed, role, metric, value
     (2, "leader", "time_to_goal", 12.0),
     (0, "leader", "collisions_wall", 1.0),
 )  # fmt: skip
-PLACES = [Place(None, "orca", "x@1", "known", seed) for seed in range(3)]
+PLACES = [Place(None, "orca", "x@1", "known", seed, None) for seed in range(3)]
 
 
 @pytest.fixture(autouse=True)

@@ -25,16 +25,16 @@ def can_mount():
 pytestmark = pytest.mark.skipif(not can_mount(), reason="the system lets nobody mount a disk")
 
 SCRIPT = """
-mount -t tmpfs -o size=400k tmpfs disk
+mount -t tmpfs -o size=240k tmpfs disk
 benchnav() { "$PYTHON" -c 'from benchnav.cli.main import main; main()' "$@"; }
 tell() { echo "== $1"; shift; benchnav "$@" 2>&1; echo "status $?"; }
-tell full run suite.yaml --out disk/run --seeds 200 --workers 1
+tell full run suite.yaml --out disk/run --seeds 120 --workers 1
 ls disk/run/parts/* | sed 's/^/file /'
 mount -o remount,size=20m disk
-tell room run suite.yaml --out disk/run --seeds 200 --workers 1
+tell room run suite.yaml --out disk/run --seeds 120 --workers 1
 mount -o remount,ro disk
-tell again run suite.yaml --out disk/run --seeds 200 --workers 0
-tell new run suite.yaml --out disk/other --seeds 200 --workers 0
+tell again run suite.yaml --out disk/run --seeds 120 --workers 0
+tell new run suite.yaml --out disk/other --seeds 120 --workers 0
 tell read leaderboard disk/run --metric success
 tell written leaderboard disk/run --out disk/table.md
 """
@@ -58,14 +58,14 @@ def test_a_full_disk_and_a_read_only_one_are_told_and_nothing_is_lost(suite, tmp
     assert not [line for line in kept if "writing" in line]
     assert "status 0" in said["room"]
     stems = [line.removesuffix(SEAL).split()[-1] for line in kept if line.endswith(SEAL)]
-    fresh = 400 - sum(int(stop) - int(first) for first, stop in (s.split("-") for s in stems))
-    assert f"400 episodes stored, {fresh} of them run" in said["room"]
+    fresh = 240 - sum(int(stop) - int(first) for first, stop in (s.split("-") for s in stems))
+    assert f"240 episodes stored, {fresh} of them run" in said["room"]
     assert "disk/run is not writable: Read-only file system" in said["again"]
     assert "is not writable: Read-only file system" in said["new"]
     assert "status 1" in said["again"]
     assert "status 1" in said["new"]
     assert "status 0" in said["read"]
-    assert "200 worlds" in said["read"]
+    assert "120 worlds" in said["read"]
     assert "disk/table.md must be writable" in said["written"]
 
 

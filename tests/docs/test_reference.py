@@ -1,14 +1,23 @@
 """The generated pages of docs/ are those of the code."""
 
 import importlib.util
+import re
 
 import pytest
 
+from benchnav.scenario.catalogue import names
 from tests.docs.blocks import ROOT
 
-SPEC = importlib.util.spec_from_file_location("make_reference", ROOT / "docs/make_reference.py")
-MAKER = importlib.util.module_from_spec(SPEC)
-SPEC.loader.exec_module(MAKER)
+
+def program(name):
+    """A program of docs/ as a module."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / f"docs/{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+MAKER = program("make_reference")
 
 
 @pytest.mark.parametrize("file", MAKER.PAGES)
@@ -37,3 +46,12 @@ def test_every_type_of_the_keys_is_in_a_group_and_pictures_are_small():
     for picture, text, _ in MAKER.GROUPS.values():
         file = ROOT / "docs/images/keys" / f"{picture}.png"
         assert not picture or (text and file.stat().st_size <= 40_000)
+
+
+def test_the_gallery_shows_every_scenario_and_episode():
+    maker = program("make_gallery")
+    text = (ROOT / "docs/gallery.md").read_text(encoding="utf-8")
+    assert text == maker.page(), "Write it again: python docs/make_gallery.py"
+    files = re.findall(r'(?:src="|\]\()((?:_static|images)/[^")]+)', text)
+    assert len(files) == len(maker.EPISODES) + len(names())
+    assert all((ROOT / "docs" / file).is_file() for file in files)

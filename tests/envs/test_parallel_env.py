@@ -54,4 +54,4 @@ def test_mistakes_are_explained(env):
     with pytest.raises(BenchnavError, match="leader_0 got none"):
         env.step({})
     with pytest.raises(BenchnavError, match="must be None"):
-        LeadersEnv(render_mode="human")
+        LeadersEnv(render_mode="ansi")

@@ -44,6 +44,19 @@ def test_a_difference_is_told_in_words():
     assert lines[2].startswith("- all scenarios, track unknown (40 worlds): good succeeds 50 ")
 
 
+def test_a_side_that_is_declared_is_named():
+    """Times of arrivals are higher and worse, for text and figure alike."""
+    rows = scores({"a": [9.0] * 20, "b": [5.0] * 20}, "time_to_goal")
+    rows += scores({"a": [2.0] * 20, "b": [5.0] * 20}, "turning")
+    found = met(rows, "a", "b", "time_to_goal", "turning")
+    slow, steady = render_duel(found, METRICS).split("[low, high]: ")[0].split("## ")[1:]
+    assert slow.startswith("time_to_goal: worse")
+    assert "time_to_goal of a is 4.0 s higher" in slow
+    assert "(worse, among agents that arrive); by chance" in slow
+    assert "(better); by chance" in steady
+    assert {c.verdict for c in found.comparisons} == {"worse", "better"}
+
+
 def test_ties_and_too_few_worlds_are_called_what_they_are():
     rng = np.random.default_rng(0)
     tied = {"a": rng.integers(0, 2, 40), "b": rng.integers(0, 2, 40)}

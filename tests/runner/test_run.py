@@ -22,7 +22,7 @@ from benchnav.runner.execute.progress import Progress
 from benchnav.runner.plan import task as task_module
 from benchnav.runner.plan.shard import Shard
 from benchnav.runner.plan.suite import Selection, load_suite
-from benchnav.runner.plan.task import chunks
+from benchnav.runner.plan.task import chunks, joined_chunks
 from benchnav.runner.run import run_suite
 from benchnav.store.parts.part import SEAL
 from benchnav.store.runs.manifest import load_manifest
@@ -43,6 +43,7 @@ def suite_file(tmp_path, scenario_file, troubled):
 @pytest.fixture
 def small_tasks(monkeypatch):
     monkeypatch.setattr(task_module, "CHUNK", 2)
+    monkeypatch.setattr(task_module, "LARGEST", 1)
 
 
 def digests(run):
@@ -350,6 +351,19 @@ def test_ctrl_c_keeps_whole_parts_and_the_run_ends_in_the_same_table(suite_file,
 )
 def test_tasks_cover_what_is_missing_once(seeds, effort, expected):
     assert list(chunks(seeds, effort)) == expected
+
+
+@pytest.mark.parametrize(
+    ("seeds", "workers", "joined"),
+    [(0, 1, 1), (100, 0, 1), (256, 0, 2), (300, 2, 1), (1000, 2, 3), (10**6, 2, 4)],
+)
+def test_a_long_run_has_larger_tasks(seeds, workers, joined):
+    assert joined_chunks(seeds, workers) == joined
+
+
+def test_only_short_episodes_share_a_larger_task():
+    assert list(chunks(range(300), 1, 4)) == [(0, 256), (256, 300)]
+    assert list(chunks(range(100), 1e4, 4)) == [(0, 64), (64, 100)]
 
 
 def test_two_runs_into_one_folder_at_once_are_refused(suite_file, tmp_path):

@@ -52,6 +52,15 @@ def test_a_duel_is_drawn_as_it_is_judged():
     assert figure.get_suptitle() == "A: a   B: b   (A − B)"
 
 
+def test_times_of_arrivals_have_a_better_side():
+    rows = scores({"a": [9.0, 9.5] * 10, "b": [5.0, 6.0] * 10}, "time_to_goal")
+    (axes,) = draw_duel(duel(table(rows), METRICS, ("time_to_goal",), "a", "b"), METRICS).axes
+    assert [point[2:] for point in points_of(axes)] == [(RED, True)]
+    assert axes.get_xlabel().splitlines()[1:] == [
+        "← A better   B better →", "among agents that arrive",
+    ]  # fmt: skip
+
+
 def test_what_rehearsed_is_drawn_hollow_and_said():
     rows = scores({"a": [0.0] * 20}) + scores({"b": [1.0] * 20}, rehearsal=5)
     figure = draw_duel(duel(table(rows), METRICS, ("success",), "a", "b"), METRICS)

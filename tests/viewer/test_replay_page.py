@@ -1,5 +1,7 @@
 """The page of a replay in a real browser: it loads, plays, is scrubbed and jumps."""
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 
@@ -67,6 +69,64 @@ def test_nothing_sticks_out(page, tmp_path, size):
     """, tmp_path, size)  # fmt: skip
     assert result["wide"] <= 0
     assert result["narrow"] == []
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE])
+def test_parts_stand_where_they_belong(page, tmp_path, size):
+    """By the boxes of elements: fonts differ between machines, and with them every pixel."""
+    result = in_browser(page, READY + """
+      const root = document.documentElement, box = (element) => {
+        const { left, top, right, bottom } = element.getBoundingClientRect();
+        return { left, top: top + scrollY, right, bottom: bottom + scrollY };
+      };
+      const named = Object.fromEntries([".views", ".side", ".bar"].map((name) =>
+        [name.slice(1), box(document.querySelector(name))]));
+      return {
+        ...named, canvases: [...document.querySelectorAll(".view canvas")].map(box),
+        buttons: [...document.querySelectorAll(".bar button")].map(box),
+        captions: [...document.querySelectorAll(".caption")].map(box),
+        page: [root.clientWidth, innerHeight, root.scrollHeight],
+        charts: [...document.querySelectorAll(".chart canvas")].map(box),
+        track: box(document.querySelector(".track")),
+      };
+    """, tmp_path, size)  # fmt: skip
+    views, side, bar = (result[name] for name in ("views", "side", "bar"))
+    wide, high, long = result["page"]
+    first, second = result["canvases"]
+    assert all(button["bottom"] - button["top"] >= 32 for button in result["buttons"])
+    assert all(inside(button, bar) for button in (*result["buttons"], result["track"]))
+    assert all(inside(chart, side) for chart in result["charts"])
+    assert all(inside(c, v) for c, v in zip(result["captions"], (first, second), strict=True))
+    assert not any(overlap(*pair) for pair in combinations((first, second, side), 2))
+    assert (views["left"], bar["left"]) == (0, 0)
+    assert bar["right"] == pytest.approx(wide, abs=1)
+    if size == DESKTOP:  # beside each other, the bar below, and nothing to scroll
+        assert long <= high
+        assert first["top"] == second["top"]
+        assert views["right"] == pytest.approx(side["left"], abs=1)
+        assert bar["top"] == pytest.approx(views["bottom"], abs=1)
+        assert bar["bottom"] == pytest.approx(high, abs=1)
+        assert first["bottom"] - first["top"] > 0.8 * high
+    else:  # one below the other, with the bar always in sight
+        assert second["top"] >= first["bottom"]
+        assert side["top"] >= views["bottom"]
+        assert all(part["right"] == pytest.approx(wide, abs=1) for part in (first, second, side))
+        assert all(c["bottom"] - c["top"] >= 0.4 * wide for c in (first, second))
+        assert bar["bottom"] <= high + 1
+
+
+def inside(part, whole, room=1.0):
+    return all(
+        sign * (part[side] - whole[side]) >= -room
+        for side, sign in (("left", 1), ("top", 1), ("right", -1), ("bottom", -1))
+    )
+
+
+def overlap(one, other):
+    return (
+        min(one["right"], other["right"]) - max(one["left"], other["left"]) > 1
+        and min(one["bottom"], other["bottom"]) - max(one["top"], other["top"]) > 1
+    )
 
 
 def test_positions_are_those_of_the_episode(tmp_path):

@@ -80,7 +80,7 @@ def test_a_film_has_a_frame_for_each_state(episode, tmp_path):
 @pytest.mark.parametrize(
     ("module", "suffix", "extra"),
     [
-        ("matplotlib.figure", ".png", "view"), ("matplotlib.figure", ".gif", "view"),
+        ("matplotlib.figure", ".png", "view"),
         ("imageio_ffmpeg", ".mp4", "video"), ("mcap_protobuf.writer", ".mcap", "mcap"),
         ("rerun", ".rrd", "rerun"),
     ],

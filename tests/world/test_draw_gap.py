@@ -5,7 +5,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from benchnav.arena.solid import Kind, Solid
-from benchnav.generation.clearance import barrier, clear, joined, point_shapes, shifted
+from benchnav.generation.clearance import POINT, barrier, clear, joined
 from benchnav.generation.solids import bounds_wall
 from benchnav.geometry.rotation import rotated
 from tests.reference import clearance as slow
@@ -54,24 +54,32 @@ def shapes(draw):
 def test_agrees_with_shapely(walls, shape, place, gap, walled):
     if walled:
         walls = [bounds_wall((-5, -5, 5, 5)), *walls]
-    placed = shifted(shape, place[None])
-    true = slow.gap(placed[0], walls)
+    true = slow.gap(shape + np.array([*place, *place, 0.0]), walls)
     assume(abs(true - gap) > 1e-3)  # shapely's discs are polygons
-    assert clear(placed, barrier(walls), gap)[0] == (true > gap)
+    assert clear(shape, place[None], barrier(walls), gap)[0] == (true > gap)
 
 
 @settings(max_examples=100, deadline=None)
 @given(st.lists(solids(), max_size=3), st.lists(solids(), max_size=3), _PLACE, st.floats(0, 1))
 def test_clear_of_joined_is_clear_of_both(some, more, place, gap):
-    shape = point_shapes(place[None])
     both = joined(barrier(some), barrier(more))
-    apart = [clear(shape, barrier(part), gap)[0] for part in (some, more)]
-    assert clear(shape, both, gap)[0] == all(apart)
+    apart = [clear(POINT, place[None], barrier(part), gap)[0] for part in (some, more)]
+    assert clear(POINT, place[None], both, gap)[0] == all(apart)
+
+
+def test_only_a_whole_shape_encloses_a_solid():
+    loop = 2.0 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1.0]])
+    square = Solid(Kind.STATIC, (loop,)).capsules
+    inside = barrier([Solid(Kind.STATIC, (), (0.0, 0.0), 0.5)])
+    here = np.zeros((1, 2))
+    assert not clear(square, here, inside, 0.1)[0]
+    assert clear(square, here, inside, 0.1, whole=False)[0]
+    assert not clear(square, here, inside, 1.6, whole=False)[0]
 
 
 def test_every_shape_is_judged_for_itself():
     points = np.array([[0.0, 0.0], [3.0, 0.0], [0.6, 0.0]])
     wall = barrier([Solid(Kind.STATIC, (), (0.0, 0.0), 0.5)])
-    assert clear(point_shapes(points), wall, 0.0).tolist() == [False, True, True]
-    assert clear(point_shapes(points), wall, 0.2).tolist() == [False, True, False]
-    assert clear(point_shapes(points), barrier([]), 9.0).all()
+    assert clear(POINT, points, wall, 0.0).tolist() == [False, True, True]
+    assert clear(POINT, points, wall, 0.2).tolist() == [False, True, False]
+    assert clear(POINT, points, barrier([]), 9.0).all()

@@ -20,19 +20,19 @@ KINDS = ("vector", "sb3", "gymnasium", "pettingzoo")
 @overload
 def make_env(scenario: str | Scenario, *, num_worlds: int = ..., kind: Literal["vector"] = ...,
              encoder: str = ..., split: str = ..., worlds: int = ..., reward: "Reward" = ...,
-             ) -> "LeaderVectorEnv": ...  # fmt: skip
+             render_mode: str | None = ...) -> "LeaderVectorEnv": ...  # fmt: skip
 @overload
 def make_env(scenario: str | Scenario, *, num_worlds: int = ..., kind: Literal["sb3"],
              encoder: str = ..., split: str = ..., worlds: int = ..., reward: "Reward" = ...,
-             ) -> "AgentVecEnv": ...  # fmt: skip
+             render_mode: str | None = ...) -> "AgentVecEnv": ...  # fmt: skip
 @overload
 def make_env(scenario: str | Scenario, *, kind: Literal["gymnasium"], encoder: str = ...,
              split: str = ..., worlds: int = ..., reward: "Reward" = ..., others: "Spec",
-             ) -> "LeaderEnv": ...  # fmt: skip
+             render_mode: str | None = ...) -> "LeaderEnv": ...  # fmt: skip
 @overload
 def make_env(scenario: str | Scenario, *, kind: Literal["pettingzoo"], encoder: str = ...,
              split: str = ..., worlds: int = ..., reward: "Reward" = ...,
-             ) -> "LeadersEnv": ...  # fmt: skip
+             render_mode: str | None = ...) -> "LeadersEnv": ...  # fmt: skip
 def make_env(
     scenario: str | Scenario,
     *,
@@ -43,6 +43,7 @@ def make_env(
     worlds: int = 100,
     reward: "Reward" = None,
     others: "Spec | None" = None,
+    render_mode: str | None = None,
 ) -> Any:
     """Return an environment in which agents of a scenario learn.
 
@@ -57,6 +58,8 @@ def make_env(
         worlds: how many different worlds of the split are drawn.
         reward: weights that are not the defaults, by name.
         others: for "gymnasium", which needs it: the navigator of the other agents.
+        render_mode: "rgb_array": `render` returns pictures; "human", for "gymnasium" and
+            "pettingzoo": a window shows every decision; None: nothing is drawn.
 
     Raises UsageError or ConfigError for a mistake in the call, and MissingExtraError where the
     extra ``learn`` is not installed.
@@ -78,16 +81,18 @@ def make_env(
         raise UsageError(f"others is for the kind gymnasium. Got it with {kind!r}.")
     rows = 4 if num_worlds is None else num_worlds
     try:
-        return _made(kind, name, encoder, split, worlds, reward, rows, others)
+        return _made(kind, name, encoder, split, worlds, reward, rows, others, render_mode)
     except ModuleNotFoundError as error:
         raise MissingExtraError(f"An environment of the kind {kind!r}", "learn") from error
 
 
 def _made(
     kind: str, name: str, encoder: str, split: str, worlds: int, reward: "Reward", rows: int,
-    others: "Spec | None",
+    others: "Spec | None", render_mode: str | None,
 ) -> Any:  # fmt: skip
-    options: dict[str, Any] = {"split": split, "worlds": worlds, "reward": reward}
+    options: dict[str, Any] = {
+        "split": split, "worlds": worlds, "reward": reward, "render_mode": render_mode,
+    }  # fmt: skip
     if kind == "vector":
         from benchnav.envs.gym.leader_vector_env import LeaderVectorEnv
 
@@ -105,4 +110,4 @@ def _made(
     from benchnav.envs.sb3.attempt_monitor import AttemptMonitor
 
     batch = make_batch(name, encoder, split, worlds, reward, rows=rows)
-    return AttemptMonitor(AgentVecEnv([batch]))
+    return AttemptMonitor(AgentVecEnv([batch], render_mode))

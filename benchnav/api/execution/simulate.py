@@ -45,7 +45,7 @@ def simulate(
         raise UsageError(f"{contestant.label!r} cannot be run here: {job.reason}.")
     assignment = replace(job.assignment, salt=_salt(salt))
     (batch,) = perform(assignment, [(world.seed, world.record)])
-    return Episode(batch[0].episode)
+    return Episode(batch[0].episode, lambda: assignment)
 
 
 def _salt(text: str | None) -> str:

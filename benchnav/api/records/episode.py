@@ -20,13 +20,15 @@ if TYPE_CHECKING:
     import pandas as pd
 
     from benchnav.api.records.replay import Replay
+    from benchnav.verify.own_map import Origin
 
 
 class Episode:
     """States, commands and collisions of all agents. `record` holds them as arrays."""
 
-    def __init__(self, record: Record) -> None:
+    def __init__(self, record: Record, origin: "Origin | None" = None) -> None:
         self.record = record  # the plain record
+        self.origin = origin  # how it was made, to run its navigator again; None: unknown
 
     @property
     def navigator(self) -> str:
@@ -120,7 +122,7 @@ class Episode:
         """
         from benchnav.api.records.replay import Replay
 
-        return Replay([self.record], agents)
+        return Replay.of([self], agents)
 
     def _members(self, role: str | None) -> BoolArray:
         """(A,) the agents that are scored in a role."""

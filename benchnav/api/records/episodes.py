@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple, overload
 
 from benchnav.api.output.text_table import table_html
@@ -11,6 +12,7 @@ from benchnav.leaderboard.from_runs import matching_scenarios
 from benchnav.store.parts.part import Part
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.text.plural import counted
+from benchnav.verify.stored_origin import stored_origin
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,6 +30,7 @@ class Place(NamedTuple):
     scenario: str
     track: str
     seed: int
+    folder: RunFolder
 
 
 class Episodes(Sequence[Episode]):
@@ -93,7 +96,7 @@ class Episodes(Sequence[Episode]):
         """
         from benchnav.api.records.replay import MOST, Replay
 
-        return Replay([episode.record for episode in self[: MOST + 1]], agents)
+        return Replay.of(self[: MOST + 1], agents)
 
     def __repr__(self) -> str:
         navigators = dict.fromkeys(place.navigator for place in self._places)
@@ -136,7 +139,7 @@ def stored_episodes(
     known = {cell["scenario"] for cell in folder.manifest.cells}
     scenarios = known if scenario is None else matching_scenarios(known, [scenario])
     places = [
-        Place(part, cell["navigator"], cell["scenario"], each, s)
+        Place(part, cell["navigator"], cell["scenario"], each, s, folder)
         for cell in cells
         if navigator in (None, cell["navigator"]) and cell["scenario"] in scenarios
         for each in (*cell.get("also", ()), cell["track"])
@@ -156,7 +159,8 @@ def _read(places: Sequence[Place]) -> Iterator[Episode]:
     for record in places[0].part.episodes():
         place = wanted.get(record.identity.seed)
         if place is not None:
-            yield Episode(replace(record, identity=replace(record.identity, track=place.track)))
+            shown = replace(record, identity=replace(record.identity, track=place.track))
+            yield Episode(shown, partial(stored_origin, place.folder, record.identity))
 
 
 def _require(what: str, name: str | None, known: Sequence[str]) -> None:

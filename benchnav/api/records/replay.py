@@ -2,11 +2,12 @@
 
 import os
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from html import escape
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +15,10 @@ from benchnav.api.output.text_table import written
 from benchnav.arrays import IntArray
 from benchnav.episode.episode import Episode as Record
 from benchnav.errors import UsageError, did_you_mean
+
+if TYPE_CHECKING:
+    from benchnav.api.records.episode import Episode
+    from benchnav.verify.own_map import Origin
 
 PAGE, GIF, FILM = ".html", ".gif", ".mp4"
 MCAP, RERUN = ".mcap", ".rrd"
@@ -25,13 +30,20 @@ SUFFIXES = (PAGE, *FIGURES, GIF, FILM, RERUN, MCAP)
 class Replay:
     """One page with everything in it: it opens from disk without a network."""
 
-    def __init__(self, records: Sequence[Record], agents: Sequence[int] | None = None) -> None:
+    def __init__(
+        self,
+        records: Sequence[Record],
+        agents: Sequence[int] | None = None,
+        origins: "Sequence[Origin | None] | None" = None,
+    ) -> None:
         """Take 1 to 9 episodes.
 
         Args:
             records: the episodes.
             agents: those whose sensor readings and charts the page holds; None: up to four, first
                 those that did not succeed.
+            origins: how each episode was made, so that the page can show the maps that its
+                navigator made; None: without them.
 
         Raises UsageError for another number of episodes, and for an agent that there is not.
         """
@@ -44,14 +56,32 @@ class Replay:
             _require_agents(agents, len(record.world.agents))
         self._records = tuple(records)
         self._agents = agents
+        self._origins = tuple(origins or [None] * len(self._records))
+
+    @classmethod
+    def of(cls, episodes: "Iterable[Episode]", agents: Sequence[int] | None = None) -> "Replay":
+        """Return the replay of episodes of the Python API, with the maps that navigators made."""
+        chosen = list(episodes)  # each is read once
+        origins = [episode.origin for episode in chosen]
+        return cls([episode.record for episode in chosen], agents, origins)
 
     @cached_property
     def html(self) -> str:
         """The page."""
+        return self.page()
+
+    def page(self, assets: str = "") -> str:
+        """Return the page; ``assets`` is that of `benchnav.viewer.replay.page.replay_page`."""
         from benchnav.viewer.replay.page import replay_page
         from benchnav.viewer.replay.scene import scene
 
-        return replay_page([scene(each, self._chosen_agents(each)) for each in self._records])
+        return replay_page(
+            [
+                scene(record, self._chosen_agents(record), origin)
+                for record, origin in zip(self._records, self._origins, strict=True)
+            ],
+            assets,
+        )
 
     def save(self, path: "str | PathLike[str]", times: Sequence[float] = ()) -> Path:
         """Write the replay to a file, in the format of its suffix, and return its path.

@@ -266,6 +266,36 @@ class Run:
             message(f"{size:.1f} MB, content {content_digest(self.folder)}")
         return target
 
+    def report(
+        self,
+        out: "str | PathLike[str]",
+        *,
+        runs: "Iterable[Run | str | PathLike[str]]" = (),
+        metrics: str | Sequence[str] | None = None,
+        replays: int | None = None,
+        verify: bool = False,
+        quiet: bool = False,
+    ) -> Path:
+        """Write a report: a folder of pages that opens from disk, and return its first page.
+
+        Args:
+            out: the folder; an earlier report there is replaced.
+            runs: other runs to show in the same report.
+            metrics: names of metrics on the leaderboard, or "all"; None: the usual ones and more.
+            replays: the largest number of failed episodes that can be watched in it; None: 100.
+            verify: first verify the runs that were not verified on this machine.
+            quiet: print nothing.
+
+        Raises UsageError where the folder holds something else.
+        """
+        from benchnav.api.records.report import write
+
+        with self._with(runs) as folders:
+            return write(
+                folders, Path(out), metrics=_names(metrics), replays=replays, verify=verify,
+                quiet=quiet,
+            )  # fmt: skip
+
     def report_missing(self, notify: Any = message) -> None:
         """Print which episodes are missing; nothing for a complete run."""
         from benchnav.store.runs.completeness import missing_episodes

@@ -64,7 +64,7 @@ def replay(
 
     Without options it shows the first episode in which an agent did not succeed, or the first one.
     """
-    from benchnav.api.records.replay import Replay, open_in_browser
+    from benchnav.api.records.replay import open_in_browser
     from benchnav.api.records.run import open_run
 
     navigators = navigator or []
@@ -79,7 +79,7 @@ def replay(
         else:
             is_unnamed = not (failed or worst or seed is not None)
             chosen = _first(opened, found, navigators, failed_first=is_unnamed)
-        page = Replay([episode.record for episode in chosen], agent)
+        page = chosen.replay(agent)
         path = page.save(out or Path(_file_name(chosen.places)), time or ())
     say(f"{page!r}")
     put(str(path))

@@ -47,7 +47,7 @@ def watch(
     for episode in episodes:
         say(f"{episode!r}")
     path = out or Path(file_name("watch", *navigators, scenario, str(seed), suffix=".html"))
-    Replay([episode.record for episode in episodes]).save(path)
+    Replay.of(episodes).save(path)
     put(str(path))
     if show and not open_in_browser(path):
         say("There is no display here: open the file above in a browser.")

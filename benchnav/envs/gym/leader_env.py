@@ -10,7 +10,7 @@ from benchnav.envs.background_agents import BackgroundNavigator
 from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.factory import Reward, check_render_mode, drawn_index, make_batch
 from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
-from benchnav.envs.rendering import RENDER_MODES, Renderer
+from benchnav.envs.rendering import FPS, RENDER_MODES, Display
 from benchnav.envs.seeding import plain_seed
 from benchnav.errors import UsageError
 from benchnav.navigation.plugin.configure import Spec
@@ -23,7 +23,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
     ``benchnav/Leader-v0`` by `benchnav.envs.gym.registration`.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": list(RENDER_MODES), "render_fps": 5}  # type: ignore[misc]
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": list(RENDER_MODES), "render_fps": FPS}  # type: ignore[misc]
 
     def __init__(
         self,
@@ -45,24 +45,26 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
             worlds: number of worlds of the split.
             reward: weights that differ from the defaults of `RewardWeights`.
             others: the navigator of the other agents, by name or ``{"type": name, …}``; required.
-            render_mode: "rgb_array": `render` returns a picture; None: nothing is drawn.
+            render_mode: "rgb_array": `render` returns a picture; "human": a window shows every
+                decision in real time; None: nothing is drawn.
 
         Raises BenchnavError for a mistake in any of these.
         """
         check_render_mode(render_mode, RENDER_MODES)
-        self.render_mode, self._renderer = render_mode, Renderer()
+        self.render_mode = render_mode
         if others is None:
             raise UsageError(
                 'others must name the navigator of the other agents: others="NAME".'
                 " 'benchnav list navigators' shows all."
             )
-        self.batch = make_batch(scenario, encoder, split, worlds, reward)
+        self.batch = make_batch(scenario, encoder, split, worlds, reward, autoreset=False)
         self.observation_space = observation_space(self.batch.encoder)
         self.action_space = action_space()
         self.agent = 0
         self._others = BackgroundNavigator(
             others, self.batch.simulation, self.batch.width - 1, "others"
         )
+        self._display = Display(render_mode, self.batch.simulation, scenario)
         self._begun = self._going = False
 
     def reset(
@@ -88,6 +90,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         seen = self.batch.reset(np.array([world]))
         self._others.start(np.zeros(1, np.int64), [learners[learners != self.agent]], [others])
         self._begun = self._going = True
+        self._display.refresh(self.agent)
         return seen[0, self.agent].copy(), {"world": world, "agent": chosen}
 
     def step(self, action: Float32Array) -> tuple[Float32Array, float, bool, bool, dict[str, Any]]:
@@ -104,6 +107,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         step = self.batch.step(commands, self._others.decide(self.batch.active))
         terminated, truncated = bool((step.arrived | step.touched)[at]), bool(step.timed_out[at])
         self._going = not (terminated or truncated)
+        self._display.refresh(self.agent)
         info = {
             "is_success": bool(step.arrived[at]),
             "terms": {name: float(term[at]) for name, term in terms(step).items()},
@@ -111,12 +115,17 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         return last_seen(step)[at], float(step.reward[at]), terminated, truncated, info
 
     def render(self) -> ByteArray | None:
-        """Return the world now (H, W, 3), with a ring around the learning agent; None: no mode.
+        """Return the world now (H, W, 3), with a ring around the learning agent.
 
-        Raises UsageError before the first reset.
+        Returns None in the mode "human", which shows it, and without a mode. Raises UsageError
+        before the first reset.
         """
         if self.render_mode is None:
             return None
         if not self._begun:
             raise UsageError("There is no world to draw: call reset() before render().")
-        return self._renderer.frame(self.batch.simulation, 0, self.agent)
+        return self._display.frame(self.agent)
+
+    def close(self) -> None:
+        """Close the window of the mode "human"."""
+        self._display.close()

@@ -7,15 +7,17 @@ import numpy as np
 from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import BoolArray, ByteArray, FloatArray
 from benchnav.envs.agent_batch import Transition
 from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.factory import Reward, check_render_mode, make_batch
 from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
 from benchnav.envs.learner_slots import LearnerSlots
+from benchnav.envs.rendering import FPS, RGB_ARRAY, Renderer
 from benchnav.envs.seeding import joint_seed, plain_seed
 from benchnav.errors import UsageError
 
+PICTURE = 240  # [pixels] of one slot: many are shown together
 Stepped = tuple[Float32Array, FloatArray, BoolArray, BoolArray, dict[str, Any]]
 
 
@@ -29,7 +31,8 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
     """
 
     metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
-        "render_modes": [],
+        "render_modes": [RGB_ARRAY],
+        "render_fps": FPS,
         "autoreset_mode": AutoresetMode.SAME_STEP,
     }
 
@@ -46,15 +49,16 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         render_mode: str | None = None,
         num_worlds: int = 1,
     ) -> None:
-        """Draw the worlds. The parameters are those of `LeaderEnv`, except for three.
+        """Draw the worlds. The parameters are those of `LeaderEnv`, except for four.
 
         ``num_envs`` is N = B L, a multiple of the learning agents of a world, or None: then
         ``num_worlds`` gives B. ``others`` must be None, because all agents without a driver of the
-        scenario learn.
+        scenario learn. ``render_mode`` is "rgb_array" or None; Gymnasium's wrapper
+        `HumanRendering` shows the pictures in a window.
 
         Raises BenchnavError for a mistake in any of these.
         """
-        check_render_mode(render_mode)
+        check_render_mode(render_mode, (RGB_ARRAY,))
         if others is not None:
             raise UsageError(
                 "Every agent learns here: `others` must be None. Got"
@@ -62,6 +66,7 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
             )
         self.batch = make_batch(scenario, encoder, split, worlds, reward, num_envs, rows=num_worlds)
         self._slots = LearnerSlots(self.batch)
+        self.render_mode, self._renderer = render_mode, Renderer(self.batch.simulation, PICTURE)
         self.num_envs, self._begun = self._slots.size, False
         self.single_observation_space = observation_space(self.batch.encoder)
         self.single_action_space = action_space()
@@ -100,6 +105,22 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         reward: FloatArray = step.reward.reshape(-1)
         seen = self._flat(step.observation)
         return seen, reward, terminated, step.timed_out.reshape(-1), self._info(step)
+
+    def render(self) -> tuple[ByteArray, ...] | None:
+        """Return a picture (H, W, 3) for each slot, with a ring around its agent if it acts.
+
+        Slots of a row share a world. A row that starts again shows its next world. Returns None
+        without a render mode. Raises UsageError before the first reset.
+        """
+        if self.render_mode is None:
+            return None
+        if not self._begun:
+            raise UsageError("There is no world to draw: call reset() before render().")
+        pictures: list[ByteArray] = []
+        for row, agents in enumerate(np.where(self._slots.active, self._slots.agent, -1)):
+            marked = [int(agent) if agent >= 0 else None for agent in agents]
+            pictures += self._renderer.frames(row, marked)
+        return tuple(pictures)
 
     def _info(self, step: Transition) -> dict[str, Any]:
         acted, over = step.acted.reshape(-1), step.over.reshape(-1)

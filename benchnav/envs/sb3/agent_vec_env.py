@@ -7,11 +7,13 @@ from typing import Any, cast
 import numpy as np
 from stable_baselines3.common.vec_env import VecEnv
 
-from benchnav.arrays import BoolArray
+from benchnav.arrays import BoolArray, ByteArray
 from benchnav.envs.agent_batch import AgentBatch, Correction, Transition
 from benchnav.envs.episode_stats import Tally
+from benchnav.envs.factory import check_render_mode
 from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
 from benchnav.envs.learner_slots import LearnerSlots
+from benchnav.envs.rendering import FPS, RGB_ARRAY, Renderer
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import UsageError
 
@@ -25,10 +27,22 @@ class AgentVecEnv(VecEnv):
     `AttemptPPO` do.
     """
 
-    render_mode: str | None = None
+    render_mode: str | None
 
-    def __init__(self, batches: Sequence[AgentBatch]) -> None:
+    def __init__(self, batches: Sequence[AgentBatch], render_mode: str | None = None) -> None:
+        """Take batches, which are reset by `reset`.
+
+        Args:
+            batches: of the same encoder.
+            render_mode: "rgb_array": `render` returns one picture of all worlds; None.
+
+        Raises NoRenderingError for another mode.
+        """
+        check_render_mode(render_mode, (RGB_ARRAY,))
+        self.render_mode = render_mode
         self.batches = tuple(batches)
+        self._renderers = tuple(Renderer(batch.simulation) for batch in self.batches)
+        self._begun = False
         self._slots = tuple(LearnerSlots(batch) for batch in self.batches)
         self.tally = Tally()
         size = sum(slots.size for slots in self._slots)
@@ -37,6 +51,7 @@ class AgentVecEnv(VecEnv):
         self._action: Any = None
         space: Any = observation_space(self.batches[0].encoder)
         super().__init__(size, space, cast(Any, action_space()))
+        self.metadata: dict[str, Any] = {**self.metadata, "render_fps": FPS}
 
     def enter(self, weights: RewardWeights, seed: int, correct: Correction | None = None) -> None:
         """Set reward weights, seed of worlds and correction of commands, from the next reset on."""
@@ -60,6 +75,7 @@ class AgentVecEnv(VecEnv):
         if seed is not None:
             for k, batch in enumerate(self.batches):
                 batch.reseed(np.random.default_rng([seed, k]))
+        self._begun = True
         self._reset_seeds()
         self._reset_options()
         observation = np.concatenate([_flat(slots.reset()) for slots in self._slots])
@@ -89,6 +105,19 @@ class AgentVecEnv(VecEnv):
             _describe_ends(step, infos[first : first + step.acted.size])
             first += step.acted.size
         return observation, reward, done, infos
+
+    def get_images(self) -> Sequence[ByteArray | None]:
+        """Return a picture (H, W, 3) of each world, from which `render` makes one.
+
+        Raises UsageError before the first reset.
+        """
+        if not self._begun:
+            raise UsageError("There is no world to draw: call reset() before render().")
+        return [
+            renderer.frame(row)
+            for batch, renderer in zip(self.batches, self._renderers, strict=True)
+            for row in range(batch.rows)
+        ]
 
     def close(self) -> None:
         pass

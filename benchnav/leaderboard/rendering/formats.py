@@ -108,13 +108,23 @@ def _latex(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
     return latex_document(list(matrix_sections(board, shown)), legend(board))
 
 
-_STYLE = (
-    "body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem;"
-    "color-scheme:light dark}table{border-collapse:collapse;font-variant-numeric:tabular-nums}"
-    "div{overflow-x:auto}th,td{padding:.25rem .75rem;text-align:right;white-space:nowrap;"
-    "border-bottom:1px solid #8884}th:first-child,td:first-child{text-align:left}"
-    "h2{margin-top:2.5rem}h3{font-size:1.05rem;margin-top:1.5rem}p{font-size:.9rem}"
-)
+_STYLE = """
+:root{color-scheme:light dark}
+body{font:15px/1.5 system-ui,sans-serif;margin:2rem auto;max-width:75rem;padding:0 1rem;
+overflow-wrap:anywhere}
+div{overflow-x:auto}
+table{border-collapse:separate;border-spacing:0;font-variant-numeric:tabular-nums}
+th,td{padding:.25rem .75rem;text-align:right;white-space:nowrap;border-bottom:1px solid #8884}
+th:first-child,td:first-child{text-align:left;position:sticky;left:0;background:Canvas}
+h2{margin-top:2.5rem}
+h3{font-size:1.05rem;margin-top:1.5rem}
+p{font-size:.9rem}
+@media (max-width:40rem){
+th,td{padding:.25rem .5rem}
+th:first-child,td:first-child{white-space:normal;width:7.5rem;min-width:7.5rem;
+border-right:1px solid #8884}
+}
+"""  # the first column, which names the row, stays in sight where a table scrolls sideways
 
 
 def html_fragment(board: Leaderboard, metrics: Metrics = None, columns: Metrics = None) -> str:

@@ -23,6 +23,8 @@ VERBS = {
 }  # fmt: skip
 """The verbs of rates of events of an agent; all other metrics are "higher" or "lower"."""
 
+ARRIVALS = "among agents that arrive"
+
 
 def render_duel(duel: Duel, metrics: Mapping[str, Metric], format: str = "markdown") -> str:
     """Return a comparison as text that ends with a line break: sentences, or tidy CSV or JSON.
@@ -96,7 +98,9 @@ def _difference(c: Comparison, metric: Metric) -> str:
     if verb:
         return f"{c.first} {verb} {value}{unit} {'more' if sign > 0 else 'less'} often{ends}"
     way = "higher" if sign > 0 else "lower"
-    good = f" ({c.verdict})" if c.verdict in ("better", "worse") else ""
+    parts: list[str] = [c.verdict] if c.verdict in ("better", "worse") else []
+    parts += [ARRIVALS] if metric.conditional else []
+    good = f" ({', '.join(parts)})" if parts else ""
     return f"{metric.name} of {c.first} is {value}{unit} {way}{ends}{good}"
 
 

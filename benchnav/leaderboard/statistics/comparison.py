@@ -68,6 +68,6 @@ def _verdict(c: Comparison, metric: Metric | None) -> Verdict:
         return "not as equals"
     if not c.adjusted < ALPHA:
         return "too few worlds" if c.family * least_p(c.worlds) >= ALPHA else "tie"
-    if metric is None or metric.better is None or metric.conditional:
+    if metric is None or metric.better is None:
         return "higher" if c.difference > 0 else "lower"
     return "better" if (c.difference > 0) == (metric.better == "higher") else "worse"

@@ -60,8 +60,39 @@ class Setting:
     unit: str  # of x; "" if the scenario gives none
 
 
+@dataclass(frozen=True, eq=False)
+class Attempt:
+    """The success times of the evaluated agents of one role in one episode."""
+
+    navigator: str
+    scenario: str
+    track: str
+    role: str
+    split: str
+    scenario_hash: str
+    horizon: float  # [s] of the episode
+    dt: float  # [s]
+    rehearsal: int  # rehearsals granted to the navigator
+    seed: int
+    times: FloatArray  # (N,) [s] of success; inf without success
+
+
 Key = tuple[str, str, str, str, str, float, float, int, str]
-Worlds = dict[int, tuple[FloatArray, int]]  # seed → shares at every time, agents
+Worlds = dict[int, FloatArray]  # seed → success times
+
+
+def attempts_of(episode: Episode) -> Iterator[Attempt]:
+    """Yield the attempts of an episode, one for each role. Background agents are left out."""
+    identity, clock, agents = episode.identity, episode.world.clock, episode.world.agents
+    times = success_time(episode)
+    for role in Role:
+        members = agents.evaluated & (agents.role == role)
+        if members.any():
+            yield Attempt(
+                identity.navigator, identity.scenario, identity.track, role.name.lower(),
+                identity.split, identity.scenario_hash, clock.horizon, clock.dt,
+                episode.rehearsals, identity.seed, times[members],
+            )  # fmt: skip
 
 
 def horizon_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[Point, ...]:
@@ -72,20 +103,18 @@ def horizon_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[P
     ones for each split, scenario hash, horizon, time step or number of rehearsals. A repeated
     episode counts once. Background agents are left out.
     """
+    return curves_of((a for episode in episodes for a in attempts_of(episode)), points)
+
+
+def curves_of(attempts: Iterable[Attempt], points: int = POINTS) -> tuple[Point, ...]:
+    """Return the same curves from the attempts of the episodes."""
     curves: dict[Key, Worlds] = {}
-    for episode in episodes:
-        identity, clock, agents = episode.identity, episode.world.clock, episode.world.agents
-        times = success_time(episode)
-        for role in Role:
-            members = agents.evaluated & (agents.role == role)
-            if members.any():
-                key = (
-                    identity.split, identity.track, identity.scenario, role.name.lower(),
-                    identity.scenario_hash,
-                    clock.horizon, clock.dt, episode.rehearsals, identity.navigator,
-                )  # fmt: skip
-                shares = success_by_horizon(times[members], _times(clock.horizon, points))
-                curves.setdefault(key, {})[identity.seed] = (shares, int(members.sum()))
+    for a in attempts:
+        key = (
+            a.split, a.track, a.scenario, a.role, a.scenario_hash, a.horizon, a.dt, a.rehearsal,
+            a.navigator,
+        )  # fmt: skip
+        curves.setdefault(key, {})[a.seed] = a.times
     return tuple(p for key in sorted(curves) for p in _horizon_curve(key, curves[key], points))
 
 
@@ -97,11 +126,13 @@ def _times(horizon: float, points: int) -> FloatArray:
 
 def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
     split, track, scenario, role, digest, horizon, dt, rehearsal, navigator = key
-    value = np.array([worlds[seed][0] for seed in sorted(worlds)])
-    agents = np.array([[float(worlds[seed][1])] * points for seed in sorted(worlds)])
+    times = [worlds[seed] for seed in sorted(worlds)]
+    every = np.array([success_by_horizon(each, _times(horizon, points)) for each in times])
+    value, places = np.unique(every, axis=1, return_inverse=True)  # few times differ
+    agents = np.repeat([[float(len(each))] for each in times], value.shape[1], axis=1)
     weights = resample(len(value), np.random.default_rng(0))
-    found = estimate(Sample(value, agents, weights), columns_of([success] * points))
-    for k, time in enumerate(_times(horizon, points)):
+    found = estimate(Sample(value, agents, weights), columns_of([success] * value.shape[1]))
+    for k, time in zip(places.ravel().tolist(), _times(horizon, points), strict=True):
         yield Point(
             navigator, scenario, track, role, success.name, HORIZON, "s", float(time),
             float(found.value[k]), float(found.low[k]), float(found.high[k]), "", len(value),

@@ -4,7 +4,7 @@
 cached as long as the episode exists, and callers must not modify it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -17,20 +17,18 @@ from benchnav.metrics.quantities.encounters import Encounters, encounters, thing
 from benchnav.metrics.quantities.lowpass import smooth_velocity
 from benchnav.metrics.quantities.trajectory import Trajectories, cut, positions_at
 
+TeamMotion = tuple[FloatArray, FloatArray, BoolArray, FloatArray]
+"""Places, steps (n, N, 2) [m] and activity (n, N) of n members, and their radii (n,) [m]."""
 
-@dataclass(frozen=True, eq=False)
-class Analysis:
-    """Intermediate results. It has no reference to the episode, so both can be freed."""
 
-    world: World
-    trajectories: Trajectories
-    body_position: FloatArray  # (T+1, M, 2) [m]
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Endings:
+    """How the attempts of an episode end; it needs no trajectories."""
+
     failed: BoolArray  # (A,) its navigator failed in this episode
-    driven: IntArray  # (T,) number of agents that the navigator drives in each decision
     active_at_end: BoolArray  # (A,) still on its way when the record ends
     arrival: FloatArray  # (A,) [s], NaN without an arrival or if its navigator failed
     contacts: Contacts
-    decision: FloatArray  # (T,) [s]
 
     @property
     def arrived(self) -> BoolArray:
@@ -45,6 +43,30 @@ class Analysis:
         hit = np.zeros(len(self.arrival), np.bool_)
         hit[c.agent[early]] = True
         return self.arrived & ~hit
+
+
+def endings(episode: Episode) -> Endings:
+    """Return how the attempts of an episode end."""
+    failed = (episode.status == int(Status.FAILED)).any(axis=0)
+    if episode.failure:
+        failed = failed | episode.world.agents.evaluated
+    return Endings(
+        failed=failed,
+        active_at_end=episode.status[-1] == int(Status.ACTIVE),
+        arrival=np.where(failed, np.nan, episode.arrival),
+        contacts=episode.contacts,
+    )
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Analysis(Endings):
+    """Intermediate results. It has no reference to the episode, so both can be freed."""
+
+    world: World
+    trajectories: Trajectories
+    body_position: FloatArray  # (T+1, M, 2) [m]
+    driven: IntArray  # (T,) number of agents that the navigator drives in each decision
+    decision: FloatArray  # (T,) [s]
 
     @cached_property
     def geodesic(self) -> FloatArray:
@@ -80,6 +102,28 @@ class Analysis:
         step = positions_at(self.trajectories, times + 0.25) - place
         return place, step, times[None] < self.trajectories.end[:, None]
 
+    def teams_together(self, members: BoolArray) -> list[TeamMotion]:
+        """Return the `group_motion` of each team, while two or more members are on their way.
+
+        Teams in which this never happens are left out. ``members`` (A,) selects the agents.
+        """
+        key = members.tobytes()
+        if key not in self._together:
+            place, step, active = self.group_motion
+            agents, teams = self.world.agents, []
+            for team in sorted(set(agents.team[members].tolist())):
+                own = np.flatnonzero(members & (agents.team == team))
+                together = active[own].sum(axis=0) > 1
+                if together.any():
+                    now = np.ix_(own, np.flatnonzero(together))
+                    teams.append((place[now], step[now], active[now], agents.radius[own]))
+            self._together[key] = teams
+        return self._together[key]
+
+    @cached_property
+    def _together(self) -> dict[bytes, list[TeamMotion]]:
+        return {}
+
     def smooth_velocity(self, agent: int) -> FloatArray:
         """Return the velocity (N, 2) [m/s] of an agent at a fixed rate, low-passed by `lowpass`."""
         if agent not in self._smooth:
@@ -105,21 +149,14 @@ def analyse(episode: Episode) -> Analysis:
     """Return the analysis of an episode: the same object in every call."""
     found: Analysis | None = vars(episode).get(_KEPT)
     if found is None:
-        final = episode.status[-1]
-        failed = (episode.status == int(Status.FAILED)).any(axis=0)
-        if episode.failure:
-            failed = failed | episode.world.agents.evaluated
+        ends = endings(episode)
+        active = episode.status == int(Status.ACTIVE)
         found = Analysis(
+            **{field.name: getattr(ends, field.name) for field in fields(Endings)},
             world=episode.world,
             trajectories=cut(episode),
             body_position=episode.body_position,
-            failed=failed,
-            driven=(episode.status == int(Status.ACTIVE))[:-1, episode.world.agents.evaluated].sum(
-                axis=1
-            ),
-            active_at_end=final == int(Status.ACTIVE),
-            arrival=np.where(failed, np.nan, episode.arrival),
-            contacts=episode.contacts,
+            driven=active[:-1, episode.world.agents.evaluated].sum(axis=1),
             decision=episode.timings.decision,
         )
         vars(episode)[_KEPT] = found

@@ -134,6 +134,13 @@ class Hierarchical(Navigator):
             return ()
         return self._logs[row].remarks(adapts=self.controller.adapts_clearance)
 
+    @property
+    def has_own_map(self) -> bool:
+        return self.mapping is not None
+
+    def own_map(self, row: int, agent: int) -> Map | None:
+        return None if self.mapping is None else self.mapping.map(row, agent)
+
     def act(self, observation: Observation) -> FloatArray:
         if self.mapping is not None:
             self.mapping.see(observation)

@@ -16,7 +16,7 @@ from benchnav.processes.process_tree import resident, tree
 from benchnav.runner.execute.call_timer import CallTimer
 from benchnav.runner.execute.task_failure import TaskFailure
 from benchnav.runner.plan.limits import Limits
-from benchnav.runner.plan.task import CHUNK, Measuring, Outcome, Played, Task
+from benchnav.runner.plan.task import CHUNK, LARGEST, Measuring, Outcome, Played, Task
 
 IDLE_SLACK = 5.0  # [s] added to the time limit of a call, for the time between two calls
 MEASURING_TIMEOUT = 300.0  # [s] for one episode
@@ -220,7 +220,7 @@ class WorkerSlot:
         self._measuring_time += min(elapsed, 1.0)
         if measurer.exitcode is not None:
             return self._failure(exit_text(measurer.exitcode), measurer.exitcode)
-        room = MEASURING_TIMEOUT + CHUNK * len(self._plugins) * self._limits.timeout
+        room = MEASURING_TIMEOUT + LARGEST * CHUNK * len(self._plugins) * self._limits.timeout
         if self._measuring_time > room:
             return self._failure(f"wrote an episode that cannot be measured within {room:g} s")
         if resident(measurer.pid) > self._limits.memory * 1e9:

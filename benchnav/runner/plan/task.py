@@ -27,7 +27,9 @@ from benchnav.store.parts.staged import check_rehearsals, staged_episodes
 
 Tick = Callable[[int], None]
 CHUNK = 64  # seeds of a task: many for a fast lockstep, few because an interruption loses them
+LARGEST = 4  # times `CHUNK`: a task of a run that has many more tasks than workers
 EFFORT = 4_000_000  # agent-decisions of a task, as estimated by `Job.effort`
+LIGHT = 500_000  # agent-decisions of a task of more than `CHUNK` seeds
 
 
 @dataclass(frozen=True)
@@ -94,9 +96,16 @@ class Outcome:
     tracebacks: Mapping[str, str] = field(default_factory=dict)  # one for each kind of reason
 
 
-def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
-    """Yield ranges (first, stop) that cover ``seeds``; ``effort`` is that of one seed."""
-    size = max(1, min(CHUNK, int(EFFORT / max(effort, 1.0))))
+def chunks(seeds: Iterable[int], effort: float, joined: int = 1) -> Iterator[tuple[int, int]]:
+    """Yield ranges (first, stop) that cover ``seeds``.
+
+    Args:
+        seeds: of one cell.
+        effort: that of one seed.
+        joined: how many times `CHUNK` a range may hold, if its episodes are short.
+    """
+    effort = max(effort, 1.0)
+    size = max(1, min(CHUNK, int(EFFORT / effort)), min(CHUNK * joined, int(LIGHT / effort)))
     run: list[int] = []
     for seed in sorted(seeds):
         if run and (seed != run[-1] + 1 or len(run) == size):
@@ -105,6 +114,15 @@ def chunks(seeds: Iterable[int], effort: float) -> Iterator[tuple[int, int]]:
         run.append(seed)
     if run:
         yield run[0], run[-1] + 1
+
+
+def joined_chunks(seeds: int, workers: int) -> int:
+    """Return how many times `CHUNK` seeds a task of a run may hold, as `chunks` takes it.
+
+    Large batches share the costs of a call among more worlds. Each worker still gets
+    two tasks or more, so that they end at about the same time.
+    """
+    return max(1, min(LARGEST, seeds // (CHUNK * 2 * max(workers, 1))))
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from benchnav.runner.rollouts.seeding import generator, place
 from benchnav.runner.rollouts.tamper_guard import Guard
 from benchnav.world.simulation import Simulation
 
-MAX_WORLDS = 64  # of a batch: larger batches are hardly faster and need more memory
+MAX_WORLDS = 256  # of a batch: larger batches are hardly faster and need more memory
 MAX_BYTES = 256 << 20  # of recorded states of a batch that runs to its horizon
 _BYTES = 72  # recorded per agent and decision
 

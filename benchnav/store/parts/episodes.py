@@ -127,23 +127,45 @@ def from_table(table: pa.Table, order: Sequence[int] | None = None) -> Iterator[
     for field in EPISODES:
         if field.name not in LATER and table.column(field.name).null_count:
             raise ValueError(f"{field.name} must have a value in every row")
-    batches = table.to_batches()
-    rows = [(batch, row) for batch in batches for row in range(batch.num_rows)]
+    batches = [_Columns(batch) for batch in table.to_batches()]
+    rows = [(batch, row) for batch in batches for row in range(batch.rows)]
     for place in range(len(rows)) if order is None else order:
         yield _episode(*rows[place])
 
 
-def _episode(batch: pa.RecordBatch, row: int) -> Episode:
+class _Columns:
+    """The columns of a record batch: scalars as lists, lists as their numbers and offsets.
+
+    Access to a single cell of a record batch takes longer than the rest of an episode.
+    """
+
+    def __init__(self, batch: pa.RecordBatch) -> None:
+        self.rows = batch.num_rows
+        self.worlds = batch.column("world")  # texts, which are large
+        self._scalars: dict[str, list[Any]] = {}
+        self._lists: dict[str, tuple[list[int], AnyArray]] = {}
+        for name in EPISODES.names:
+            column = batch.column(name)
+            if isinstance(column, pa.LargeListArray) and name not in LATER:
+                numbers = column.values.to_numpy(zero_copy_only=False)
+                self._lists[name] = column.offsets.to_pylist(), numbers
+            elif name != "world":
+                self._scalars[name] = column.to_pylist()
+
+    def scalar(self, name: str, row: int) -> Any:
+        return self._scalars[name][row]
+
+    def values(self, name: str, row: int, dtype: Any) -> AnyArray:
+        offsets, numbers = self._lists[name]
+        return np.array(numbers[offsets[row] : offsets[row + 1]], dtype=dtype)
+
+
+def _episode(batch: _Columns, row: int) -> Episode:
     def scalar(name: str) -> Any:
-        return batch.column(name)[row].as_py()
+        return batch.scalar(name, row)
 
     def values(name: str, dtype: Any) -> AnyArray:
-        column = batch.column(name)
-        flat = column.values.slice(
-            column.offsets[row].as_py(),
-            column.offsets[row + 1].as_py() - column.offsets[row].as_py(),
-        )
-        return np.array(flat.to_numpy(zero_copy_only=False), dtype=dtype)
+        return batch.values(name, row, dtype)
 
     steps, agents, bodies = scalar("steps"), scalar("agents"), scalar("bodies")
     size = {"T": steps, "T+1": steps + 1, "A": agents, "M": bodies, "2": 2}
@@ -158,7 +180,7 @@ def _episode(batch: pa.RecordBatch, row: int) -> Episode:
         None if latency is None else np.array(latency, np.float64), scalar("memory_bytes"),
         scalar("rehearsal_seconds") or 0.0,
     )  # fmt: skip
-    world = world_from_json(scalar("world"))
+    world = world_from_json(batch.worlds[row].as_py())
     if (len(world.agents), len(world.bodies)) != (agents, bodies):
         raise ValueError(f"its world must have {agents} agents and {bodies} bodies")
     if len({len(array) for array in contacts.values()}) > 1:

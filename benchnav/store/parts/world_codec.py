@@ -6,6 +6,7 @@ digits that read back to the same bits, so a round trip changes nothing.
 """
 
 import json
+from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache
@@ -19,6 +20,7 @@ from benchnav.arrays import AnyArray
 from benchnav.config.document import shown
 
 _DTYPES = ("<f8", "<i8", "|i1", "|b1")
+Convert = Callable[[Any], Any]
 _PLAIN = {bool: (bool,), int: (int,), float: (int, float), str: (str,)}  # types of JSON itself
 MAX_TEXT = 64 << 20  # characters of a world; one of a million triangles takes 50 MB
 _MAX_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of values
@@ -46,17 +48,8 @@ def world_from_json(text: str) -> World:
 
 def encode(value: Any) -> Any:
     """Return plain JSON values of a dataclass, array, enum, tuple or number."""
-    if isinstance(value, np.ndarray):
-        return [value.dtype.str, list(value.shape), value.ravel().tolist()]
-    if is_dataclass(value) and not isinstance(value, type):
-        return {f.name: encode(getattr(value, f.name)) for f in fields(value)}
-    if isinstance(value, Enum):
-        return value.value
-    if isinstance(value, tuple | list):
-        return [encode(item) for item in value]
-    if isinstance(value, np.generic):
-        return value.item()
-    return value
+    kind: Any = type(value)
+    return _encoder(kind)(value)
 
 
 def decode(kind: Any, value: Any) -> Any:
@@ -66,25 +59,45 @@ def decode(kind: Any, value: Any) -> Any:
         KeyError, TypeError, ValueError: ``value`` is not of this type, or this type
             cannot be encoded.
     """
+    return _decoder(kind)(value)
+
+
+@cache
+def _encoder(kind: type) -> Convert:
+    """Return the function that encodes values of a type; a lookup per value takes far longer."""
+    if issubclass(kind, np.ndarray):
+        return lambda value: [value.dtype.str, list(value.shape), value.ravel().tolist()]
+    if is_dataclass(kind):
+        names = [f.name for f in fields(kind)]
+        return lambda value: {name: encode(getattr(value, name)) for name in names}
+    if issubclass(kind, Enum):
+        return lambda value: value.value
+    if issubclass(kind, tuple | list):
+        return lambda value: [encode(item) for item in value]
+    if issubclass(kind, np.generic):
+        return lambda value: value.item()
+    return lambda value: value
+
+
+@cache
+def _decoder(kind: Any) -> Convert:
+    """Return the function that decodes values of a type."""
     kind = _unalias(kind)
     origin = get_origin(kind) or kind
     if origin is np.ndarray:
-        return _decode_array(*value)
+        return lambda value: _decode_array(*value)
     if origin in (Union, UnionType):
-        if value is None:
-            return None
         (kind,) = (option for option in get_args(kind) if option is not NoneType)
-        return decode(kind, value)
+        known = _decoder(kind)
+        return lambda value: None if value is None else known(value)
     if origin is tuple:
-        return _decode_tuple(get_args(kind), value)
+        return _tuple_decoder(get_args(kind))
     if isinstance(kind, type) and is_dataclass(kind):
-        return kind(**{name: decode(hint, value[name]) for name, hint in _hints(kind).items()})
+        return _dataclass_decoder(kind)
     if isinstance(kind, type) and issubclass(kind, Enum):
-        return kind(value)
+        return kind
     if kind in _PLAIN:
-        if type(value) not in _PLAIN[kind]:
-            raise TypeError(f"a value must be of type {kind.__name__}; got {shown(value)}")
-        return value
+        return _plain_decoder(kind)
     raise TypeError(f"a world must not hold values of type {kind}")
 
 
@@ -104,13 +117,26 @@ def _decode_array(dtype: str, shape: list[int], items: list[Any]) -> AnyArray:
     return np.array(items, dtype=np.dtype(dtype)).reshape(shape)
 
 
-def _decode_tuple(kinds: tuple[Any, ...], value: list[Any]) -> tuple[Any, ...]:
+def _tuple_decoder(kinds: tuple[Any, ...]) -> Convert:
     if len(kinds) == 2 and kinds[1] is Ellipsis:
-        return tuple(decode(kinds[0], item) for item in value)
-    return tuple(decode(kind, item) for kind, item in zip(kinds, value, strict=True))
+        each = _decoder(kinds[0])
+        return lambda value: tuple([each(item) for item in value])
+    items = [_decoder(kind) for kind in kinds]
+    return lambda value: tuple([one(item) for one, item in zip(items, value, strict=True)])
 
 
-@cache
-def _hints(kind: type) -> dict[str, Any]:
+def _dataclass_decoder(kind: Any) -> Convert:
     hints = get_type_hints(kind)
-    return {f.name: hints[f.name] for f in fields(kind)}
+    known = [(f.name, _decoder(hints[f.name])) for f in fields(kind)]
+    return lambda value: kind(**{name: one(value[name]) for name, one in known})
+
+
+def _plain_decoder(kind: Any) -> Convert:
+    accepted = _PLAIN[kind]
+
+    def decoded(value: Any) -> Any:
+        if type(value) not in accepted:
+            raise TypeError(f"a value must be of type {kind.__name__}; got {shown(value)}")
+        return value
+
+    return decoded

@@ -64,6 +64,15 @@ def has_receipt(digest: str) -> bool:
         return False
 
 
+def verified_at(digest: str) -> str:
+    """Return the time (ISO 8601) at which a run with this content was verified; "" if unknown."""
+    try:
+        receipt = json.loads((receipts_folder() / f"{digest}.json").read_text(encoding="utf-8"))
+        return str(receipt["when"])
+    except (OSError, ValueError, KeyError, TypeError):
+        return ""
+
+
 def _code() -> str:
     """Return the state of the code: the version, and the kernels that re-simulate."""
     return f"{versions().get('benchnav')} {kernels_name('benchnav')}"

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
-from benchnav.arena.solid import Kind, Solid, signed_area
+from benchnav.arena.solid import Kind, Solid, is_outside, signed_area
 from benchnav.arrays import Extent, FloatArray, IntArray
 
 HEIGHT = {Kind.WALL: 1.5, Kind.STATIC: 1.0, Kind.DYNAMIC: 1.0}  # [m]
@@ -40,7 +40,7 @@ def _polygons(solid: Solid, bounds: Extent) -> list[shapely.Polygon]:
     rings = [loop for loop in solid.loops if abs(signed_area(loop)) > 0.0]
     thin = [shapely.LineString(loop) for loop in solid.loops if signed_area(loop) == 0.0]
     area = shapely.union_all([line.buffer(_THIN, cap_style="flat") for line in thin])
-    if sum(map(signed_area, rings)) < 0.0:
+    if is_outside(solid):
         x0, y0, x1, y1 = bounds
         area = area.union(shapely.box(x0 - RIM, y0 - RIM, x1 + RIM, y1 + RIM))
     for loop in sorted(rings, key=signed_area, reverse=True):  # holes are cut last

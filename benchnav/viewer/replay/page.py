@@ -1,4 +1,4 @@
-"""A replay as one HTML page without links to other files: it opens from disk."""
+"""A replay as an HTML page that opens from disk, alone or beside others that share its assets."""
 
 import json
 from collections.abc import Sequence
@@ -6,20 +6,36 @@ from html import escape
 from importlib.resources import files
 from typing import Any
 
+ASSETS = ("replay.css", "replay.js")
 
-def replay_page(scenes: Sequence[dict[str, Any]]) -> str:
-    """Return the page that plays episodes side by side and in step."""
+
+def replay_page(scenes: Sequence[dict[str, Any]], assets: str = "") -> str:
+    """Return the page that plays episodes side by side and in step.
+
+    ``assets`` is the relative link to a folder with the files `ASSETS`; "": they are in the page.
+    """
     # Stored numbers are finite: the simulator and the reader of runs refuse others.
     content = json.dumps(list(scenes), separators=(",", ":"), allow_nan=False)
+    style, script = _linked(assets) if assets else _included()
     return _PAGE.format(
-        title=escape(_title(scenes)), style=_asset("replay.css"),
-        script=_asset("replay.js"), content=content.replace("<", "\\u003c"),
+        title=escape(_title(scenes)), style=style, script=script,
+        content=content.replace("<", "\\u003c"),
     )  # fmt: skip
 
 
-def _asset(name: str) -> str:
-    """Return the text of a file beside this module."""
+def asset(name: str) -> str:
+    """Return the text of one of `ASSETS`."""
     return (files("benchnav.viewer.replay") / name).read_text(encoding="utf-8")
+
+
+def _included() -> tuple[str, str]:
+    style, script = map(asset, ASSETS)
+    return f"<style>\n{style}</style>", f"<script>\n{script}</script>"
+
+
+def _linked(folder: str) -> tuple[str, str]:
+    style, script = (escape(f"{folder}/{name}") for name in ASSETS)
+    return f'<link rel="stylesheet" href="{style}">', f'<script src="{script}"></script>'
 
 
 def _title(scenes: Sequence[dict[str, Any]]) -> str:
@@ -33,11 +49,9 @@ _PAGE = """<!doctype html>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
-<style>
-{style}</style>
+{style}
 <div id="replay"></div>
 <script type="application/json" id="scenes">{content}</script>
-<script>
-{script}</script>
+{script}
 </html>
 """

@@ -1,9 +1,9 @@
-"use strict";
 // Plays the episodes in the element #scenes, side by side and in step, on one canvas each.
 
 /** @typedef {{shape: number[], quantum: number, data: string}} Packed */
 
-const ACTIVE = 0, ARRIVED = 1;
+const ACTIVE = 0,
+  ARRIVED = 1;
 const TRAIL = 6; // [s] length of the trail behind an agent
 const FLASH = 0.6; // [s] that a contact stays marked after its end
 const CROWD = 200; // with more agents, trails are short, goals are dots, and headings are not drawn
@@ -21,7 +21,12 @@ async function unpack(packed) {
   const out = new Float32Array(size);
   let sum = 0;
   for (let i = 0; i < size; i++) {
-    const z = (planes[i] | (planes[i + size] << 8) | (planes[i + 2 * size] << 16) | (planes[i + 3 * size] << 24)) >>> 0;
+    const z =
+      (planes[i] |
+        (planes[i + size] << 8) |
+        (planes[i + 2 * size] << 16) |
+        (planes[i + 3 * size] << 24)) >>>
+      0;
     const step = z & 1 ? -(z >>> 1) - 1 : z >>> 1;
     sum = i % times === 0 ? step : sum + step;
     out[i] = sum * packed.quantum;
@@ -69,7 +74,13 @@ function outline(shape, bounds, margin) {
     path.closePath();
   }
   // A negative area is the outside of a walled arena: fill it up to a frame.
-  if (area < 0) path.rect(bounds[0] - margin, bounds[1] - margin, bounds[2] - bounds[0] + 2 * margin, bounds[3] - bounds[1] + 2 * margin);
+  if (area < 0)
+    path.rect(
+      bounds[0] - margin,
+      bounds[1] - margin,
+      bounds[2] - bounds[0] + 2 * margin,
+      bounds[3] - bounds[1] + 2 * margin,
+    );
   return path;
 }
 
@@ -80,7 +91,10 @@ class View {
     this.replay = replay;
     this.times = scene.position.shape[0];
     this.count = scene.position.shape[1];
-    this.canvas = element("canvas", { tabindex: "0", "aria-label": `Top view: ${scene.navigator} in ${scene.scenario}` });
+    this.canvas = element("canvas", {
+      tabindex: "0",
+      "aria-label": `Top view: ${scene.navigator} in ${scene.scenario}`,
+    });
     this.context = this.canvas.getContext("2d");
     this.caption = element("div", { class: "caption" });
     this.node = element("div", { class: "view" }, this.canvas, this.caption);
@@ -88,45 +102,73 @@ class View {
     this.margin = 0.015 * Math.max(x1 - x0, y1 - y0);
     this.solids = scene.solids.map((s) => [s.kind, outline(s, scene.bounds, this.margin)]);
     this.bodies = scene.bodies.map((s) => [s.kind, outline(s, scene.bounds, this.margin)]);
-    this.map = scene.map && scene.map.map((s) => outline(s, scene.bounds, this.margin));
+    this.map = scene.map?.map((s) => outline(s, scene.bounds, this.margin));
+    this.own = new Map(); // agent and number of the change → path of its own map
     this.laws = this.motionPaths();
     this.reset();
     this.listen();
   }
 
-  get duration() { return (this.times - 1) * this.scene.dt; }
+  get duration() {
+    return (this.times - 1) * this.scene.dt;
+  }
 
   motionPaths() {
     return this.scene.bodies.map((_, m) => {
       const path = new Path2D();
       for (let k = 0; k < this.times; k++) {
         const [x, y] = this.bodyAt(m, k);
-        if (k === 0) path.moveTo(x, y); else path.lineTo(x, y);
+        if (k === 0) path.moveTo(x, y);
+        else path.lineTo(x, y);
       }
       return path;
     });
   }
 
-  reset() { this.zoom = 1; this.shift = [0, 0]; }
+  reset() {
+    this.zoom = 1;
+    this.shift = [0, 0];
+  }
 
   /** Value of a series (…, row, time) between two states. */
   value(array, row, k) {
-    const low = Math.min(Math.floor(k), this.times - 1), high = Math.min(low + 1, this.times - 1);
+    const low = Math.min(Math.floor(k), this.times - 1),
+      high = Math.min(low + 1, this.times - 1);
     const at = row * this.times;
     return array[at + low] + (array[at + high] - array[at + low]) * (k - low);
   }
-  at(a, k) { return [this.value(this.scene.position, 2 * a, k), this.value(this.scene.position, 2 * a + 1, k)]; }
-  bodyAt(m, k) { return [this.value(this.scene.body_position, 2 * m, k), this.value(this.scene.body_position, 2 * m + 1, k)]; }
+  at(a, k) {
+    return [
+      this.value(this.scene.position, 2 * a, k),
+      this.value(this.scene.position, 2 * a + 1, k),
+    ];
+  }
+  bodyAt(m, k) {
+    return [
+      this.value(this.scene.body_position, 2 * m, k),
+      this.value(this.scene.body_position, 2 * m + 1, k),
+    ];
+  }
   /** The exact value at the last state, for what must not be interpolated. */
-  exact(array, row, k) { return array[row * this.times + Math.min(Math.floor(k + 1e-6), this.times - 1)]; }
-  status(a, k) { return this.exact(this.scene.status, a, k); }
-  present(a, k) { return k < this.scene.agents.leaves[a]; }
-  colourOf(team) { return this.scene.colours[team % this.scene.colours.length]; }
+  exact(array, row, k) {
+    return array[row * this.times + Math.min(Math.floor(k + 1e-6), this.times - 1)];
+  }
+  status(a, k) {
+    return this.exact(this.scene.status, a, k);
+  }
+  present(a, k) {
+    return k < this.scene.agents.leaves[a];
+  }
+  colourOf(team) {
+    return this.scene.colours[team % this.scene.colours.length];
+  }
 
   /** Scale [pixels per metre] and origin of the picture. */
   frame() {
-    const [x0, y0, x1, y1] = this.scene.bounds, m = 2 * this.margin;
-    const wide = this.canvas.clientWidth, high = this.canvas.clientHeight;
+    const [x0, y0, x1, y1] = this.scene.bounds,
+      m = 2 * this.margin;
+    const wide = this.canvas.clientWidth,
+      high = this.canvas.clientHeight;
     const scale = this.zoom * Math.min(wide / (x1 - x0 + 2 * m), (high - 30) / (y1 - y0 + 2 * m));
     const x = wide / 2 - scale * (0.5 * (x0 + x1) - this.shift[0]);
     const y = (high + 26) / 2 + scale * (0.5 * (y0 + y1) - this.shift[1]);
@@ -140,10 +182,14 @@ class View {
   listen() {
     const pointers = new Map();
     let moved = 0;
-    this.canvas.addEventListener("wheel", (event) => {
-      event.preventDefault();
-      this.zoomAt(event, Math.exp(-event.deltaY * 0.0015));
-    }, { passive: false });
+    this.canvas.addEventListener(
+      "wheel",
+      (event) => {
+        event.preventDefault();
+        this.zoomAt(event, Math.exp(-event.deltaY * 0.0015));
+      },
+      { passive: false },
+    );
     this.canvas.addEventListener("pointerdown", (event) => {
       this.canvas.setPointerCapture(event.pointerId);
       pointers.set(event.pointerId, event);
@@ -166,7 +212,8 @@ class View {
       this.replay.draw();
     });
     const release = (event) => {
-      if (pointers.delete(event.pointerId) && event.type === "pointerup" && moved < 6) this.click(event);
+      if (pointers.delete(event.pointerId) && event.type === "pointerup" && moved < 6)
+        this.click(event);
     };
     this.canvas.addEventListener("pointerup", release);
     this.canvas.addEventListener("pointercancel", release);
@@ -182,28 +229,36 @@ class View {
   }
 
   click(event) {
-    const [x, y] = this.toWorld(event), k = this.replay.time / this.scene.dt;
-    let found = -1, least = Infinity;
+    const [x, y] = this.toWorld(event),
+      k = this.replay.time / this.scene.dt;
+    let found = -1,
+      least = Infinity;
     for (let a = 0; a < this.count; a++) {
       const [ax, ay] = this.at(a, k);
       const gap = Math.hypot(ax - x, ay - y);
-      if (gap < least && gap < this.scene.agents.radius[a] + 10 / this.frame().scale) [found, least] = [a, gap];
+      if (gap < least && gap < this.scene.agents.radius[a] + 10 / this.frame().scale)
+        [found, least] = [a, gap];
     }
     this.replay.select(this, found);
   }
 
   draw(time) {
     const k = Math.min(time / this.scene.dt, this.times - 1);
-    const ratio = window.devicePixelRatio || 1, c = this.context;
-    const wide = Math.round(this.canvas.clientWidth * ratio), high = Math.round(this.canvas.clientHeight * ratio);
-    if (this.canvas.width !== wide || this.canvas.height !== high) [this.canvas.width, this.canvas.height] = [wide, high];
+    const ratio = window.devicePixelRatio || 1,
+      c = this.context;
+    const wide = Math.round(this.canvas.clientWidth * ratio),
+      high = Math.round(this.canvas.clientHeight * ratio);
+    if (this.canvas.width !== wide || this.canvas.height !== high)
+      [this.canvas.width, this.canvas.height] = [wide, high];
     const { scale, x, y } = this.frame();
     c.setTransform(1, 0, 0, 1, 0, 0);
     c.clearRect(0, 0, wide, high);
     c.setTransform(ratio * scale, 0, 0, -ratio * scale, ratio * x, ratio * y);
-    const pixel = 1 / scale, show = this.replay.show;
+    const pixel = 1 / scale,
+      show = this.replay.show;
     this.drawSolids(c, pixel, k);
     if (show.map && this.map) this.drawMap(c, pixel);
+    if (show.own) this.drawOwnMap(c, pixel, k);
     if (show.trails) this.drawTrails(c, pixel, k);
     if (show.goals) this.drawGoals(c, pixel, k);
     if (show.senses) this.drawSenses(c, pixel, k);
@@ -227,7 +282,13 @@ class View {
     c.globalAlpha = 1;
     c.setLineDash([]);
     this.bodies.forEach(([kind, path], m) => {
-      const [x, y] = kind === "static" ? [this.exact(this.scene.body_position, 2 * m, k), this.exact(this.scene.body_position, 2 * m + 1, k)] : this.bodyAt(m, k);
+      const [x, y] =
+        kind === "static"
+          ? [
+              this.exact(this.scene.body_position, 2 * m, k),
+              this.exact(this.scene.body_position, 2 * m + 1, k),
+            ]
+          : this.bodyAt(m, k);
       c.save();
       c.translate(x, y);
       c.fillStyle = colour(kind === "static" ? "static" : "mover");
@@ -240,6 +301,40 @@ class View {
     c.strokeStyle = "#e6c300";
     c.lineWidth = 2.5 * pixel;
     for (const path of this.map) c.stroke(path);
+  }
+
+  /** The map that the chosen agent had made by now. */
+  drawOwnMap(c, pixel, k) {
+    const chosen = this.replay.selected,
+      own = this.scene.own_map;
+    if (!own || own.reason || !chosen || chosen.view !== this) return;
+    const n = own.agents.indexOf(chosen.agent);
+    if (n < 0) return;
+    const last = own.changes[n].findLastIndex(([state]) => state <= k + 1e-6),
+      key = `${n} ${last}`;
+    if (!this.own.has(key)) this.own.set(key, this.ownPath(own, n, last));
+    c.strokeStyle = colour("own");
+    c.globalAlpha = 0.6;
+    c.lineWidth = 7 * pixel; // wider than the edges that are sensed now
+    c.stroke(this.own.get(key));
+    c.globalAlpha = 1;
+  }
+
+  ownPath({ capsules, changes }, n, last) {
+    const held = new Set();
+    for (const [, added, removed] of changes[n].slice(0, last + 1)) {
+      for (const row of removed) held.delete(row);
+      for (const row of added) held.add(row);
+    }
+    const path = new Path2D();
+    for (const row of held) {
+      const [x0, y0, x1, y1, radius] = capsules[row];
+      path.moveTo(x0 + radius, y0);
+      if (radius > 0) path.arc(x0, y0, radius, 0, 2 * Math.PI);
+      path.moveTo(x0, y0);
+      path.lineTo(x1, y1);
+    }
+    return path;
   }
 
   /** One path for each team: a crowd of a thousand stays fast. */
@@ -269,13 +364,16 @@ class View {
   }
 
   drawGoals(c, pixel, k) {
-    const { goal, radius } = this.scene.agents, isCrowd = this.count > CROWD;
+    const { goal, radius } = this.scene.agents,
+      isCrowd = this.count > CROWD;
     this.byTeam((team, members) => {
       c.fillStyle = c.strokeStyle = this.colourOf(team);
       c.beginPath();
       for (const a of members) {
-        const r = Math.max(radius[a], 4 * pixel), [x, y] = goal[a];
-        if (isCrowd && this.status(a, k) === ACTIVE) c.rect(x - pixel, y - pixel, 2 * pixel, 2 * pixel);
+        const r = Math.max(radius[a], 4 * pixel),
+          [x, y] = goal[a];
+        if (isCrowd && this.status(a, k) === ACTIVE)
+          c.rect(x - pixel, y - pixel, 2 * pixel, 2 * pixel);
         if (isCrowd) continue;
         c.moveTo(x + r, y);
         c.arc(x, y, r, 0, 2 * Math.PI);
@@ -291,10 +389,13 @@ class View {
   drawAgents(c, pixel, k) {
     const { radius } = this.scene.agents;
     this.byTeam((team, members) => {
-      const discs = new Path2D(), headings = new Path2D(), still = new Path2D();
+      const discs = new Path2D(),
+        headings = new Path2D(),
+        still = new Path2D();
       for (const a of members) {
         if (!this.present(a, k)) continue;
-        const [x, y] = this.at(a, k), r = radius[a];
+        const [x, y] = this.at(a, k),
+          r = radius[a];
         const over = this.status(a, k) !== ACTIVE;
         const path = over ? still : discs;
         path.moveTo(x + r, y);
@@ -323,23 +424,33 @@ class View {
   }
 
   drawSenses(c, pixel, k) {
-    const chosen = this.replay.selected, senses = this.scene.senses;
+    const chosen = this.replay.selected,
+      senses = this.scene.senses;
     if (!senses || !chosen || chosen.view !== this) return;
-    const agents = this.scene.charts.agents, n = agents.indexOf(chosen.agent);
+    const agents = this.scene.charts.agents,
+      n = agents.indexOf(chosen.agent);
     if (n < 0 || this.status(chosen.agent, k) !== ACTIVE) return;
     const [x, y] = this.at(chosen.agent, Math.floor(k));
     if (senses.distance) {
-      const rays = senses.angle.length, heading = this.exact(this.scene.heading, chosen.agent, k);
+      const rays = senses.angle.length,
+        heading = this.exact(this.scene.heading, chosen.agent, k);
       c.lineWidth = pixel;
       for (let r = 0; r < rays; r++) {
-        const length = this.exact(senses.distance, n * rays + r, k), angle = heading + senses.angle[r];
+        const length = this.exact(senses.distance, n * rays + r, k),
+          angle = heading + senses.angle[r];
         const hit = this.exact(senses.hit, n * rays + r, k) > 0;
-        const ex = x + length * Math.cos(angle), ey = y + length * Math.sin(angle);
+        const ex = x + length * Math.cos(angle),
+          ey = y + length * Math.sin(angle);
         c.strokeStyle = colour("soft");
-        c.beginPath(); c.moveTo(x, y); c.lineTo(ex, ey); c.stroke();
+        c.beginPath();
+        c.moveTo(x, y);
+        c.lineTo(ex, ey);
+        c.stroke();
         if (!hit) continue;
         c.fillStyle = colour("hit");
-        c.beginPath(); c.arc(ex, ey, 3 * pixel, 0, 2 * Math.PI); c.fill();
+        c.beginPath();
+        c.arc(ex, ey, 3 * pixel, 0, 2 * Math.PI);
+        c.fill();
       }
     }
     if (senses.edges) {
@@ -351,7 +462,8 @@ class View {
         const row = this.exact(senses.edges, n * slots + e, k);
         if (row < 0) continue;
         const [ax, ay, bx, by] = senses.edge_table[row];
-        c.moveTo(ax, ay); c.lineTo(bx, by);
+        c.moveTo(ax, ay);
+        c.lineTo(bx, by);
       }
       c.stroke();
     }
@@ -364,8 +476,12 @@ class View {
       for (let s = 0; s < slots; s++) {
         const seen = this.exact(senses.neighbours, n * slots + s, k);
         if (seen < 0) continue;
-        const [nx, ny] = seen < this.count ? this.at(seen, Math.floor(k)) : this.bodyAt(seen - this.count, Math.floor(k));
-        c.moveTo(x, y); c.lineTo(nx, ny);
+        const [nx, ny] =
+          seen < this.count
+            ? this.at(seen, Math.floor(k))
+            : this.bodyAt(seen - this.count, Math.floor(k));
+        c.moveTo(x, y);
+        c.lineTo(nx, ny);
       }
       c.stroke();
       c.setLineDash([]);
@@ -375,7 +491,8 @@ class View {
   drawContacts(c, pixel, time) {
     for (const event of this.scene.events) {
       if (event.kind !== "contact" || time < event.time || time > event.end + FLASH) continue;
-      const fade = Math.max(0, 1 - Math.max(0, time - event.end) / FLASH), k = time / this.scene.dt;
+      const fade = Math.max(0, 1 - Math.max(0, time - event.end) / FLASH),
+        k = time / this.scene.dt;
       const [x, y] = this.at(event.agent, k);
       c.globalAlpha = 0.25 + 0.75 * fade;
       c.strokeStyle = colour("hit");
@@ -383,8 +500,10 @@ class View {
       c.beginPath();
       c.arc(x, y, this.scene.agents.radius[event.agent] + 6 * pixel, 0, 2 * Math.PI);
       if (event.with === "agent" || event.partner < 0) {
-        const [px, py] = event.with === "agent" ? this.at(event.partner, k) : this.bodyAt(-1 - event.partner, k);
-        c.moveTo(x, y); c.lineTo(px, py);
+        const [px, py] =
+          event.with === "agent" ? this.at(event.partner, k) : this.bodyAt(-1 - event.partner, k);
+        c.moveTo(x, y);
+        c.lineTo(px, py);
       }
       c.stroke();
       c.globalAlpha = 1;
@@ -393,7 +512,8 @@ class View {
 
   describe(k) {
     const { evaluated } = this.scene.agents;
-    let total = 0, arrived = 0;
+    let total = 0,
+      arrived = 0;
     for (let a = 0; a < this.count; a++) {
       if (!evaluated[a]) continue;
       total++;
@@ -403,8 +523,12 @@ class View {
     const text = `${arrived} of ${total} arrived`;
     if (this.caption.dataset.text === text) return;
     this.caption.dataset.text = text;
-    const where = this.replay.views.length > 1 && this.replay.views[0] !== this && this.replay.sameWorld(this.replay.views[0], this)
-      ? ` · ${text}` : ` · ${text} · ${scenario} · ${track} · seed ${seed}`;
+    const where =
+      this.replay.views.length > 1 &&
+      this.replay.views[0] !== this &&
+      this.replay.sameWorld(this.replay.views[0], this)
+        ? ` · ${text}`
+        : ` · ${text} · ${scenario} · ${track} · seed ${seed}`;
     this.caption.replaceChildren(element("b", {}, navigator), element("span", {}, where));
   }
 
@@ -416,7 +540,7 @@ class View {
         this.members.get(team).push(a);
       });
     }
-    this.members.forEach((members, team) => action(team, members));
+    for (const [team, members] of this.members) action(team, members);
   }
 }
 
@@ -427,7 +551,7 @@ class Replay {
     this.speed = 1;
     this.playing = false;
     this.selected = null;
-    this.show = { trails: true, goals: true, senses: true, map: false };
+    this.show = { trails: true, goals: true, senses: true, map: false, own: true };
     this.views = scenes.map((scene) => new View(scene, this));
     this.duration = Math.max(...this.views.map((view) => view.duration));
     this.dt = this.views[0].scene.dt;
@@ -444,13 +568,17 @@ class Replay {
   /** The part of the address after #, such as t=4.2&agent=3: where to begin. */
   readAddress() {
     const words = new URLSearchParams(location.hash.slice(1));
-    const agent = Number.parseInt(words.get("agent"), 10), time = Number.parseFloat(words.get("t"));
+    const agent = Number.parseInt(words.get("agent"), 10),
+      time = Number.parseFloat(words.get("t"));
     if (agent >= 0 && agent < this.views[0].count) this.select(this.views[0], agent);
     if (Number.isFinite(time)) this.seek(time);
   }
 
   sameWorld(one, other) {
-    return one === other || (one.scene.scenario === other.scene.scenario && one.scene.seed === other.scene.seed);
+    return (
+      one === other ||
+      (one.scene.scenario === other.scene.scenario && one.scene.seed === other.scene.seed)
+    );
   }
 
   build(root) {
@@ -464,34 +592,86 @@ class Replay {
   }
 
   bar() {
-    this.playButton = element("button", { class: "play", title: "Space", onclick: () => this.toggle() }, "Play");
+    this.playButton = element(
+      "button",
+      { class: "play", title: "Space", onclick: () => this.toggle() },
+      "Play",
+    );
     this.slider = element("input", {
-      type: "range", min: "0", max: String(this.duration), step: String(this.dt / 4), value: "0", "aria-label": "Time",
-      oninput: () => { this.pause(); this.seek(Number(this.slider.value)); },
+      type: "range",
+      min: "0",
+      max: String(this.duration),
+      step: String(this.dt / 4),
+      value: "0",
+      "aria-label": "Time",
+      oninput: () => {
+        this.pause();
+        this.seek(Number(this.slider.value));
+      },
     });
     this.clock = element("span", { class: "clock" });
-    const speeds = element("select", { "aria-label": "Speed", onchange: (e) => { this.speed = Number(e.target.value); } },
-      ...[0.25, 0.5, 1, 2, 4, 8].map((s) => element("option", s === 1 ? { value: s, selected: "" } : { value: s }, `${s} ×`)));
+    const speeds = element(
+      "select",
+      {
+        "aria-label": "Speed",
+        onchange: (e) => {
+          this.speed = Number(e.target.value);
+        },
+      },
+      ...[0.25, 0.5, 1, 2, 4, 8].map((s) =>
+        element("option", s === 1 ? { value: s, selected: "" } : { value: s }, `${s} ×`),
+      ),
+    );
     const button = (text, title, action) => element("button", { title, onclick: action }, text);
-    return element("div", { class: "bar" }, this.playButton,
-      button("−1", "Step back (left arrow)", () => this.step(-1)), button("+1", "Step (right arrow)", () => this.step(1)),
-      button("Previous", "Previous event (p)", () => this.jump(-1)), button("Next", "Next contact, arrival or timeout (n)", () => this.jump(1)),
-      speeds, element("div", { class: "track" }, this.slider, this.marks()), this.clock,
-      button("Whole arena", "Reset the view (0)", () => this.resetViews()));
+    return element(
+      "div",
+      { class: "bar" },
+      this.playButton,
+      button("−1", "Step back (left arrow)", () => this.step(-1)),
+      button("+1", "Step (right arrow)", () => this.step(1)),
+      button("Previous", "Previous event (p)", () => this.jump(-1)),
+      button("Next", "Next contact, arrival or timeout (n)", () => this.jump(1)),
+      speeds,
+      element("div", { class: "track" }, this.slider, this.marks()),
+      this.clock,
+      button("Whole arena", "Reset the view (0)", () => this.resetViews()),
+    );
   }
 
   marks() {
-    const marks = this.events().slice(0, 400).map(({ event }) => element("i", {
-      class: event.kind, style: `left: ${(100 * event.time) / Math.max(this.duration, 1e-9)}%` }));
+    const marks = this.events()
+      .slice(0, 400)
+      .map(({ event }) =>
+        element("i", {
+          class: event.kind,
+          style: `left: ${(100 * event.time) / Math.max(this.duration, 1e-9)}%`,
+        }),
+      );
     return element("div", { class: "marks" }, ...marks);
   }
 
   toggles() {
-    const names = { trails: "trails", goals: "goals", senses: "sensor readings", map: "granted map" };
+    const names = {
+      trails: "trails",
+      goals: "goals",
+      senses: "sensor readings",
+      map: "granted map",
+      own: "own map",
+    };
     const boxes = Object.entries(names).map(([key, text]) => {
-      const box = element("input", { type: "checkbox", onchange: () => { this.show[key] = box.checked; this.draw(); } });
+      const box = element("input", {
+        type: "checkbox",
+        onchange: () => {
+          this.show[key] = box.checked;
+          this.draw();
+        },
+      });
       box.checked = this.show[key];
-      if (key === "map") box.disabled = this.views.every((view) => !view.map);
+      const has = {
+        map: (view) => view.map,
+        own: (view) => view.scene.own_map && !view.scene.own_map.reason,
+      };
+      if (has[key]) box.disabled = !this.views.some(has[key]);
       return element("label", {}, box, ` ${text}`);
     });
     return element("div", { class: "toggles" }, ...boxes);
@@ -499,22 +679,43 @@ class Replay {
 
   events() {
     if (!this.sorted) {
-      this.sorted = this.views.flatMap((view) => view.scene.events.map((event) => ({ view, event })));
+      this.sorted = this.views.flatMap((view) =>
+        view.scene.events.map((event) => ({ view, event })),
+      );
       this.sorted.sort((one, other) => one.event.time - other.event.time);
     }
     return this.sorted;
   }
 
   eventList() {
-    const MOST = 300, all = this.events();
-    const items = all.slice(0, MOST).map(({ view, event }) => element("li", {}, element("button", {
-      onclick: () => { this.pause(); this.seek(event.time); this.select(view, event.agent ?? event.agents[0]); },
-    }, element("time", {}, `${event.time.toFixed(1)} s`), element("span", {}, this.sentence(view, event)))));
+    const MOST = 300,
+      all = this.events();
+    const items = all.slice(0, MOST).map(({ view, event }) =>
+      element(
+        "li",
+        {},
+        element(
+          "button",
+          {
+            onclick: () => {
+              this.pause();
+              this.seek(event.time);
+              this.select(view, event.agent ?? event.agents[0]);
+            },
+          },
+          element("time", {}, `${event.time.toFixed(1)} s`),
+          element("span", {}, this.sentence(view, event)),
+        ),
+      ),
+    );
     const title = element("h2", {}, "Events");
     const parts = [title, element("ol", {}, ...items)];
-    if (all.length > MOST) parts.push(element("p", {}, `${all.length - MOST} more events are not listed.`));
+    if (all.length > MOST)
+      parts.push(element("p", {}, `${all.length - MOST} more events are not listed.`));
     if (!all.length) parts.push(element("p", {}, "No contact, arrival or timeout."));
-    for (const view of this.views) if (view.scene.failure) parts.push(element("p", {}, `${view.scene.navigator} failed: ${view.scene.failure}`));
+    for (const view of this.views)
+      if (view.scene.failure)
+        parts.push(element("p", {}, `${view.scene.navigator} failed: ${view.scene.failure}`));
     return parts;
   }
 
@@ -522,8 +723,14 @@ class Replay {
     const name = this.views.length > 1 ? `${view.scene.navigator}: ` : "";
     if (event.kind === "arrival") return `${name}agent ${event.agent} arrives`;
     if (event.kind === "failure") return `${name}the navigator of agent ${event.agent} fails`;
-    if (event.kind === "timeout") return `${name}time is over for ${event.agents.length === 1 ? "agent" : "agents"} ${event.agents.slice(0, 6).join(", ")}${event.agents.length > 6 ? ", …" : ""}`;
-    const partner = { agent: `agent ${event.partner}`, wall: "a wall", static: "a static obstacle", dynamic: `moving obstacle ${-1 - event.partner}` }[event.with];
+    if (event.kind === "timeout")
+      return `${name}time is over for ${event.agents.length === 1 ? "agent" : "agents"} ${event.agents.slice(0, 6).join(", ")}${event.agents.length > 6 ? ", …" : ""}`;
+    const partner = {
+      agent: `agent ${event.partner}`,
+      wall: "a wall",
+      static: "a static obstacle",
+      dynamic: `moving obstacle ${-1 - event.partner}`,
+    }[event.with];
     return `${name}agent ${event.agent} hits ${partner}${event.charged ? "" : " (not charged)"}`;
   }
 
@@ -532,62 +739,123 @@ class Replay {
     this.panel.replaceChildren();
     this.charts = [];
     if (!this.selected) {
-      this.panel.append(element("h2", {}, "No agent chosen"), element("p", {}, "Click an agent to see its sensor readings and charts."));
+      this.panel.append(
+        element("h2", {}, "No agent chosen"),
+        element("p", {}, "Click an agent to see its sensor readings and charts."),
+      );
     } else this.describeAgent(view, agent);
     this.draw();
   }
 
   describeAgent(view, agent) {
-    const { agents, charts, senses } = view.scene, n = charts.agents.indexOf(agent);
-    const result = agents.evaluated[agent] ? (agents.success[agent] ? "succeeds" : "does not succeed") : "is not scored";
+    const { agents, charts, senses } = view.scene,
+      n = charts.agents.indexOf(agent);
+    const result = agents.evaluated[agent]
+      ? agents.success[agent]
+        ? "succeeds"
+        : "does not succeed"
+      : "is not scored";
     const name = this.views.length > 1 ? ` of ${view.scene.navigator}` : "";
-    this.panel.append(element("h2", {}, `Agent ${agent}${name}`), element("p", {}, `Team ${agents.teams[agents.team[agent]]}. It ${result}.`));
+    this.panel.append(
+      element("h2", {}, `Agent ${agent}${name}`),
+      element("p", {}, `Team ${agents.teams[agents.team[agent]]}. It ${result}.`),
+    );
     if (n < 0) {
-      this.panel.append(element("p", {}, `This file holds charts and sensor readings of ${charts.agents.length === 1 ? "agent" : "agents"} ${charts.agents.join(", ")}.`));
+      this.panel.append(
+        element(
+          "p",
+          {},
+          `This file holds charts and sensor readings of ${charts.agents.length === 1 ? "agent" : "agents"} ${charts.agents.join(", ")}.`,
+        ),
+      );
       return;
     }
     const add = (title, unit, array, digits) => {
-      const output = element("output"), canvas = element("canvas");
-      this.panel.append(element("div", { class: "chart" }, element("div", {}, element("span", {}, title), output), canvas));
+      const output = element("output"),
+        canvas = element("canvas");
+      this.panel.append(
+        element(
+          "div",
+          { class: "chart" },
+          element("div", {}, element("span", {}, title), output),
+          canvas,
+        ),
+      );
       this.charts.push({ view, array, row: n, unit, digits, output, canvas });
     };
     add("speed", "m/s", charts.speed, 2);
     add("turn rate", "rad/s", charts.turn, 2);
     add("clearance", "m", charts.clearance, 2);
-    if (senses && senses.probability) add("collision probability (Eq. 24)", "", senses.probability, 2);
-    if (!senses) this.panel.append(element("p", {}, "This episode cannot be simulated again, so its sensor readings are unknown."));
+    if (senses?.probability) add("collision probability (Eq. 24)", "", senses.probability, 2);
+    if (view.scene.own_map?.reason)
+      this.panel.append(
+        element(
+          "p",
+          {},
+          `The map that the navigator made is not shown: ${view.scene.own_map.reason}.`,
+        ),
+      );
+    if (!senses)
+      this.panel.append(
+        element(
+          "p",
+          {},
+          "This episode cannot be simulated again, so its sensor readings are unknown.",
+        ),
+      );
   }
 
   drawChart(chart) {
-    const { view, array, row, canvas, output, unit, digits } = chart, times = view.times;
-    const ratio = window.devicePixelRatio || 1, wide = canvas.clientWidth, high = canvas.clientHeight;
+    const { view, array, row, canvas, output, unit, digits } = chart,
+      times = view.times;
+    const ratio = window.devicePixelRatio || 1,
+      wide = canvas.clientWidth,
+      high = canvas.clientHeight;
     if (!wide) return;
-    canvas.width = wide * ratio; canvas.height = high * ratio;
-    const c = canvas.getContext("2d"), values = array.subarray(row * times, (row + 1) * times);
+    canvas.width = wide * ratio;
+    canvas.height = high * ratio;
+    const c = canvas.getContext("2d"),
+      values = array.subarray(row * times, (row + 1) * times);
     if (!chart.range) {
-      let low = Infinity, top = -Infinity;
-      for (const v of values) { low = Math.min(low, v); top = Math.max(top, v); }
+      let low = Infinity,
+        top = -Infinity;
+      for (const v of values) {
+        low = Math.min(low, v);
+        top = Math.max(top, v);
+      }
       chart.range = [Math.min(0, low), Math.max(top, low + 1e-6, 0.1)];
     }
-    const [low, top] = chart.range, x = (k) => (k / Math.max(1, times - 1)) * (wide - 2) + 1;
+    const [low, top] = chart.range,
+      x = (k) => (k / Math.max(1, times - 1)) * (wide - 2) + 1;
     const y = (v) => high - 4 - ((v - low) / (top - low)) * (high - 10);
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
     c.clearRect(0, 0, wide, high);
     c.strokeStyle = colour("line");
-    c.beginPath(); c.moveTo(0, y(0)); c.lineTo(wide, y(0)); c.stroke();
+    c.beginPath();
+    c.moveTo(0, y(0));
+    c.lineTo(wide, y(0));
+    c.stroke();
     c.strokeStyle = colour("accent");
     c.lineWidth = 1.4;
     c.beginPath();
-    for (let k = 0; k < times; k++) if (k === 0) c.moveTo(x(0), y(values[0])); else c.lineTo(x(k), y(values[k]));
+    for (let k = 0; k < times; k++)
+      if (k === 0) c.moveTo(x(0), y(values[0]));
+      else c.lineTo(x(k), y(values[k]));
     c.stroke();
     const k = Math.min(this.time / view.scene.dt, times - 1);
     c.strokeStyle = colour("ink");
-    c.beginPath(); c.moveTo(x(k), 0); c.lineTo(x(k), high); c.stroke();
+    c.beginPath();
+    c.moveTo(x(k), 0);
+    c.lineTo(x(k), high);
+    c.stroke();
     const now = values[Math.floor(k + 1e-6)];
     output.textContent = `${(Math.abs(now) < 0.5 * 10 ** -digits ? 0 : now).toFixed(digits)} ${unit}`;
   }
 
-  toggle() { if (this.playing) this.pause(); else this.play(); }
+  toggle() {
+    if (this.playing) this.pause();
+    else this.play();
+  }
   play() {
     if (this.time >= this.duration - 1e-9) this.time = 0;
     this.playing = true;
@@ -595,17 +863,27 @@ class Replay {
     this.last = null;
     requestAnimationFrame((now) => this.tick(now));
   }
-  pause() { this.playing = false; this.playButton.textContent = "Play"; }
+  pause() {
+    this.playing = false;
+    this.playButton.textContent = "Play";
+  }
   tick(now) {
     if (!this.playing) return;
-    if (this.last !== null) this.time = Math.min(this.duration, this.time + (this.speed * (now - this.last)) / 1000);
+    if (this.last !== null)
+      this.time = Math.min(this.duration, this.time + (this.speed * (now - this.last)) / 1000);
     this.last = now;
     if (this.time >= this.duration) this.pause();
     this.draw();
     requestAnimationFrame((next) => this.tick(next));
   }
-  seek(time) { this.time = Math.min(this.duration, Math.max(0, time)); this.draw(); }
-  step(by) { this.pause(); this.seek((Math.round(this.time / this.dt) + by) * this.dt); }
+  seek(time) {
+    this.time = Math.min(this.duration, Math.max(0, time));
+    this.draw();
+  }
+  step(by) {
+    this.pause();
+    this.seek((Math.round(this.time / this.dt) + by) * this.dt);
+  }
   jump(way) {
     this.pause();
     const ordered = way > 0 ? this.events() : [...this.events()].reverse();
@@ -614,12 +892,22 @@ class Replay {
     this.time = next.event.time;
     this.select(next.view, next.event.agent ?? next.event.agents[0]);
   }
-  resetViews() { this.views.forEach((view) => view.reset()); this.draw(); }
+  resetViews() {
+    for (const view of this.views) view.reset();
+    this.draw();
+  }
 
   key(event) {
     if (event.target.matches("input, select, button") && event.key === " ") return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const actions = { " ": () => this.toggle(), ArrowLeft: () => this.step(-1), ArrowRight: () => this.step(1), n: () => this.jump(1), p: () => this.jump(-1), 0: () => this.resetViews() };
+    const actions = {
+      " ": () => this.toggle(),
+      ArrowLeft: () => this.step(-1),
+      ArrowRight: () => this.step(1),
+      n: () => this.jump(1),
+      p: () => this.jump(-1),
+      0: () => this.resetViews(),
+    };
     if (event.target.matches("input[type=range]") && event.key.startsWith("Arrow")) return;
     if (!actions[event.key]) return;
     event.preventDefault();
@@ -638,7 +926,8 @@ class Replay {
 async function start() {
   const root = document.getElementById("replay");
   if (typeof DecompressionStream === "undefined") {
-    root.textContent = "This browser is too old to read the replay. Use a browser from 2023 or later.";
+    root.textContent =
+      "This browser is too old to read the replay. Use a browser from 2023 or later.";
     return;
   }
   const scenes = JSON.parse(document.getElementById("scenes").textContent);

@@ -11,6 +11,7 @@ from benchnav.drawing.palette import TEAMS
 from benchnav.episode.episode import Episode, Status
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.navigation.tracks import granted_map
+from benchnav.verify.own_map import Origin, OwnMaps, map_changes, own_maps
 from benchnav.viewer.replay.clearance import clearance
 from benchnav.viewer.replay.packing import packed
 from benchnav.viewer.replay.senses import Senses, sensed
@@ -20,10 +21,13 @@ MILLIMETRE = 0.001
 FAR = 100.0  # [m] a larger clearance is shown as this
 
 
-def scene(episode: Episode, agents: IntArray) -> dict[str, Any]:
+def scene(episode: Episode, agents: IntArray, origin: Origin | None = None) -> dict[str, Any]:
     """Return the content of the replay of one episode.
 
-    ``agents`` (n,) are the indices of the agents whose sensor readings and charts are held.
+    Args:
+        episode: the episode.
+        agents: (n,) whose sensor readings, charts and own maps are held.
+        origin: how the episode was made; None: own maps are left out.
     """
     world, identity = episode.world, episode.identity
     return {
@@ -41,6 +45,7 @@ def scene(episode: Episode, agents: IntArray) -> dict[str, Any]:
         "events": events(episode),
         "charts": _charts(episode, agents),
         "senses": _senses(sensed(episode, agents), len(agents)),
+        "own_map": None if origin is None else _own_map(own_maps(origin, episode, agents)),
     }  # fmt: skip
 
 
@@ -117,6 +122,14 @@ def _map(world: World, track: str) -> list[dict[str, Any]] | None:
     """Return the solids on the granted map at the start; None: there is no map."""
     granted = granted_map(world, track)
     return None if granted is None else [_shape(solid) for solid in granted.solids]
+
+
+def _own_map(found: OwnMaps | str | None) -> dict[str, Any] | None:
+    """Return own maps as JSON: lines once, and the rows that come and go."""
+    if found is None or isinstance(found, str):
+        return None if found is None else {"reason": found}
+    capsules, changes = map_changes(found)
+    return {"agents": found.agents.tolist(), "capsules": _numbers(capsules), "changes": changes}
 
 
 def _charts(episode: Episode, agents: IntArray) -> dict[str, Any]:

@@ -1,0 +1,1 @@
+"""A report of runs: a folder of pages that opens from disk and can be published."""

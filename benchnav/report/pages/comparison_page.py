@@ -1,0 +1,62 @@
+"""The page that compares any two navigators of a report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+from benchnav.leaderboard.from_runs import COMPARED
+from benchnav.leaderboard.statistics.all_pairs import duels
+from benchnav.report.analysis.pair_codec import VERDICTS, PairCodec, metric_fields
+from benchnav.report.figure import plain
+from benchnav.report.page import ASSETS, COMPARISON, Page, href
+from benchnav.report.report_data import ReportData
+from benchnav.report.template import fill
+from benchnav.text.visible import visible
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+SCRIPT = "comparison.js"  # in report/assets
+
+
+def pages(data: ReportData) -> Iterator[Page]:
+    """Yield the page with the comparisons of every two navigators."""
+    values = data.values
+    compared = [m for m in COMPARED if m in values.metrics and m in values.names]
+    metrics = compared or [m for m in data.metrics if m in values.metrics][:4]
+    codec = PairCodec(metrics)
+    labels = sorted(set(values.results["navigator"].unique().to_pylist()))
+    pairs = []
+    for duel in duels(values.results, values.metrics, metrics, values.not_applicable):
+        key = f"pair-{labels.index(duel.first)}-{labels.index(duel.second)}"
+        pairs.append((key, _json(codec.pair(duel))))
+    shared = {
+        "navigators": [_navigator(data, label) for label in labels],
+        "metrics": [metric_fields(values.metrics[name]) for name in metrics],
+        "places": list(codec.places),
+        "verdicts": VERDICTS,
+        "tracks": data.tracks,
+    }
+    body = fill(
+        "comparison.html", page=COMPARISON, several=len(labels) > 1,
+        shared=_json(shared), pairs=pairs, script=href(COMPARISON, ASSETS / SCRIPT),
+    )  # fmt: skip
+    yield Page(COMPARISON, "Two navigators compared", body, COMPARISON, has_figures=True)
+
+
+def _navigator(data: ReportData, label: str) -> dict[str, str]:
+    style = data.styles[label]
+    return {
+        "name": visible(label), "shown": plain(label), "color": style.color,
+        "symbol": style.symbol,
+    }  # fmt: skip
+
+
+def _json(fields: Any) -> Markup:
+    """Return JSON that may stand in a script element."""
+    from markupsafe import Markup
+
+    text = json.dumps(fields, separators=(",", ":"), ensure_ascii=False)
+    return Markup(text.replace("<", "\\u003c"))  # noqa: S704

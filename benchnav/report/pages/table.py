@@ -1,0 +1,45 @@
+"""Tables of results: a row for each navigator, a column for each metric."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from benchnav.leaderboard.record import Record
+from benchnav.leaderboard.rendering.cell import cell, heading, rank
+from benchnav.report.report_data import ReportData
+from benchnav.report.template import fill
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
+
+
+def metric_table(records: Sequence[Record], metrics: Sequence[str], data: ReportData) -> Markup:
+    """Return a table of the records of one scenario and view, in the order of the navigators.
+
+    Cells have the text of the leaderboard; a navigator that was not run has the reason instead.
+    """
+    at = {(r.navigator, r.metric): r for r in records}
+    held = [m for m in metrics if any(r.metric == m for r in records)]
+    decided = {m: _is_decided(records, m) for m in held}
+    rows = []
+    for name in data.navigators:
+        found = [at.get((name, m)) for m in held]
+        if not any(found):
+            continue
+        first = next(r for r in found if r is not None)
+        cells = [
+            cell(r, interval=True, decided=decided[m]) for r, m in zip(found, held, strict=True)
+        ]
+        rows.append({
+            "navigator": name, "style": data.styles[name], "rehearsal": first.rehearsal,
+            "rank": rank(found[0]).text, "cells": cells,
+            "note": "" if first.episodes else first.note,
+        })  # fmt: skip
+    heads = [heading(next(r for r in records if r.metric == m)).text for m in held]
+    return fill("metric_table.html", heads=heads, rows=rows)
+
+
+def _is_decided(records: Sequence[Record], metric: str) -> bool:
+    """Whether an entry is significantly worse than the best."""
+    return any(r.metric == metric and (r.rank_low or 1) > 1 for r in records)

@@ -1,0 +1,132 @@
+"""The frames of a moving picture: episodes from above, side by side and in step."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from PIL import Image, ImageDraw, ImageFont
+
+from benchnav.arena.solid import Kind
+from benchnav.arrays import ByteArray, FloatArray
+from benchnav.drawing.canvas import Canvas, shade
+from benchnav.drawing.palette import FILL, HIT, INK, PAPER, agent_color
+from benchnav.drawing.top_view import TopView, spans
+from benchnav.episode.episode import Episode, Status
+from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.metrics.quantities.trajectory import positions_at, present_at
+
+WIDTH, HEIGHT = 400, 600  # [pixels] of one arena at most
+MARK = 5.0  # [s] between the marks on a trail
+FLASH = 0.6  # [s] that a contact stays marked after its end
+_FINER = 3
+_HEAD, _FONT, _GAP = 24, 13, 6  # [pixels] above each arena, of its text, and at its ends
+
+
+def film(episodes: Sequence[Episode], times: Sequence[float]) -> Iterator[ByteArray]:
+    """Yield a picture (height, width, 3) of all episodes for each of the rising ``times`` [s]."""
+    span = spans(tuple(episode.world for episode in episodes))
+    size = round(min(WIDTH * max(1.0, span[1] / span[0]), max(WIDTH, HEIGHT)))
+    films = [EpisodeFilm(episode, span, size) for episode in episodes]
+    columns = len(films) if len(films) <= 3 else math.ceil(math.sqrt(len(films)))
+    for time in times:
+        panels = [each.frame(time) for each in films]
+        if columns > 1:
+            panels = [_spaced(panel) for panel in panels]
+        blank = np.full_like(panels[0], 255)
+        panels += [blank] * (-len(panels) % columns)
+        rows = [panels[n : n + columns] for n in range(0, len(panels), columns)]
+        yield np.vstack([np.hstack(row) for row in rows])
+
+
+class EpisodeFilm:
+    """Draws one episode at rising times. Trails only grow, so each piece is drawn once."""
+
+    def __init__(self, episode: Episode, span: FloatArray, size: int) -> None:
+        """Prepare frames of ``span`` (2,) [m], the longer side with ``size`` pixels."""
+        self._episode, self._trajectories = episode, analyse(episode).trajectories
+        self._view = TopView(episode.world, size, span=span, finer=_FINER)
+        self._trails = self._view.background
+        self._colors = [agent_color(episode.world, a) for a in range(len(self._trajectories))]
+        self._drawn = 0.0  # [s] until when the trails are drawn
+        for way in episode.body_position.transpose(1, 0, 2):
+            self._trails.dots(way, FILL[Kind.DYNAMIC], apart=3.0)
+
+    def frame(self, time: float) -> ByteArray:
+        """Return the picture (height, width, 3) at ``time`` [s], or of the end if it is later."""
+        episode = self._episode
+        time = min(time, float(episode.times[-1]))
+        state = round(time / episode.world.clock.dt)
+        self._extend_trails(time)
+        present = present_at(self._trajectories, np.array([time]))[:, 0]
+        picture = self._view.draw(
+            episode.position[state], episode.heading[state], episode.body_position[state],
+            present, self._trails.copy(),
+        )  # fmt: skip
+        self._draw_ends(picture, time)
+        self._draw_contacts(picture, time, state)
+        arrived = int((episode.status[state] == int(Status.ARRIVED)).sum())
+        text = f"{arrived} of {len(self._colors)} arrived, {time:.1f} s"
+        return _headed(picture.array(), episode.identity.navigator, text)
+
+    def _extend_trails(self, until: float) -> None:
+        """Draw the pieces since the last frame: darker until an attempt ends, a mark every 5 s."""
+        cut, dt = self._trajectories, self._episode.world.clock.dt
+        first, last = round(self._drawn / dt), round(until / dt)
+        marks = np.arange(math.floor(self._drawn / MARK) + 1, until / MARK + 1e-9) * MARK
+        places = positions_at(cut, marks)
+        for a, color in enumerate(self._colors):
+            piece = cut.position[a, first : min(last, int(cut.last[a])) + 1]
+            if len(piece) > 1:
+                strength = 0.4 + 0.6 * min(1.0, until / max(float(cut.end[a]), dt))
+                self._trails.line(piece, shade(color, strength), 1.6)
+            for place, mark in zip(places[a], marks, strict=True):
+                if mark <= cut.end[a]:
+                    self._trails.disc(place, 0.0, fill=color, least=2.0)
+        self._drawn = until
+
+    def _draw_ends(self, picture: Canvas, time: float) -> None:
+        """Draw a cross where an attempt ended without arrival."""
+        cut = self._trajectories
+        lost = (self._episode.status[-1] != int(Status.ARRIVED)) & (cut.end <= time + 1e-9)
+        for a in np.flatnonzero(lost):
+            picture.cross(cut.position[a, -1], self._colors[a], arm=5.0, width=2.5)
+
+    def _draw_contacts(self, picture: Canvas, time: float, state: int) -> None:
+        """Draw rings around agents in contact, and lines to agents and obstacles that they hit."""
+        episode, contacts = self._episode, self._episode.contacts
+        shown = (contacts.start <= time + 1e-9) & (time <= contacts.end + FLASH)
+        for n in np.flatnonzero(shown):
+            agent, partner = int(contacts.agent[n]), int(contacts.partner[n])
+            fade = 1.0 - max(0.0, time - float(contacts.end[n])) / FLASH
+            color, place = shade(HIT, 0.25 + 0.75 * fade), episode.position[state, agent]
+            other = None
+            if contacts.kind[n] == int(Kind.AGENT):
+                other = episode.position[state, partner]
+            elif partner < 0:
+                other = episode.body_position[state, -1 - partner]
+            if other is not None:
+                picture.line(np.array([place, other]), color, 2.0)
+            radius = float(episode.world.agents.radius[agent])
+            picture.disc(place, 1.5 * radius, outline=color, width=2.5, least=7.0)
+
+
+def _spaced(panel: ByteArray) -> ByteArray:
+    """Return a panel with paper at its sides, so that walls of neighbours do not join."""
+    spaced: ByteArray = np.pad(panel, ((0, 0), (_GAP // 2, _GAP // 2), (0, 0)), constant_values=255)
+    return spaced
+
+
+def _headed(picture: ByteArray, left: str, right: str) -> ByteArray:
+    """Return a picture with a line of text above it; the left text is cut if it is too long."""
+    high, wide = picture.shape[:2]
+    whole = Image.new("RGB", (wide, high + _HEAD), PAPER)
+    whole.paste(Image.fromarray(picture), (0, _HEAD))
+    draw, font = ImageDraw.Draw(whole), ImageFont.load_default(_FONT)
+    space = wide - 3 * _GAP - draw.textlength(right, font)
+    name = left
+    while name and draw.textlength(name, font) > space:
+        left = left[:-1]
+        name = f"{left}…" if left else ""
+    draw.text((_GAP, _HEAD / 2), name, INK, font, "lm")
+    draw.text((wide - _GAP, _HEAD / 2), right, INK, font, "rm")
+    return np.asarray(whole)
