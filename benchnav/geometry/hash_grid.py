@@ -1,11 +1,12 @@
 """Points in hashed cells: find the neighbours of a point without a dense grid over the plane.
 
 A table of H = 2^k buckets is filled by counting sort; a bucket may hold points of several
-cells, so every spot stores its own cell (ci, cj). Points are records with x, y, team, present,
-ci, cj; spots are copies of the fields that a search needs, in bucket order.
+cells, so every spot stores its own cell (ci, cj). Points are records with x, y, vx, vy, radius,
+team, present, ci, cj; spots are copies of the fields that a search needs, in bucket order.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -51,9 +52,25 @@ def fill(points: AnyArray, hashed: IntArray, spots: AnyArray, side: float) -> No
         if p.present:
             k = bucket(p.ci, p.cj, size)
             hashed[k + 1] -= 1
-            spot = spots[hashed[k + 1]]
-            spot.x, spot.y, spot.ci, spot.cj = p.x, p.y, p.ci, p.cj
-            spot.index, spot.team = i, p.team
+            _copy(p, i, spots[hashed[k + 1]])
     for k in range(size):
         hashed[k] = hashed[k + 1]
     hashed[size] = total
+
+
+@kernel_without_allocation
+def collect(points: AnyArray, hashed: IntArray, spots: AnyArray) -> None:
+    """List the present points (A,) by index, without cells: they are spots[: hashed[-1]]."""
+    n = 0
+    for i in range(len(points)):
+        if points[i].present:
+            _copy(points[i], i, spots[n])
+            n += 1
+    hashed[-1] = n
+
+
+@kernel_without_allocation
+def _copy(point: Any, index: int, spot: Any) -> None:
+    spot.x, spot.y, spot.vx, spot.vy = point.x, point.y, point.vx, point.vy
+    spot.radius, spot.ci, spot.cj = point.radius, point.ci, point.cj
+    spot.index, spot.team = index, point.team

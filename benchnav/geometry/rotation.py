@@ -23,7 +23,8 @@ _TAN_PI_8 = math.sqrt(2.0) - 1.0
 @kernel_without_allocation
 def wrap(angle: float) -> float:
     """Return the angle [rad] in [-pi, pi)."""
-    return angle - TWO_PI * math.floor((angle + math.pi) / TWO_PI)
+    turns: float = np.floor((angle + math.pi) / TWO_PI)  # math.floor makes an integer: no vectors
+    return angle - TWO_PI * turns
 
 
 @kernel_without_allocation

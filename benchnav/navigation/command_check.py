@@ -45,7 +45,9 @@ def checked(answer: Any, active: BoolArray) -> FloatArray:
             f"act must return an array of shape {expected}. Got shape {command.shape} instead"
         )
     with np.errstate(over="ignore"):  # a number that float64 cannot hold is not finite
-        command = np.where(active[..., None], command.astype(np.float64), 0.0)
+        command = np.array(command, np.float64, order="C")
+    if not active.all():
+        command[~active] = 0.0
     if not np.isfinite(command).all():
         finite = np.isfinite(command).all(axis=2)
         world, agent = np.argwhere(~finite)[0]
@@ -54,7 +56,7 @@ def checked(answer: Any, active: BoolArray) -> FloatArray:
             f"act must return finite numbers. Got ({got}) for agent {agent} instead",
             np.flatnonzero(~finite.all(axis=1)),
         )
-    return np.ascontiguousarray(command)
+    return command
 
 
 def exception_text(error: BaseException) -> str:

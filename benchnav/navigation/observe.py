@@ -48,7 +48,7 @@ def observe(
     `rows` numbers the worlds of the simulation from 0.
     """
     rays, neighbours, edges = sense(simulation, np.where(active, agents, -1), needs)
-    position, velocity, goal = np.empty((3, *agents.shape, 2))
+    position, velocity, goal = (np.empty((*agents.shape, 2)) for _ in range(3))
     heading = np.empty(agents.shape)
     chosen = np.array(agents, np.int64)
     copy_own_state(0, simulation.B, chosen, simulation.agents, position, heading, velocity, goal)

@@ -6,7 +6,7 @@ import numpy as np
 
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arrays import AnyArray, FloatArray, IntArray
-from benchnav.geometry.hash_grid import fill
+from benchnav.geometry.hash_grid import collect, fill
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel_without_allocation
 from benchnav.sensors.edges import find_edges
@@ -37,6 +37,7 @@ def sense(
     side = 1.0
     if crowd and needs & {RAYS, NEIGHBOURS}:
         side = _cell_side(simulation, sensing, needs)
+    if NEIGHBOURS in needs or (crowd and RAYS in needs):
         run_rows(
             _sort_agents, simulation.B, simulation.agents, simulation.hashed, simulation.spots,
             side,
@@ -56,7 +57,8 @@ def _cell_side(simulation: Simulation, sensing: Sensing, needs: frozenset[str]) 
     if RAYS in needs and sensing.rays is not None:
         limit = sensing.neighbours.range if sensing.neighbours is not None else 0.0
         return max(0.25 * max(limit, sensing.rays.range), 4.0 * simulation.widest)
-    return max(0.7 * float(simulation.near.mean()), 0.5 * simulation.widest, LEAST_SIDE)
+    near = float(np.add.reduce(simulation.near, None)) / simulation.near.size
+    return max(near, 0.5 * simulation.widest, LEAST_SIDE)
 
 
 @kernel_without_allocation
@@ -64,7 +66,10 @@ def _sort_agents(
     low: int, high: int, agents: AnyArray, hashed: IntArray, spots: AnyArray, side: float
 ) -> None:
     for b in range(low, high):
-        fill(agents[b], hashed[b], spots[b], side)
+        if agents.shape[1] > BRUTE_FORCE:
+            fill(agents[b], hashed[b], spots[b], side)
+        else:
+            collect(agents[b], hashed[b], spots[b])
 
 
 def ray_angles(sensor: RaySensor) -> FloatArray:

@@ -14,14 +14,19 @@ from benchnav.kernels import inlined, kernel_without_allocation
 
 GOAL, AGENT, FIXED, BODY = 0, 1, 2, 3
 BRUTE_FORCE = 24  # up to this many agents, testing all pairs is cheaper than a grid
+WIDER = 1.000001  # factor of a distance, so that rounding never excludes a touch
 
 
 @kernel_without_allocation
-def goal_time(a: Any, tolerance: float) -> float:
-    """Return the time until agent a touches its goal disc; 0 inside it."""
+def goal_time(a: Any, tolerance: float, left: float) -> float:
+    """Return the time until agent a touches its goal disc; 0 inside, inf if not within ``left``."""
     fx, fy = a.x - a.goal_x, a.y - a.goal_y
-    if fx * fx + fy * fy <= tolerance * tolerance:
+    f2 = fx * fx + fy * fy
+    if f2 <= tolerance * tolerance:
         return 0.0
+    far = tolerance + WIDER * (abs(a.vx) + abs(a.vy)) * left
+    if f2 > WIDER * far * far:
+        return math.inf
     return disc_time(fx, fy, a.vx, a.vy, tolerance)
 
 
@@ -87,20 +92,53 @@ def next_agent(
     return best, partner
 
 
+@kernel_without_allocation
+def first_agent(
+    i: int, left: float, top: float, agents: AnyArray, hashed: IntArray, spots: AnyArray,
+    near: IntArray,
+) -> tuple[float, int]:  # fmt: skip
+    """Return the same as `next_agent` at the start of a substep, when the spots are up to date.
+
+    ``top`` is the highest speed of any agent [m/s]. Spots that approach and are near enough to
+    meet are listed first, without branches that cannot be predicted. ``near`` is scratch.
+    """
+    a, n = agents[i], 0
+    size = len(hashed) - 1
+    nearest = a.radius + WIDER * 2.0 * top * left
+    for row in range(a.cj - 1, a.cj + 2):
+        low = bucket(a.ci - 1, row, size)
+        for part in range(2 if low + 3 > size else 1):  # the row may continue at the table's start
+            begin, end = (low, min(low + 3, size)) if part == 0 else (0, low + 3 - size)
+            for at in range(hashed[begin], hashed[end]):
+                spot = spots[at]
+                fx, fy, wx, wy = a.x - spot.x, a.y - spot.y, a.vx - spot.vx, a.vy - spot.vy
+                far = nearest + spot.radius
+                near[n] = at
+                n += (fx * fx + fy * fy <= WIDER * far * far) & (fx * wx + fy * wy < 0.0)
+    best, partner = math.inf, -1
+    for k in range(n):
+        spot = spots[near[k]]
+        t, j = pair_time(a, spot), spot.index
+        if t <= left and (t < best or (t == best and j < partner)):
+            best, partner = t, j
+    return best, partner
+
+
 @inlined
 def find_next(
-    i: int, left: float, tolerance: float, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
-    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
+    i: int, meeting: float, partner: int, left: float, tolerance: float, agents: AnyArray,
+    bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray,
     body_count: int,
 ) -> None:  # fmt: skip
     """Write tau and code of active agent i: its next touch within ``left`` [s].
 
     Of simultaneous touches the goal comes first, then fixed geometry, bodies, and
-    agents, each by index: a fixed order, independent of the search.
+    agents, each by index: a fixed order, independent of the search. The next agent (partner,
+    touched after ``meeting`` [s]) is an argument, because there are two ways to find it.
     """
     a = agents[i]
     best, code = math.inf, -1
-    t = goal_time(a, tolerance)
+    t = goal_time(a, tolerance, left)
     if t <= left:
         best, code = t, GOAL
     if a.vx != 0.0 or a.vy != 0.0:
@@ -113,9 +151,8 @@ def find_next(
         t = body_time(a, bodies[m], shapes, left)
         if t < best and t <= left:
             best, code = t, 4 * m + BODY
-    t, j = next_agent(i, left, agents, hashed, spots)
-    if t < best:
-        best, code = t, 4 * j + AGENT
+    if meeting < best:
+        best, code = meeting, 4 * partner + AGENT
     a.tau, a.code = best, code
 
 

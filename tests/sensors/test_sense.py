@@ -215,6 +215,25 @@ def test_where_the_search_starts_changes_no_neighbour():
         assert seen[0].count[0, i] == len(expected)
 
 
+def test_neighbours_at_nearly_equal_distances_are_in_order():
+    """More candidates than slots, and distances that differ in their last bits only."""
+    rng = np.random.default_rng(2)
+    turn = rng.uniform(0.0, 2.0 * math.pi, 1400)
+    ring = np.stack([np.cos(turn), np.sin(turn)], axis=1) * rng.choice([2.0, 3.0], (1400, 1))
+    start = np.concatenate([[[0.0, 0.0]], ring]) + 10.0
+    for count in (4, 10, 12):
+        sensing = Sensing(None, NeighbourSensor(count, 3.5), None)
+        for few in (start, start[:300]):
+            simulation = Simulation([world(agents(few, few), [], sensing=sensing)])
+            for _ in range(2):  # the second search starts where the first one ended
+                seen = sense(simulation, everybody(simulation), ALL)[1]
+                for i in (0, 1, 7):
+                    d2 = (few[:, 0] - few[i, 0]) ** 2 + (few[:, 1] - few[i, 1]) ** 2
+                    d2[i] = math.inf
+                    nearest = np.lexsort((np.arange(len(few)), d2))[:count]
+                    assert seen.position[0, i].tolist() == few[nearest].tolist()
+
+
 def test_ignored_teams_are_not_sensed():
     crew = agents([[5, 5], [7, 5]], [[9, 9], [1, 1]], team=[0, 1])
     sees = [[True, False], [True, True]]
