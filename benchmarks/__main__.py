@@ -19,7 +19,7 @@ def main() -> None:
     parser.add_argument("--peers", required=True, help="interpreter that has pyrvo and navground")
     parser.add_argument("--out", type=Path, help="Markdown file to write the table to")
     arguments = parser.parse_args()
-    rows = crowd_rows(orca_peers.measure(arguments.peers))
+    rows = orca_peers.measure(arguments.peers)
     rows += leader_arena.measure() + end_to_end.measure() + isolation.measure()
     text = page(rows)
     print(text)
@@ -27,28 +27,6 @@ def main() -> None:
         sys.exit("\n".join(["Not measured, so no table was kept:", *missing]))
     if arguments.out:
         arguments.out.write_text(text)
-
-
-def crowd_rows(measured: list[dict[str, object]]) -> list[dict[str, object]]:
-    """Return rows of the crowd and each peer: our rate, its rate, and their ratio."""
-    own = next(m for m in measured if m["name"] == "benchnav")
-    rows = []
-    for peer in measured:
-        if peer is own:
-            continue
-        name = f"ORCA crowd of 1,000 against {peer['name']} {peer.get('version', '')}".strip()
-        if "ratio" not in peer:
-            cause = peer.get("skipped") or own["skipped"]
-            rows.append({"name": name, "note": str(cause)})
-            continue
-        rows.append(
-            {
-                "name": name, "value": own["agent_steps_per_second"], "unit": "agent-steps/s",
-                "peer": peer["agent_steps_per_second"], "wanted": peer["wanted"],
-                "ratio": peer["ratio"],
-            }
-        )  # fmt: skip
-    return rows
 
 
 def page(rows: list[dict[str, object]]) -> str:

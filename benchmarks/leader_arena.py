@@ -17,7 +17,7 @@ from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
 
 WORLDS, DRAWN, STEPS, ROUNDS = 1024, 128, 25, 7
-WANTED = 1e6  # agent-steps per second
+WANTED = 2e6  # agent-steps per second
 RAYS = frozenset({"rays"})
 
 

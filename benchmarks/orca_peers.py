@@ -1,7 +1,8 @@
-"""ORCA crowd: sensing + ORCA + step of benchnav against the ORCA of its peers, side by side.
+"""ORCA crowds: sensing + ORCA + step of benchnav against the ORCA of its peers, side by side.
 
-A thousand agents on a circle of 100 m exchange places. Each avoids the nearest ten
-others within 10 m; the time step is 0.25 s. The timed part, after the same warm-up of 20 steps:
+Agents on a circle exchange places; 0.63 m lie between neighbours on it. Each avoids the nearest
+ten others within 10 m; the time step is 0.25 s. In a gridlock, agents stand in a square, in
+contact or nearly so, and all go to its middle. The timed part, after a warm-up:
 
 - benchnav: observation (sensing), decision (`orca` with its defaults) and simulator step,
   with contacts and all work of the runner between them;
@@ -15,30 +16,71 @@ the rows; PEERS_PYTHON is an interpreter that has pyrvo and navground.
 
 import json
 import math
+import os
 import subprocess
 import sys
+from dataclasses import astuple, dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
-AGENTS, CIRCLE, RADIUS = 1000, 100.0, 0.2  # [m]
+GAP, RADIUS = 0.2 * math.pi, 0.2  # [m]
 NEIGHBOURS, RANGE, HORIZON = 10, 10.0, 5.0  # [m], [s]
 SPEED, LIMIT, DT = 1.0, 1.5, 0.25  # [m/s], [m/s], [s]
-WARM, STEPS, ROUNDS = 20, 100, 3
+PACKED = 0.42  # [m] between agents in a gridlock
+ROUNDS = 3
 
 Places = list[tuple[float, float]]
 
 
-def places() -> Places:
-    """Return the starts of the agents; their goals are opposite."""
-    angles = [2.0 * math.pi * k / AGENTS for k in range(AGENTS)]
-    return [(CIRCLE * math.cos(a), CIRCLE * math.sin(a)) for a in angles]
+@dataclass(frozen=True)
+class Crowd:
+    """A crowd to measure, and the threads that benchnav may use."""
+
+    agents: int = 1000
+    threads: int = 1
+    gridlock: bool = False
+
+    def __str__(self) -> str:
+        kind = "gridlock" if self.gridlock else "ORCA crowd"
+        return f"{kind} of {self.agents:,}, {self.threads} thread{'s' * (self.threads > 1)}"
+
+    @property
+    def steps(self) -> int:
+        """The number of timed steps."""
+        return max(10, min(100, 1_000_000 // self.agents))
+
+    @property
+    def warm(self) -> int:
+        """The number of steps before them."""
+        return self.steps // 5
+
+    @property
+    def starts(self) -> Places:
+        """The starts of the agents; the goals lie opposite."""
+        n = self.agents
+        if self.gridlock:
+            side = math.ceil(math.sqrt(n))
+            middle = 0.5 * (side - 1)
+            return [(PACKED * (k % side - middle), PACKED * (k // side - middle)) for k in range(n)]
+        circle = GAP * n / (2.0 * math.pi)
+        angles = [2.0 * math.pi * k / n for k in range(n)]
+        return [(circle * math.cos(a), circle * math.sin(a)) for a in angles]
 
 
-def benchnav() -> float:
-    """Return the time of STEPS steps [s]."""
+LARGE, TWO, JAM = Crowd(100_000), Crowd(threads=2), Crowd(gridlock=True)
+# (ours, a peer on the same crowd or another crowd of ours, the ratio of rates to reach)
+WANTED: tuple[tuple[Crowd, str | Crowd, float], ...] = (
+    (Crowd(100), "pyrvo", 3.0), (Crowd(), "pyrvo", 4.5), (Crowd(10_000), "pyrvo", 4.0),
+    (LARGE, "pyrvo", 3.5), (TWO, "pyrvo", 7.5), (Crowd(), "navground", 20.0),
+    (LARGE, Crowd(), 1.0 / 1.3), (TWO, Crowd(), 1.6), (JAM, Crowd(), 0.5),
+)  # fmt: skip
+
+
+def benchnav(crowd: Crowd) -> float:
+    """Return the time of the steps [s]."""
     import numpy as np
 
     from benchnav.navigation.plugin.configure import make
@@ -46,53 +88,53 @@ def benchnav() -> float:
     from benchnav.runner.rollouts.navigator_driver import Driver
     from benchnav.world.simulation import Simulation
 
-    simulation = Simulation([crowd_world()])
+    simulation = Simulation([crowd_world(crowd)])
     driver = Driver(make(NAVIGATORS, "orca"), simulation, 0, "unknown")
     driver.reset([np.random.default_rng(0)])
-    command, twist = np.zeros((1, AGENTS, 2)), np.zeros((1, AGENTS), np.bool_)
+    command, twist = np.zeros((1, crowd.agents, 2)), np.zeros((1, crowd.agents), np.bool_)
     began = 0.0
-    for step in range(WARM + STEPS):
-        if step == WARM:
+    for step in range(crowd.warm + crowd.steps):
+        if step == crowd.warm:
             began = perf_counter()
         driver.act(command, step * DT)
         simulation.step(command, twist)
     return perf_counter() - began
 
 
-def crowd_world() -> Any:
-    """Return the circle as a world without walls."""
+def crowd_world(crowd: Crowd) -> Any:
+    """Return the crowd as a world without walls."""
     import numpy as np
 
     from benchnav.arena.agents import Agents
     from benchnav.arena.sensing import NeighbourSensor, Sensing
     from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
 
-    start = np.array(places())
-    same, none = np.ones(AGENTS), np.zeros(AGENTS, np.int64)
+    start = np.array(crowd.starts)
+    same, none = np.ones(crowd.agents), np.zeros(crowd.agents, np.int64)
     agents = Agents(
-        start, np.zeros(AGENTS), -start, RADIUS * same, LIMIT * same, SPEED * same, same,
+        start, np.zeros(crowd.agents), -start, RADIUS * same, LIMIT * same, SPEED * same, same,
         none.astype(np.int8), none.astype(np.int8), none, none,
     )  # fmt: skip
     rules = Rules(0.1, ContactRule.SLIDE, Afterwards.STAY, Afterwards.STAY, Charge.BOTH)
     sensing = Sensing(None, NeighbourSensor(NEIGHBOURS, RANGE), None)
-    reach = 1.2 * CIRCLE
+    reach = 1.2 * float(np.abs(start).max())
     return World(
         (-reach, -reach, reach, reach), (), (), agents, ("crowd",), np.ones((1, 1), np.bool_),
-        Clock(DT, 1, 10 * (WARM + STEPS)), rules, sensing,
+        Clock(DT, 1, 10 * (crowd.warm + crowd.steps)), rules, sensing,
     )  # fmt: skip
 
 
-def pyrvo() -> float:
-    """Return the time of STEPS steps [s]."""
+def pyrvo(crowd: Crowd) -> float:
+    """Return the time of the steps [s]."""
     from pyrvo import RVOSimulator
 
-    simulator, start = RVOSimulator(), places()
+    simulator, start = RVOSimulator(), crowd.starts
     simulator.set_time_step(DT)
     simulator.set_agent_defaults(RANGE, NEIGHBOURS, HORIZON, HORIZON, RADIUS, LIMIT)
     for place in start:
         simulator.add_agent(place)
     seconds = 0.0
-    for step in range(WARM + STEPS):
+    for step in range(crowd.warm + crowd.steps):
         for k, (sx, sy) in enumerate(start):
             x, y = simulator.get_agent_position(k).to_tuple()
             dx, dy = -sx - x, -sy - y
@@ -100,17 +142,17 @@ def pyrvo() -> float:
             simulator.set_agent_pref_velocity(k, (scale * dx, scale * dy))
         began = perf_counter()
         simulator.do_step()
-        if step >= WARM:
+        if step >= crowd.warm:
             seconds += perf_counter() - began
     return seconds
 
 
-def navground() -> float:
-    """Return the time of STEPS steps [s]."""
+def navground(crowd: Crowd) -> float:
+    """Return the time of the steps [s]."""
     from navground import core, sim
 
     world = sim.World()
-    for k, (x, y) in enumerate(places()):
+    for k, (x, y) in enumerate(crowd.starts):
         behavior = core.Behavior.make_type("ORCA")
         behavior.max_number_of_neighbors, behavior.time_horizon = NEIGHBOURS, HORIZON
         behavior.horizon, behavior.optimal_speed = RANGE, SPEED
@@ -127,8 +169,8 @@ def navground() -> float:
         agent.position = (x, y)
         world.add_agent(agent)
     began = 0.0
-    for step in range(WARM + STEPS):
-        if step == WARM:
+    for step in range(crowd.warm + crowd.steps):
+        if step == crowd.warm:
             began = perf_counter()
         world.update(DT)
     return perf_counter() - began
@@ -137,22 +179,25 @@ def navground() -> float:
 PARTS = {"benchnav": benchnav, "pyrvo": pyrvo, "navground": navground}
 
 
-def answer(part: str) -> dict[str, Any]:
+def answer(part: str, crowd: Crowd) -> dict[str, Any]:
     """Return the output of a subprocess: seconds, or the reason why there are none."""
     try:
-        return {"version": version(part), "seconds": PARTS[part]()}
+        return {"version": version(part), "seconds": PARTS[part](crowd)}
     except (ImportError, PackageNotFoundError) as error:
         return {"skipped": f"{part} is not installed ({error})"}
 
 
-def ask(python: str, part: str) -> dict[str, Any]:
+def ask(python: str, part: str, crowd: Crowd = Crowd()) -> dict[str, Any]:
     """Run one part in a separate interpreter.
 
     It runs as a module: the folder of a script would be first on the path, and one of our files
     may have the name of a package that a library imports.
     """
-    command = [python, "-m", "benchmarks.orca_peers", "--part", part]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=ROOT)
+    command = [python, "-m", "benchmarks.orca_peers", "--part", part, json.dumps(astuple(crowd))]
+    threads = {"BENCHNAV_THREADS": str(crowd.threads)}
+    done = subprocess.run(
+        command, capture_output=True, text=True, check=False, cwd=ROOT, env=os.environ | threads
+    )
     if done.returncode != 0 or not done.stdout:
         last = done.stderr.strip().splitlines()[-1:] or ["no output"]
         return {"skipped": f"{part} failed: {last[0]}"}
@@ -161,38 +206,52 @@ def ask(python: str, part: str) -> dict[str, Any]:
 
 
 def measure(peers_python: str) -> list[dict[str, Any]]:
-    """Return a row for each part: agent-steps per second, and the ratio of benchnav to it.
+    """Return a row for each entry of `WANTED`.
 
-    Rows have ``name``, ``version``, ``agent_steps_per_second``, ``ratio`` and ``wanted``
-    (the ratio to reach), or ``name`` and ``skipped`` (the reason).
+    Rows have ``name``, ``value`` (agent-steps per second), ``unit``, ``peer`` (the rate that it is
+    compared with), ``ratio`` and ``wanted``, or ``name`` and ``note`` (the reason).
     """
-    pythons = {"benchnav": sys.executable, "pyrvo": peers_python, "navground": peers_python}
-    rounds: dict[str, list[dict[str, Any]]] = {part: [] for part in PARTS}
+    times = _times(peers_python)
+    rows = []
+    for crowd, other, wanted in WANTED:
+        against = times["benchnav", other] if isinstance(other, Crowd) else times[other, crowd]
+        name = f"{crowd} against {other} {against.get('version', '')}".strip()
+        if isinstance(other, Crowd):
+            name = f"{crowd} against {other}"
+        row: dict[str, Any] = {"name": name}
+        missing = [
+            one["skipped"] for one in (times["benchnav", crowd], against) if "skipped" in one
+        ]
+        if missing:
+            rows.append(row | {"note": missing[0]})
+            continue
+        value, peer = times["benchnav", crowd]["rate"], against["rate"]
+        row |= {"value": value, "unit": "agent-steps/s", "peer": peer, "ratio": value / peer}
+        rows.append(row | {"wanted": wanted})
+    return rows
+
+
+def _times(peers_python: str) -> dict[tuple[str, Crowd], dict[str, Any]]:
+    """Return the best round of each part and crowd: its ``rate``, or why it was ``skipped``."""
+    best: dict[tuple[str, Crowd], dict[str, Any]] = {}
     for _ in range(ROUNDS):
-        for part, python in pythons.items():
-            if not (rounds[part] and "skipped" in rounds[part][0]):
-                rounds[part].append(ask(python, part))
-    best = {part: _best(times) for part, times in rounds.items()}
-    ours = best["benchnav"].get("agent_steps_per_second")
-    for part, wanted in (("pyrvo", 4.0), ("navground", 40.0)):
-        if ours is not None and "skipped" not in best[part]:
-            best[part]["ratio"] = ours / best[part]["agent_steps_per_second"]
-            best[part]["wanted"] = wanted
-    return [{"name": part, **row} for part, row in best.items()]
-
-
-def _best(times: list[dict[str, Any]]) -> dict[str, Any]:
-    skipped = next((one for one in times if "skipped" in one), None)
-    if skipped is not None:
-        return skipped
-    seconds = min(float(one["seconds"]) for one in times)
-    rate = AGENTS * STEPS / seconds
-    return {"version": times[0]["version"], "agent_steps_per_second": rate}
+        for crowd, other, _wanted in WANTED:
+            pair = (("benchnav", other) if isinstance(other, Crowd) else (other, crowd),)
+            for part, measured in (("benchnav", crowd), *pair):
+                known = best.get((part, measured))
+                if known is not None and "skipped" in known:
+                    continue
+                one = ask(sys.executable if part == "benchnav" else peers_python, part, measured)
+                if "seconds" in one:
+                    one["rate"] = measured.agents * measured.steps / one["seconds"]
+                if known is None or "skipped" in one or one["rate"] > known["rate"]:
+                    best[part, measured] = one
+    return best
 
 
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--part"]:
-        print(json.dumps(answer(sys.argv[2])))
+        print(json.dumps(answer(sys.argv[2], Crowd(*json.loads(sys.argv[3])))))
     else:
         for row in measure(sys.argv[1]):
             print(row)

@@ -4,7 +4,11 @@ import pickle
 import subprocess
 import sys
 
-from benchnav.kernels import inlined, kernel
+import numpy as np
+import pytest
+
+import benchnav.kernels
+from benchnav.kernels import Kernel, inlined, kernel, kernel_without_allocation
 
 
 @kernel
@@ -28,11 +32,49 @@ def test_kernels_call_kernels():
     assert double.py_func(3.0) == 6.0
 
 
-def test_what_only_kernels_call_has_no_wrapper_for_python():
-    assert both(3.0) == 10.0
+@kernel_without_allocation
+def add_one(values):
+    row = values[:]
+    for i in range(len(row)):
+        row[i] += 1.0
+
+
+@kernel_without_allocation
+def allocating(n):
+    return len(np.empty(n))
+
+
+@pytest.fixture
+def code_of(monkeypatch):
+    """Compile a kernel, as it is called by Python or by kernels, and return its LLVM code."""
+    monkeypatch.setattr(benchnav.kernels, "cache_folder", lambda package: None)
+
+    def compiled(of, argument, by="for_python"):
+        dispatcher = getattr(Kernel(of.py_func, **of.targetoptions), by)
+        dispatcher(argument) if by == "for_python" else dispatcher.compile((argument,))
+        return "".join(dispatcher.inspect_llvm().values())
+
+    return compiled
+
+
+def test_a_kernel_without_allocation_counts_no_references_and_refuses_to_allocate(code_of):
+    from numba.core.errors import NumbaError
+
+    values = np.zeros(2)
+    add_one(values)
+    assert values.tolist() == [1.0, 1.0]
+    assert "NRT_" not in code_of(add_one, values)
+    assert "NRT_" in code_of(kernel(add_one.py_func), values)
+    with pytest.raises(NumbaError, match="No implementation of function"):
+        allocating(2)
+
+
+def test_what_only_kernels_call_has_no_wrapper_for_python(code_of):
+    from numba import float64
+
     wrapper = "PyArg_UnpackTuple"
-    assert wrapper in "".join(both.for_python.inspect_llvm().values())
-    assert wrapper not in "".join(double.for_kernels.inspect_llvm().values())
+    assert wrapper in code_of(double, 3.0)
+    assert wrapper not in code_of(double, float64, by="for_kernels")
 
 
 def test_a_kernel_is_pickled_by_its_name():

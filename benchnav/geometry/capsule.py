@@ -6,12 +6,12 @@ closed-form and use correctly rounded operations only.
 
 import math
 
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 
 APPROACH = 1e-9  # [m/s] lower closing speeds count as zero, so that rounding causes no contact
 
 
-@kernel
+@kernel_without_allocation
 def nearest_on_segment(
     px: float, py: float, x0: float, y0: float, x1: float, y1: float
 ) -> tuple[float, float]:
@@ -27,7 +27,7 @@ def nearest_on_segment(
     return x0 + t * dx, y0 + t * dy
 
 
-@kernel
+@kernel_without_allocation
 def disc_time(fx: float, fy: float, wx: float, wy: float, reach: float) -> float:
     """Return the first t ≥ 0 with f + w t within ``reach`` of the origin, approaching, else inf.
 
@@ -46,7 +46,7 @@ def disc_time(fx: float, fy: float, wx: float, wy: float, reach: float) -> float
     return c / (math.sqrt(root) - b)
 
 
-@kernel
+@kernel_without_allocation
 def capsule_time(
     px: float, py: float, wx: float, wy: float, reach: float, way: float,
     x0: float, y0: float, x1: float, y1: float,
@@ -87,7 +87,7 @@ def capsule_time(
     )
 
 
-@kernel
+@kernel_without_allocation
 def segments_cross(
     ax: float, ay: float, bx: float, by: float, x0: float, y0: float, x1: float, y1: float
 ) -> bool:

@@ -1,16 +1,17 @@
 """Points in hashed cells: find the neighbours of a point without a dense grid over the plane.
 
 A table of H = 2^k buckets is filled by counting sort; a bucket may hold points of several
-cells, so every spot stores its own cell (ci, cj). Points are records with x, y, team, present,
-ci, cj; spots are copies of the fields that a search needs, in bucket order.
+cells, so every spot stores its own cell (ci, cj). Points are records with x, y, vx, vy, radius,
+team, present, ci, cj; spots are copies of the fields that a search needs, in bucket order.
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
 from benchnav.arrays import AnyArray, IntArray
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 
 
 def hash_table(batch: int, points: int) -> IntArray:
@@ -19,13 +20,17 @@ def hash_table(batch: int, points: int) -> IntArray:
     return np.zeros((batch, size + 1), np.int64)
 
 
-@kernel
+@kernel_without_allocation
 def bucket(i: int, j: int, size: int) -> int:
-    """Return the bucket of cell (i, j) in a table of ``size`` (a power of two)."""
-    return ((i * 73856093) ^ (j * 19349663)) & (size - 1)
+    """Return the bucket of cell (i, j) in a table of ``size`` (a power of two).
+
+    Cells that follow each other in a row have buckets that follow each other. Rows begin a golden
+    section of the table apart, so that near rows share few buckets.
+    """
+    return (i + j * ((size * 40503 >> 16) | 1)) & (size - 1)
 
 
-@kernel
+@kernel_without_allocation
 def fill(points: AnyArray, hashed: IntArray, spots: AnyArray, side: float) -> None:
     """Sort the present points (A,) into cells of ``side`` [m].
 
@@ -47,9 +52,25 @@ def fill(points: AnyArray, hashed: IntArray, spots: AnyArray, side: float) -> No
         if p.present:
             k = bucket(p.ci, p.cj, size)
             hashed[k + 1] -= 1
-            spot = spots[hashed[k + 1]]
-            spot.x, spot.y, spot.ci, spot.cj = p.x, p.y, p.ci, p.cj
-            spot.index, spot.team = i, p.team
+            _copy(p, i, spots[hashed[k + 1]])
     for k in range(size):
         hashed[k] = hashed[k + 1]
     hashed[size] = total
+
+
+@kernel_without_allocation
+def collect(points: AnyArray, hashed: IntArray, spots: AnyArray) -> None:
+    """List the present points (A,) by index, without cells: they are spots[: hashed[-1]]."""
+    n = 0
+    for i in range(len(points)):
+        if points[i].present:
+            _copy(points[i], i, spots[n])
+            n += 1
+    hashed[-1] = n
+
+
+@kernel_without_allocation
+def _copy(point: Any, index: int, spot: Any) -> None:
+    spot.x, spot.y, spot.vx, spot.vy = point.x, point.y, point.vx, point.vy
+    spot.radius, spot.ci, spot.cj = point.radius, point.ci, point.cj
+    spot.index, spot.team = index, point.team

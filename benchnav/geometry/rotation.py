@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 
 TWO_PI = 2.0 * math.pi
 _HALF_PI = 0.5 * math.pi
@@ -20,13 +20,14 @@ _HALF_PI_C = 2.0222662487959506e-21
 _TAN_PI_8 = math.sqrt(2.0) - 1.0
 
 
-@kernel
+@kernel_without_allocation
 def wrap(angle: float) -> float:
     """Return the angle [rad] in [-pi, pi)."""
-    return angle - TWO_PI * math.floor((angle + math.pi) / TWO_PI)
+    turns: float = np.floor((angle + math.pi) / TWO_PI)  # math.floor makes an integer: no vectors
+    return angle - TWO_PI * turns
 
 
-@kernel
+@kernel_without_allocation
 def cos_sin(angle: float) -> tuple[float, float]:
     """Return (cos, sin) of a moderate angle [rad], by Taylor series on [-pi/4, pi/4]."""
     k = math.floor(angle / _HALF_PI + 0.5)
@@ -48,37 +49,30 @@ def cos_sin(angle: float) -> tuple[float, float]:
     c = c * z - 1.0 / 720.0
     c = c * z + 1.0 / 24.0
     c = 1.0 - 0.5 * z + z * z * c
+    # selections instead of branches, which are mispredicted for random angles
     quadrant = int(k) % 4
-    if quadrant == 0:
-        return c, s
-    if quadrant == 1:
-        return -s, c
-    if quadrant == 2:
-        return -c, -s
-    return s, -c
+    odd = quadrant % 2 == 1
+    cosine, sine = (s if odd else c), (c if odd else s)
+    cosine = -cosine if quadrant == 1 or quadrant == 2 else cosine
+    return cosine, -sine if quadrant >= 2 else sine
 
 
-@kernel
+@kernel_without_allocation
 def angle_of(x: float, y: float) -> float:
     """Return the direction [rad] of the vector (x, y) in [-pi, pi]; 0 for the zero vector."""
     ax, ay = abs(x), abs(y)
-    if ax == 0.0 and ay == 0.0:
-        return 0.0
     swapped = ay > ax
-    t = ax / ay if swapped else ay / ax
-    base = 0.0
-    if t > _TAN_PI_8:
-        base = 0.25 * math.pi
-        t = (t - 1.0) / (t + 1.0)
-    a = base + _arctan_small(t)
-    if swapped:
-        a = _HALF_PI - a
-    if x < 0.0:
-        a = math.pi - a
+    large, small = (ay if swapped else ax), (ax if swapped else ay)
+    t = small / large if large != 0.0 else 0.0
+    beyond = t > _TAN_PI_8
+    turned = (t - 1.0) / (t + 1.0)
+    a = (0.25 * math.pi if beyond else 0.0) + _arctan_small(turned if beyond else t)
+    a = _HALF_PI - a if swapped else a
+    a = math.pi - a if x < 0.0 else a
     return -a if y < 0.0 else a
 
 
-@kernel
+@kernel_without_allocation
 def _arctan_small(t: float) -> float:
     """Return the arctangent for |t| ≤ tan(pi/8) by Taylor series, to a last term below 1e-17."""
     z = t * t

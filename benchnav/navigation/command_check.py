@@ -45,9 +45,11 @@ def checked(answer: Any, active: BoolArray) -> FloatArray:
             f"act must return an array of shape {expected}. Got shape {command.shape} instead"
         )
     with np.errstate(over="ignore"):  # a number that float64 cannot hold is not finite
-        command = np.where(active[..., None], command.astype(np.float64), 0.0)
-    finite = np.isfinite(command).all(axis=2)
-    if not finite.all():
+        command = np.array(command, np.float64, order="C")
+    if not active.all():
+        command[~active] = 0.0
+    if not np.isfinite(command).all():
+        finite = np.isfinite(command).all(axis=2)
         world, agent = np.argwhere(~finite)[0]
         got = ", ".join(f"{x:g}" for x in command[world, agent])
         raise CallFailed(

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.episode.episode import Status
+from benchnav.arrays import BoolArray, IntArray
 from benchnav.navigation.map import Map
 from benchnav.navigation.observation import Observation
+from benchnav.sensors.own_state import copy_own_state, find_deciding
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
 
@@ -23,9 +23,9 @@ def deciding(simulation: Simulation, agents: IntArray) -> BoolArray:
         simulation: B worlds.
         agents: (B, An) indices of agents; -1 is padding, which never decides.
     """
-    at = np.arange(simulation.B)[:, None], agents
-    active: BoolArray = (agents >= 0) & simulation.running[:, None] & simulation.present[at]
-    active &= simulation.status[at] == int(Status.ACTIVE)
+    active = np.empty(agents.shape, np.bool_)
+    chosen = np.array(agents, np.int64)  # one type of array, so that kernels compile once
+    find_deciding(0, simulation.B, chosen, simulation.records, simulation.agents, active)
     return active
 
 
@@ -47,23 +47,19 @@ def observe(
 
     `rows` numbers the worlds of the simulation from 0.
     """
-    at = np.arange(simulation.B)[:, None], agents
     rays, neighbours, edges = sense(simulation, np.where(active, agents, -1), needs)
-    padding = agents < 0
-
-    def own(array: FloatArray) -> FloatArray:
-        values = array[at]
-        values[padding] = 0.0
-        return values
-
+    position, velocity, goal = (np.empty((*agents.shape, 2)) for _ in range(3))
+    heading = np.empty(agents.shape)
+    chosen = np.array(agents, np.int64)
+    copy_own_state(0, simulation.B, chosen, simulation.agents, position, heading, velocity, goal)
     return Observation(
         rows=np.arange(simulation.B),
         time=simulation.steps_done * simulation.records["dt"],
         active=active.copy(),
-        position=own(simulation.position),
-        heading=own(simulation.heading),
-        velocity=own(simulation.velocity),
-        goal=own(simulation.goal),
+        position=position,
+        heading=heading,
+        velocity=velocity,
+        goal=goal,
         maps=tuple(maps),
         rays=rays,
         neighbours=neighbours,

@@ -12,7 +12,7 @@ from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.rotation import cos_sin
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel, kernel_without_allocation
 from benchnav.sensors.sight import FEW, in_sight
 
 CANDIDATES = 64  # nearest facing edges that are tested for visibility
@@ -35,10 +35,25 @@ def find_edges(
 
     Outputs are (B, An, E, …). ``bulge`` [m] is the radius of the largest fixed disc.
     """
-    width, most = first.shape[1], first.shape[2]
     best = np.empty(CANDIDATES)  # squared distances, rising
     code = np.empty(CANDIDATES, np.int64)  # 8 (capsule) + side of the octagon, see `_edge`
     edge = np.empty(10)
+    _find_in_rows(
+        low, high, chosen, limit, bulge, occlusion, worlds, agents, bodies, shapes, capsules, start,
+        item, first, second, before, after, first_convex, second_convex, count, best, code, edge,
+    )  # fmt: skip
+
+
+@kernel_without_allocation
+def _find_in_rows(
+    low: int, high: int, chosen: IntArray, limit: float, bulge: float, occlusion: bool,
+    worlds: AnyArray,
+    agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray,
+    item: IntArray, first: FloatArray, second: FloatArray, before: FloatArray, after: FloatArray,
+    first_convex: BoolArray, second_convex: BoolArray, count: IntArray,
+    best: FloatArray, code: IntArray, edge: FloatArray,
+) -> None:  # fmt: skip
+    width, most = first.shape[1], first.shape[2]
     for b in range(low // width, (high + width - 1) // width):
         world, here, others = worlds[b], agents[b], bodies[b]
         for k in range(max(low - b * width, 0), min(high - b * width, width)):
@@ -65,7 +80,7 @@ def find_edges(
             count[b, k] = kept
 
 
-@kernel
+@kernel_without_allocation
 def _visible(
     a: Any, edge: FloatArray, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
     bodies: AnyArray, shapes: AnyArray,
@@ -85,7 +100,7 @@ def _visible(
     return False
 
 
-@kernel
+@kernel_without_allocation
 def _gather(
     a: Any, limit: float, bulge: float, world: Any, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, best: FloatArray, code: IntArray,
@@ -108,7 +123,7 @@ def _gather(
     return n
 
 
-@kernel
+@kernel_without_allocation
 def _gather_cells(
     a: Any, limit: float, far: float, world: Any, capsules: AnyArray, start: IntArray,
     item: IntArray, best: FloatArray, code: IntArray,
@@ -132,7 +147,7 @@ def _gather_cells(
     return n
 
 
-@kernel
+@kernel_without_allocation
 def _consider(
     a: Any, ox: float, oy: float, c: Any, at: int, limit: float, n: int, best: FloatArray,
     code: IntArray,
@@ -147,7 +162,7 @@ def _consider(
     return n
 
 
-@kernel
+@kernel_without_allocation
 def _octagon_side(c: Any, side: int) -> tuple[float, float, float, float]:
     """Return a side of the octagon around a disc, by 45° steps; side 0 faces +x."""
     c0, s0 = cos_sin((side - 0.5) * _EIGHTH)
@@ -156,7 +171,7 @@ def _octagon_side(c: Any, side: int) -> tuple[float, float, float, float]:
     return c.x0 + radius * c0, c.y0 + radius * s0, c.x0 + radius * c1, c.y0 + radius * s1
 
 
-@kernel
+@kernel_without_allocation
 def _offer(
     a: Any, x0: float, y0: float, x1: float, y1: float, edge_code: int, limit: float, n: int,
     best: FloatArray, code: IntArray,
@@ -177,7 +192,7 @@ def _offer(
     return n
 
 
-@kernel
+@kernel_without_allocation
 def _edge(
     code: int, capsules: AnyArray, shapes: AnyArray, bodies: AnyArray, edge: FloatArray
 ) -> None:
@@ -206,7 +221,7 @@ def _edge(
     edge[3] += oy
 
 
-@kernel
+@kernel_without_allocation
 def _clip(a: Any, limit: float, edge: FloatArray) -> None:
     """Cut an edge at the sensor's range; a cut end looks like a straight wall that continues."""
     dx, dy = edge[2] - edge[0], edge[3] - edge[1]

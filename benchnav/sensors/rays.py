@@ -15,11 +15,12 @@ from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time
 from benchnav.geometry.hash_grid import bucket
 from benchnav.geometry.rotation import cos_sin
-from benchnav.kernels import inlined, kernel
+from benchnav.kernels import inlined, kernel, kernel_without_allocation
 from benchnav.sensors.sight import FEW
 from benchnav.world.fixed import walk
 from benchnav.world.touch import BRUTE_FORCE
 
+BEHIND = 1e-3  # [m] farther than this behind the agent, an object cannot be hit by rays ahead
 _AGENT, _NOTHING, _DYNAMIC = int(Kind.AGENT), int(Kind.NOTHING), int(Kind.DYNAMIC)
 
 # columns of the list: ends; unit normal and distance of the line (edges); sum of radii; kind;
@@ -42,11 +43,28 @@ def cast_rays(
     multiple of 8; ``side`` [m] of the hashed cells; ``widest`` radius of an agent;
     ``most_shapes``: capsules of the bodies of one world; ``sees`` (B, teams, teams).
     """
-    width = chosen.shape[1]
-    rays = distance.shape[2]
     things = np.empty((FEW + agents.shape[1] + most_shapes, 11))  # room for everything
     best = np.empty(len(fan_x))
     hit = np.empty(len(fan_x), np.int64)
+    _cast_in_rows(
+        low, high, chosen, fan_x, fan_y, limit, thick, side, widest, most_shapes, sees, worlds,
+        agents, bodies, shapes, capsules, start, item, hashed, spots, distance, kind, approach,
+        goal, things, best, hit,
+    )  # fmt: skip
+
+
+@kernel_without_allocation
+def _cast_in_rows(
+    low: int, high: int, chosen: IntArray, fan_x: FloatArray, fan_y: FloatArray,
+    limit: float, thick: bool, side: float, widest: float, most_shapes: int,
+    sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
+    shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
+    spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
+    goal: FloatArray, things: FloatArray, best: FloatArray, hit: IntArray,
+) -> None:  # fmt: skip
+    width = chosen.shape[1]
+    rays = distance.shape[2]
+    rear = -BEHIND if min(fan_x) >= -1e-9 else -math.inf
     for b in range(low // width, (high + width - 1) // width):
         world, here, others = worlds[b], agents[b], bodies[b]
         seen, table, crowd = sees[b], hashed[b], spots[b]
@@ -58,12 +76,12 @@ def cast_rays(
             a = here[i]
             own = a.radius if thick else 0.0
             ca, sa = cos_sin(a.heading)
-            n = _list_bodies(a, ca, sa, own, limit, world.bodies, others, shapes, things, 0)
+            n = _list_bodies(a, ca, sa, own, limit, rear, world.bodies, others, shapes, things, 0)
             n = _list_agents(
-                i, ca, sa, own, limit, side, widest, seen, here, table, crowd, things, n
+                i, ca, sa, own, limit, rear, side, widest, seen, here, table, crowd, things, n
             )
             if few:
-                n = _list_fixed(a, ca, sa, own, limit, world, capsules, things, n)
+                n = _list_fixed(a, ca, sa, own, limit, rear, world, capsules, things, n)
             gx, gy = a.x - a.goal_x, a.y - a.goal_y
             gx, gy = ca * gx + sa * gy, ca * gy - sa * gx
             best[:] = limit
@@ -84,7 +102,7 @@ def cast_rays(
                 goal[b, k, r] = _goal_distance(gx, gy, dx, dy, world.tolerance + own, reach)
 
 
-@kernel
+@kernel_without_allocation
 def _goal_distance(fx: float, fy: float, dx: float, dy: float, reach: float, best: float) -> float:
     t = 0.0 if fx * fx + fy * fy <= reach * reach else disc_time(fx, fy, dx, dy, reach)
     return t if t <= best else math.inf
@@ -92,14 +110,20 @@ def _goal_distance(fx: float, fy: float, dx: float, dy: float, reach: float, bes
 
 @inlined
 def _list(
-    a: Any, ca: float, sa: float, own: float, c: Any, x0: float, y0: float, vx: float, vy: float,
-    things: FloatArray, n: int,
+    a: Any, ca: float, sa: float, own: float, rear: float, c: Any, x0: float, y0: float,
+    vx: float, vy: float, things: FloatArray, n: int,
 ) -> int:  # fmt: skip
-    """Append capsule c, which begins at (x0, y0) relative to the agent."""
+    """Append capsule c, which begins at (x0, y0) relative to the agent, if it is not too far back.
+
+    ``rear`` [m] is the least coordinate ahead of the agent that a ray can hit.
+    """
     x1, y1 = x0 + (c.x1 - c.x0), y0 + (c.y1 - c.y0)
+    ahead_0, ahead_1 = ca * x0 + sa * y0, ca * x1 + sa * y1
+    if max(ahead_0, ahead_1) + own + c.r < rear:
+        return n
     row = things[n]
-    row[X0], row[Y0] = ca * x0 + sa * y0, ca * y0 - sa * x0
-    row[X1], row[Y1] = ca * x1 + sa * y1, ca * y1 - sa * x1
+    row[X0], row[Y0] = ahead_0, ca * y0 - sa * x0
+    row[X1], row[Y1] = ahead_1, ca * y1 - sa * x1
     row[NX], row[NY] = ca * c.nx + sa * c.ny, ca * c.ny - sa * c.nx
     row[OFF] = -1.0 if c.nx == 0.0 and c.ny == 0.0 else -(c.nx * x0 + c.ny * y0)
     row[REACH], row[KIND] = own + c.r, c.kind
@@ -107,7 +131,7 @@ def _list(
     return n + 1
 
 
-@kernel
+@kernel_without_allocation
 def _is_reachable(c: Any, x0: float, y0: float, far: float) -> bool:
     """Whether a ray of length ``far`` [m] can hit capsule c, which begins at (x0, y0), first.
 
@@ -124,20 +148,20 @@ def _is_reachable(c: Any, x0: float, y0: float, far: float) -> bool:
 
 @inlined
 def _list_fixed(
-    a: Any, ca: float, sa: float, own: float, limit: float, world: Any, capsules: AnyArray,
-    things: FloatArray, n: int,
+    a: Any, ca: float, sa: float, own: float, limit: float, rear: float, world: Any,
+    capsules: AnyArray, things: FloatArray, n: int,
 ) -> int:  # fmt: skip
     for p in range(world.first, world.last):
         c = capsules[p]
         if _is_reachable(c, c.x0 - a.x, c.y0 - a.y, limit + own):
-            n = _list(a, ca, sa, own, c, c.x0 - a.x, c.y0 - a.y, 0.0, 0.0, things, n)
+            n = _list(a, ca, sa, own, rear, c, c.x0 - a.x, c.y0 - a.y, 0.0, 0.0, things, n)
     return n
 
 
 @inlined
 def _list_bodies(
-    a: Any, ca: float, sa: float, own: float, limit: float, count: int, bodies: AnyArray,
-    shapes: AnyArray, things: FloatArray, n: int,
+    a: Any, ca: float, sa: float, own: float, limit: float, rear: float, count: int,
+    bodies: AnyArray, shapes: AnyArray, things: FloatArray, n: int,
 ) -> int:  # fmt: skip
     for m in range(count):
         body = bodies[m]
@@ -147,21 +171,21 @@ def _list_bodies(
                 c = shapes[q]
                 x0, y0 = c.x0 + dx, c.y0 + dy
                 if _is_reachable(c, x0, y0, limit + own):
-                    n = _list(a, ca, sa, own, c, x0, y0, body.vx, body.vy, things, n)
+                    n = _list(a, ca, sa, own, rear, c, x0, y0, body.vx, body.vy, things, n)
     return n
 
 
-@kernel
+@kernel_without_allocation
 def _list_agents(
-    i: int, ca: float, sa: float, own: float, limit: float, side: float, widest: float,
-    sees: BoolArray, agents: AnyArray, hashed: IntArray, spots: AnyArray, things: FloatArray,
-    n: int,
+    i: int, ca: float, sa: float, own: float, limit: float, rear: float, side: float,
+    widest: float, sees: BoolArray, agents: AnyArray, hashed: IntArray, spots: AnyArray,
+    things: FloatArray, n: int,
 ) -> int:  # fmt: skip
     a = agents[i]
     if len(agents) <= BRUTE_FORCE:
         for j in range(len(agents)):
             if j != i:
-                n = _list_agent(a, ca, sa, own, limit, sees, agents[j], things, n)
+                n = _list_agent(a, ca, sa, own, limit, rear, sees, agents[j], things, n)
         return n
     size = len(hashed) - 1
     for ring in range(math.ceil((limit + own + widest) / side) + 1):
@@ -173,22 +197,25 @@ def _list_agents(
                     j = spots[at].index
                     other = agents[j]
                     if spots[at].ci == ci and spots[at].cj == cj and j != i:
-                        n = _list_agent(a, ca, sa, own, limit, sees, other, things, n)
+                        n = _list_agent(a, ca, sa, own, limit, rear, sees, other, things, n)
     return n
 
 
-@kernel
+@kernel_without_allocation
 def _list_agent(
-    a: Any, ca: float, sa: float, own: float, limit: float, sees: BoolArray, other: Any,
-    things: FloatArray, n: int,
+    a: Any, ca: float, sa: float, own: float, limit: float, rear: float, sees: BoolArray,
+    other: Any, things: FloatArray, n: int,
 ) -> int:  # fmt: skip
     x, y, reach = other.x - a.x, other.y - a.y, own + other.radius
     if not other.present or not sees[a.team, other.team]:
         return n
     if x * x + y * y > (limit + reach) * (limit + reach):
         return n
+    ahead = ca * x + sa * y
+    if ahead + reach < rear:
+        return n
     row = things[n]
-    row[X0], row[Y0] = ca * x + sa * y, ca * y - sa * x
+    row[X0], row[Y0] = ahead, ca * y - sa * x
     row[X1], row[Y1] = row[X0], row[Y0]
     row[OFF], row[REACH], row[KIND] = -1.0, reach, _AGENT
     return n + 1
@@ -229,7 +256,7 @@ def _cast(
             hit[r] = k if nearer else hit[r]
 
 
-@kernel
+@kernel_without_allocation
 def _first_on_map(
     x: float, y: float, dx: float, dy: float, own: float, limit: float, world: Any,
     capsules: AnyArray, start: IntArray, item: IntArray,

@@ -6,9 +6,9 @@ import numpy as np
 
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arrays import AnyArray, FloatArray, IntArray
-from benchnav.geometry.hash_grid import fill
+from benchnav.geometry.hash_grid import collect, fill
 from benchnav.geometry.rotation import cos_sin
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 from benchnav.sensors.edges import find_edges
 from benchnav.sensors.neighbours import find_neighbours
 from benchnav.sensors.rays import cast_rays
@@ -18,6 +18,7 @@ from benchnav.world.simulation import Simulation
 from benchnav.world.touch import BRUTE_FORCE
 
 RAYS, NEIGHBOURS, EDGES = "rays", "neighbours", "edges"  # names of the sensors
+LEAST_SIDE = 0.1  # [m] of a cell
 LEAST = 64  # with fewer agents, a second thread costs more than it saves
 
 
@@ -35,7 +36,8 @@ def sense(
     crowd = simulation.A > BRUTE_FORCE
     side = 1.0
     if crowd and needs & {RAYS, NEIGHBOURS}:
-        side = _cell_side(simulation, sensing)
+        side = _cell_side(simulation, sensing, needs)
+    if NEIGHBOURS in needs or (crowd and RAYS in needs):
         run_rows(
             _sort_agents, simulation.B, simulation.agents, simulation.hashed, simulation.spots,
             side,
@@ -50,20 +52,24 @@ def sense(
     return rays, neighbours, edges
 
 
-def _cell_side(simulation: Simulation, sensing: Sensing) -> float:
-    """Return the cell side [m], a few body sizes: crowds are dense where many agents meet."""
-    limit = sensing.neighbours.range if sensing.neighbours is not None else 0.0
-    if sensing.rays is not None:
-        limit = max(limit, sensing.rays.range)
-    return max(0.25 * limit, 4.0 * float(simulation.agents["radius"].max()))
+def _cell_side(simulation: Simulation, sensing: Sensing, needs: frozenset[str]) -> float:
+    """Return a cell side [m] that makes the search fast; it does not change the result."""
+    if RAYS in needs and sensing.rays is not None:
+        limit = sensing.neighbours.range if sensing.neighbours is not None else 0.0
+        return max(0.25 * max(limit, sensing.rays.range), 4.0 * simulation.widest)
+    near = float(np.add.reduce(simulation.near, None)) / simulation.near.size
+    return max(near, 0.5 * simulation.widest, LEAST_SIDE)
 
 
-@kernel
+@kernel_without_allocation
 def _sort_agents(
     low: int, high: int, agents: AnyArray, hashed: IntArray, spots: AnyArray, side: float
 ) -> None:
     for b in range(low, high):
-        fill(agents[b], hashed[b], spots[b], side)
+        if agents.shape[1] > BRUTE_FORCE:
+            fill(agents[b], hashed[b], spots[b], side)
+        else:
+            collect(agents[b], hashed[b], spots[b])
 
 
 def ray_angles(sensor: RaySensor) -> FloatArray:
@@ -98,14 +104,14 @@ def _neighbours(
 ) -> Neighbours:
     shape = (*chosen.shape, sensor.count)
     out = Neighbours(
-        np.zeros((*shape, 2)), np.zeros((*shape, 2)), np.zeros(shape), np.zeros(shape, np.int8),
-        np.zeros(chosen.shape, np.int64),
+        np.empty((*shape, 2)), np.empty((*shape, 2)), np.empty(shape), np.empty(shape, np.int8),
+        np.empty(chosen.shape, np.int64),
     )  # fmt: skip
     s = simulation
     run_rows(
         find_neighbours, chosen.size, chosen, float(sensor.range), occlusion, side, s.sees,
         s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
-        out.position, out.velocity, out.radius, out.kind, out.count, least=LEAST,
+        s.near, out.position, out.velocity, out.radius, out.kind, out.count, least=LEAST,
     )  # fmt: skip
     return out
 

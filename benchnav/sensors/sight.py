@@ -7,13 +7,13 @@ from typing import Any
 
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 from benchnav.world.fixed import walk
 
 FEW = 64  # up to this many capsules, testing all is cheaper than walking the grid
 
 
-@kernel
+@kernel_without_allocation
 def hides(c: Any, px: float, py: float, qx: float, qy: float) -> bool:
     """Whether capsule c cuts the open segment pq."""
     if c.r > 0.0:
@@ -23,7 +23,7 @@ def hides(c: Any, px: float, py: float, qx: float, qy: float) -> bool:
     return segments_cross(px, py, qx, qy, c.x0, c.y0, c.x1, c.y1)
 
 
-@kernel
+@kernel_without_allocation
 def in_sight(
     px: float, py: float, qx: float, qy: float, skip: int, world: Any, capsules: AnyArray,
     start: IntArray, item: IntArray, bodies: AnyArray, shapes: AnyArray,
@@ -43,7 +43,7 @@ def in_sight(
     return _clear_along(px, py, qx, qy, world, capsules, start, item)
 
 
-@kernel
+@kernel_without_allocation
 def _clear_of_all(
     px: float, py: float, qx: float, qy: float, world: Any, capsules: AnyArray
 ) -> bool:
@@ -53,7 +53,7 @@ def _clear_of_all(
     return clear
 
 
-@kernel
+@kernel_without_allocation
 def _clear_along(
     px: float, py: float, qx: float, qy: float, world: Any, capsules: AnyArray, start: IntArray,
     item: IntArray,

@@ -10,7 +10,7 @@ from benchnav.arena.body import Body, LawKind
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
 from benchnav.geometry.rotation import cos_sin
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 from benchnav.world.records import BODY, KNOT, capsule_records
 
 _TRACK = int(LawKind.TRACK)
@@ -66,7 +66,7 @@ def top_speed(world: World) -> float:
     return top
 
 
-@kernel
+@kernel_without_allocation
 def body_at(body: Any, knots: AnyArray, time: float) -> tuple[float, float]:
     """Return a body's position [m] at ``time`` [s]; of a relocated one, its current position."""
     first, last = body.law_first, body.law_last - 1

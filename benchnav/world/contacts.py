@@ -6,7 +6,7 @@ from typing import Any
 from benchnav.arena.world import ContactRule
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.episode.episode import Status
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 from benchnav.world.fixed import cell_at
 from benchnav.world.touch import (
     AGENT,
@@ -26,7 +26,7 @@ _ACTIVE, _ARRIVED, _ENDED = int(Status.ACTIVE), int(Status.ARRIVED), int(Status.
 _STOP, _END = int(ContactRule.STOP), int(ContactRule.END)
 
 
-@kernel
+@kernel_without_allocation
 def touch(
     i: int, time: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, opened: AnyArray, closed: AnyArray,
@@ -57,7 +57,7 @@ def touch(
     return -1
 
 
-@kernel
+@kernel_without_allocation
 def _touch_agent(
     i: int, j: int, time: float, world: Any, agents: AnyArray, opened: AnyArray, closed: AnyArray
 ) -> None:
@@ -79,13 +79,13 @@ def _touch_agent(
     _respond(i, nx, ny, give_i, time, world, a, opened[i], closed)
 
 
-@kernel
+@kernel_without_allocation
 def _unit(dx: float, dy: float) -> tuple[float, float]:
     length = math.sqrt(dx * dx + dy * dy)
     return (dx / length, dy / length) if length > 0.0 else (1.0, 0.0)
 
 
-@kernel
+@kernel_without_allocation
 def _respond(
     i: int, nx: float, ny: float, give: float, time: float, world: Any, a: Any, opened: AnyArray,
     closed: AnyArray,
@@ -102,7 +102,7 @@ def _respond(
         a.vy += give * ny
 
 
-@kernel
+@kernel_without_allocation
 def _finish(
     i: int, status: int, vanish: bool, time: float, world: Any, a: Any, opened: AnyArray,
     closed: AnyArray,
@@ -116,7 +116,7 @@ def _finish(
     _close_all(i, time, world, a, opened, closed)
 
 
-@kernel
+@kernel_without_allocation
 def _record(
     i: int, code: int, time: float, closing: float, charged: bool, world: Any, a: Any,
     opened: AnyArray, closed: AnyArray,
@@ -140,7 +140,7 @@ def _record(
     a.open = True
 
 
-@kernel
+@kernel_without_allocation
 def _close(i: int, time: float, world: Any, event: Any, closed: AnyArray) -> None:
     """Move an open contact to the list of closed ones."""
     row = closed[world.closed]
@@ -151,7 +151,7 @@ def _close(i: int, time: float, world: Any, event: Any, closed: AnyArray) -> Non
     event.code = -1
 
 
-@kernel
+@kernel_without_allocation
 def _close_all(i: int, time: float, world: Any, a: Any, opened: AnyArray, closed: AnyArray) -> None:
     for slot in range(len(opened)):
         if opened[slot].code >= 0:
@@ -159,7 +159,7 @@ def _close_all(i: int, time: float, world: Any, a: Any, opened: AnyArray, closed
     a.open = False
 
 
-@kernel
+@kernel_without_allocation
 def follow_up(
     time: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
@@ -182,7 +182,7 @@ def follow_up(
                 a.open = True
 
 
-@kernel
+@kernel_without_allocation
 def _gap(
     a: Any, code: int, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray,

@@ -3,10 +3,10 @@
 import math
 
 from benchnav.geometry.rotation import angle_of, cos_sin
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 
 
-@kernel
+@kernel_without_allocation
 def limited(
     c0: float, c1: float, twist: bool, unicycle: bool, heading: float,
     max_speed: float, max_turn_rate: float, dt: float,
@@ -32,7 +32,7 @@ def limited(
     return c0, c1
 
 
-@kernel
+@kernel_without_allocation
 def planar_velocity(
     d0: float, d1: float, turning: bool, heading: float, h: float
 ) -> tuple[float, float]:

@@ -14,7 +14,7 @@ import numpy as np
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
-from benchnav.kernels import inlined, kernel
+from benchnav.kernels import inlined, kernel, kernel_without_allocation
 from benchnav.world.records import CAPSULE, capsule_records
 
 MAX_CELLS = 1 << 16  # of one arena's grid
@@ -92,7 +92,7 @@ def _fill(worlds: AnyArray, capsules: AnyArray, start: IntArray, margin: float) 
     return item
 
 
-@kernel
+@kernel_without_allocation
 def _list_capsule(
     world: Any, capsule: Any, p: int, margin: float, cursor: IntArray, item: IntArray
 ) -> None:
@@ -117,7 +117,7 @@ def _list_capsule(
                 cursor[at] += 1
 
 
-@kernel
+@kernel_without_allocation
 def cell_at(world: Any, x: float, y: float) -> int:
     """Return the index into ``start`` of the cell of (x, y), or of the cell nearest to it."""
     i = math.floor((x - world.origin_x) / world.side)

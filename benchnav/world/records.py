@@ -36,8 +36,10 @@ AGENT = _record(
     preferred_speed="f8", drive_0="f8", drive_1="f8", tau="f8", code="i8", home="i8", hits="i8",
 )  # fmt: skip
 
-# an agent in a hashed cell (ci, cj) with its position, so that a search reads one array in order
-SPOT = _record(x="f8", y="f8", ci="i4", cj="i4", index="i4", team="i4")
+# an agent in a hashed cell (ci, cj) with its motion, so that a search reads one array in order
+SPOT = _record(
+    x="f8", y="f8", vx="f8", vy="f8", radius="f8", ci="i4", cj="i4", index="i4", team="i4"
+)  # fmt: skip
 
 # (B, M): dynamic obstacles and relocated static obstacles
 BODY = _record(

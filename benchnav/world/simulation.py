@@ -48,6 +48,8 @@ class Simulation:
         self.spots = np.zeros((self.B, self.A), SPOT)
         self.sees = _sees(self.worlds)
         self.widest = float(self.agents["radius"].max())  # [m]
+        # [m] from each agent to the farthest neighbour last found: a hint for the next search
+        self.near = np.full((self.B, self.A), 4.0 * self.widest)
         self.most_shapes = int((self.bodies["last"] - self.bodies["first"]).sum(1).max())
         self._views()
         self._place_bodies()

@@ -9,17 +9,19 @@ result depends on how worlds are batched or shared between threads.
 import math
 from typing import Any
 
+import numpy as np
+
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
 from benchnav.geometry.hash_grid import fill
 from benchnav.geometry.rotation import angle_of, wrap
-from benchnav.kernels import inlined, kernel
+from benchnav.kernels import inlined, kernel, kernel_without_allocation
 from benchnav.world.bodies import body_at
 from benchnav.world.contacts import MAX_HITS, follow_up, touch
 from benchnav.world.dynamics import limited, planar_velocity
 from benchnav.world.fixed import cell_at
-from benchnav.world.touch import BRUTE_FORCE, find_next
+from benchnav.world.touch import BRUTE_FORCE, find_next, first_agent, next_agent
 
 _ACTIVE = int(Status.ACTIVE)
 _STATIC = int(Kind.STATIC)
@@ -33,41 +35,60 @@ def step_worlds(
     hashed: IntArray, spots: AnyArray,
 ) -> None:  # fmt: skip
     """Advance the running worlds of rows low:high; ``executed`` gets the commands within limits."""
+    direction, near = np.empty(agents.shape[1]), np.empty(2 * agents.shape[1] + 1, np.int64)
+    _step_rows(
+        low, high, command, twist, executed, worlds, agents, bodies, shapes, knots, capsules,
+        start, item, opened, closed, hashed, spots, direction, near,
+    )  # fmt: skip
+
+
+@kernel_without_allocation
+def _step_rows(
+    low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
+    worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
+    capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
+    hashed: IntArray, spots: AnyArray, direction: FloatArray, near: IntArray,
+) -> None:  # fmt: skip
     for b in range(low, high):
         if worlds[b].running:
             step_world(
                 command[b], twist[b], executed[b], worlds[b], agents[b], bodies[b], shapes, knots,
-                capsules, start, item, opened[b], closed[b], hashed[b], spots[b],
+                capsules, start, item, opened[b], closed[b], hashed[b], spots[b], direction, near,
             )  # fmt: skip
 
 
-@kernel
+@kernel_without_allocation
 def step_world(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
     bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
     item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray, spots: AnyArray,
+    direction: FloatArray, near: IntArray,
 ) -> None:  # fmt: skip
-    """Advance one world: arrays over its agents (A,), bodies (M,) and contacts (A, 8)."""
+    """Advance one world: arrays over its agents (A,), bodies (M,) and contacts (A, 8).
+
+    ``direction`` (A,) and ``near`` (2 A + 1,) are scratch.
+    """
     relocate(world.steps_done * world.dt, world, agents, bodies, knots)
-    obey(command, twist, executed, world, agents)
+    if obey(command, twist, executed, world, agents):
+        find_directions(executed, direction)
     for s in range(world.substeps):
         tick = world.steps_done * world.substeps + s
         begin, end = tick * world.h, (tick + 1) * world.h
         aim_bodies(end, world, bodies, knots)
-        aim_agents(world, agents)
-        find_all(world, agents, bodies, shapes, capsules, start, item, hashed, spots)
-        advance(
+        top = aim_agents(world, agents)
+        find_all(top, world, agents, bodies, shapes, capsules, start, item, hashed, spots, near)
+        left = advance(
             begin, world, agents, bodies, shapes, capsules, start, item, opened, closed,
             hashed, spots,
         )  # fmt: skip
+        land_agents(left, world, agents, direction)
         land_bodies(world, bodies)
-        turn(world, agents)
         follow_up(end, world, agents, bodies, shapes, capsules, start, item, opened, closed)
     world.steps_done += 1
     world.running = goes_on(world, agents)
 
 
-@kernel
+@kernel_without_allocation
 def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots: AnyArray) -> None:
     """Relocate the static obstacles that are due and whose new place is free.
 
@@ -96,7 +117,7 @@ def relocate(time: float, world: Any, agents: AnyArray, bodies: AnyArray, knots:
             world.revision += 1
 
 
-@kernel
+@kernel_without_allocation
 def _within(dx: float, dy: float, reach: float) -> bool:
     return bool(dx * dx + dy * dy < reach * reach)
 
@@ -104,8 +125,9 @@ def _within(dx: float, dy: float, reach: float) -> bool:
 @inlined
 def obey(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray
-) -> None:
-    """Store commands within limits."""
+) -> bool:
+    """Store commands within limits; return whether any is a planar velocity."""
+    planar = False
     for i in range(world.agents):
         a = agents[i]
         a.halted = False
@@ -117,6 +139,15 @@ def obey(
                 a.max_turn_rate, world.dt,
             )  # fmt: skip
         executed[i, 0], executed[i, 1] = a.drive_0, a.drive_1
+        planar = planar or not a.turning
+    return planar
+
+
+@kernel_without_allocation
+def find_directions(velocity: FloatArray, direction: FloatArray) -> None:
+    """Write the direction [rad] of each velocity (A, 2). The loop is compiled to vector code."""
+    for i in range(len(direction)):
+        direction[i] = wrap(angle_of(velocity[i, 0], velocity[i, 1]))
 
 
 @inlined
@@ -129,32 +160,41 @@ def aim_bodies(end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> Non
 
 
 @inlined
-def aim_agents(world: Any, agents: AnyArray) -> None:
-    """Set the velocities of this substep."""
+def aim_agents(world: Any, agents: AnyArray) -> float:
+    """Set the velocities of this substep; return the highest speed [m/s]."""
+    top = 0.0
     for i in range(world.agents):
         a = agents[i]
         a.hits = 0
         a.vx, a.vy = 0.0, 0.0
         if a.status == _ACTIVE and a.present and not a.halted:
             a.vx, a.vy = planar_velocity(a.drive_0, a.drive_1, a.turning, a.heading, world.h)
+            top = max(top, a.vx * a.vx + a.vy * a.vy)
+    return math.sqrt(top)
 
 
 @inlined
 def find_all(
-    world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
-    start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
+    top: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
+    near: IntArray,
 ) -> None:  # fmt: skip
-    """Find the next touch of every agent."""
-    if len(agents) > BRUTE_FORCE:
+    """Find the next touch of every agent; none is faster than ``top`` [m/s]."""
+    crowd = len(agents) > BRUTE_FORCE
+    if crowd:
         fill(agents, hashed, spots, world.reach)
     for i in range(world.agents):
         a = agents[i]
         a.tau = math.inf
         if a.status == _ACTIVE and a.present:
             a.home = cell_at(world, a.x, a.y)
+            if crowd:
+                meeting, partner = first_agent(i, world.h, top, agents, hashed, spots, near)
+            else:
+                meeting, partner = next_agent(i, world.h, agents, hashed, spots)
             find_next(
-                i, world.h, world.tolerance, agents, bodies, shapes, capsules, start, item, hashed,
-                spots, world.bodies,
+                i, meeting, partner, world.h, world.tolerance, agents, bodies, shapes, capsules,
+                start, item, world.bodies,
             )  # fmt: skip
 
 
@@ -163,33 +203,35 @@ def advance(
     begin: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
     hashed: IntArray, spots: AnyArray,
-) -> None:  # fmt: skip
-    """Advance from touch to touch, to the end of the substep."""
-    left = world.h
-    while True:
-        i = earliest(world, agents)
-        if i < 0 or agents[i].tau > left:
-            break
+) -> float:  # fmt: skip
+    """Advance from touch to touch; return the time [s] from the last one to the substep's end."""
+    left: float = world.h
+    i = earliest(world, agents)
+    while i >= 0 and agents[i].tau <= left:
         elapsed = agents[i].tau
         drift(elapsed, world, agents, bodies)
         left -= elapsed
         now = begin + (world.h - left)
         j = touch(i, now, world, agents, bodies, shapes, capsules, opened, closed)
+        best, first = math.inf, -1
         for k in range(world.agents):
             a = agents[k]
-            if k != i and k != j and not _affected(a, i, j, world.reach, agents):
-                continue
-            a.tau = math.inf
-            # a wedged agent is left alone until the next substep
-            if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
-                find_next(
-                    k, left, world.tolerance, agents, bodies, shapes, capsules, start, item,
-                    hashed, spots, world.bodies,
-                )  # fmt: skip
-    drift(left, world, agents, bodies)
+            if k in (i, j) or _affected(a, i, j, world.reach, agents):
+                a.tau = math.inf
+                # a wedged agent is left alone until the next substep
+                if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
+                    meeting, partner = next_agent(k, left, agents, hashed, spots)
+                    find_next(
+                        k, meeting, partner, left, world.tolerance, agents, bodies, shapes,
+                        capsules, start, item, world.bodies,
+                    )  # fmt: skip
+            if a.tau < best:
+                best, first = a.tau, k
+        i = first
+    return left
 
 
-@kernel
+@kernel_without_allocation
 def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
     """Whether the next touch of a could be with i or j, after their motion changed."""
     if _within(a.x - agents[i].x, a.y - agents[i].y, reach):
@@ -197,7 +239,7 @@ def _affected(a: Any, i: int, j: int, reach: float, agents: AnyArray) -> bool:
     return j >= 0 and _within(a.x - agents[j].x, a.y - agents[j].y, reach)
 
 
-@kernel
+@kernel_without_allocation
 def earliest(world: Any, agents: AnyArray) -> int:
     """Return the agent with the earliest next touch; -1 if there is none."""
     best, first = math.inf, -1
@@ -230,16 +272,21 @@ def land_bodies(world: Any, bodies: AnyArray) -> None:
 
 
 @inlined
-def turn(world: Any, agents: AnyArray) -> None:
-    """Turn agents: by a twist's turn rate, or to face the direction of a planar velocity."""
+def land_agents(left: float, world: Any, agents: AnyArray, direction: FloatArray) -> None:
+    """Move agents straight for ``left`` [s], and turn them.
+
+    A twist turns an agent at its turn rate, and a planar velocity to face its direction.
+    """
     for i in range(world.agents):
         a = agents[i]
+        a.x += a.vx * left
+        a.y += a.vy * left
         if a.status != _ACTIVE or not a.present:
             continue
         if a.turning:
             a.heading = wrap(a.heading + a.drive_1 * world.h)
         elif a.drive_0 != 0.0 or a.drive_1 != 0.0:
-            a.heading = wrap(angle_of(a.drive_0, a.drive_1))
+            a.heading = direction[i]
 
 
 @inlined

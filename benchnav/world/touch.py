@@ -10,34 +10,39 @@ from typing import Any
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
 from benchnav.geometry.hash_grid import bucket
-from benchnav.kernels import inlined, kernel
+from benchnav.kernels import inlined, kernel_without_allocation
 
 GOAL, AGENT, FIXED, BODY = 0, 1, 2, 3
 BRUTE_FORCE = 24  # up to this many agents, testing all pairs is cheaper than a grid
+WIDER = 1.000001  # factor of a distance, so that rounding never excludes a touch
 
 
-@kernel
-def goal_time(a: Any, tolerance: float) -> float:
-    """Return the time until agent a touches its goal disc; 0 inside it."""
+@kernel_without_allocation
+def goal_time(a: Any, tolerance: float, left: float) -> float:
+    """Return the time until agent a touches its goal disc; 0 inside, inf if not within ``left``."""
     fx, fy = a.x - a.goal_x, a.y - a.goal_y
-    if fx * fx + fy * fy <= tolerance * tolerance:
+    f2 = fx * fx + fy * fy
+    if f2 <= tolerance * tolerance:
         return 0.0
+    far = tolerance + WIDER * (abs(a.vx) + abs(a.vy)) * left
+    if f2 > WIDER * far * far:
+        return math.inf
     return disc_time(fx, fy, a.vx, a.vy, tolerance)
 
 
-@kernel
+@kernel_without_allocation
 def pair_time(a: Any, b: Any) -> float:
     """Return the time until agents a and b touch at their current velocities."""
     return disc_time(a.x - b.x, a.y - b.y, a.vx - b.vx, a.vy - b.vy, a.radius + b.radius)
 
 
-@kernel
+@kernel_without_allocation
 def fixed_time(a: Any, c: Any, way: float) -> float:
     """Return the time until agent a touches a fixed capsule, within ``way`` [m]."""
     return capsule_time(a.x, a.y, a.vx, a.vy, a.radius + c.r, way, c.x0, c.y0, c.x1, c.y1)
 
 
-@kernel
+@kernel_without_allocation
 def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
     """Return the time until agent a touches a body; inf if it cannot within ``left`` [s]."""
     fx, fy = a.x - body.x, a.y - body.y
@@ -72,33 +77,68 @@ def next_agent(
                     best, partner = t, j
         return best, partner
     size = len(hashed) - 1
-    for ci in range(a.ci - 1, a.ci + 2):
-        for cj in range(a.cj - 1, a.cj + 2):
-            k = bucket(ci, cj, size)
-            for at in range(hashed[k], hashed[k + 1]):
-                j = spots[at].index
-                other = agents[j]
-                if other.ci == ci and other.cj == cj and j != i and other.present:
-                    t = pair_time(a, other)
-                    if t <= left and (t < best or (t == best and j < partner)):
-                        best, partner = t, j
+    for row in range(a.cj - 1, a.cj + 2):
+        low = bucket(a.ci - 1, row, size)
+        for part in range(2 if low + 3 > size else 1):  # the row may continue at the table's start
+            begin, end = (low, min(low + 3, size)) if part == 0 else (0, low + 3 - size)
+            for at in range(hashed[begin], hashed[end]):
+                spot = spots[at]
+                j = spot.index
+                if spot.cj != row or abs(spot.ci - a.ci) > 1 or j == i or not agents[j].present:
+                    continue
+                t = pair_time(a, agents[j])
+                if t <= left and (t < best or (t == best and j < partner)):
+                    best, partner = t, j
+    return best, partner
+
+
+@kernel_without_allocation
+def first_agent(
+    i: int, left: float, top: float, agents: AnyArray, hashed: IntArray, spots: AnyArray,
+    near: IntArray,
+) -> tuple[float, int]:  # fmt: skip
+    """Return the same as `next_agent` at the start of a substep, when the spots are up to date.
+
+    ``top`` is the highest speed of any agent [m/s]. Spots that approach and are near enough to
+    meet are listed first, without branches that cannot be predicted. ``near`` is scratch.
+    """
+    a, n = agents[i], 0
+    size = len(hashed) - 1
+    nearest = a.radius + WIDER * 2.0 * top * left
+    for row in range(a.cj - 1, a.cj + 2):
+        low = bucket(a.ci - 1, row, size)
+        for part in range(2 if low + 3 > size else 1):  # the row may continue at the table's start
+            begin, end = (low, min(low + 3, size)) if part == 0 else (0, low + 3 - size)
+            for at in range(hashed[begin], hashed[end]):
+                spot = spots[at]
+                fx, fy, wx, wy = a.x - spot.x, a.y - spot.y, a.vx - spot.vx, a.vy - spot.vy
+                far = nearest + spot.radius
+                near[n] = at
+                n += (fx * fx + fy * fy <= WIDER * far * far) & (fx * wx + fy * wy < 0.0)
+    best, partner = math.inf, -1
+    for k in range(n):
+        spot = spots[near[k]]
+        t, j = pair_time(a, spot), spot.index
+        if t <= left and (t < best or (t == best and j < partner)):
+            best, partner = t, j
     return best, partner
 
 
 @inlined
 def find_next(
-    i: int, left: float, tolerance: float, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
-    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
+    i: int, meeting: float, partner: int, left: float, tolerance: float, agents: AnyArray,
+    bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray,
     body_count: int,
 ) -> None:  # fmt: skip
     """Write tau and code of active agent i: its next touch within ``left`` [s].
 
     Of simultaneous touches the goal comes first, then fixed geometry, bodies, and
-    agents, each by index: a fixed order, independent of the search.
+    agents, each by index: a fixed order, independent of the search. The next agent (partner,
+    touched after ``meeting`` [s]) is an argument, because there are two ways to find it.
     """
     a = agents[i]
     best, code = math.inf, -1
-    t = goal_time(a, tolerance)
+    t = goal_time(a, tolerance, left)
     if t <= left:
         best, code = t, GOAL
     if a.vx != 0.0 or a.vy != 0.0:
@@ -111,13 +151,12 @@ def find_next(
         t = body_time(a, bodies[m], shapes, left)
         if t < best and t <= left:
             best, code = t, 4 * m + BODY
-    t, j = next_agent(i, left, agents, hashed, spots)
-    if t < best:
-        best, code = t, 4 * j + AGENT
+    if meeting < best:
+        best, code = meeting, 4 * partner + AGENT
     a.tau, a.code = best, code
 
 
-@kernel
+@kernel_without_allocation
 def from_fixed(a: Any, c: Any) -> tuple[float, float, float]:
     """Return (dx, dy, gap): from the nearest core point to agent a, and between the surfaces."""
     qx, qy = nearest_on_segment(a.x, a.y, c.x0, c.y0, c.x1, c.y1)
@@ -125,7 +164,7 @@ def from_fixed(a: Any, c: Any) -> tuple[float, float, float]:
     return dx, dy, math.sqrt(dx * dx + dy * dy) - c.r - a.radius
 
 
-@kernel
+@kernel_without_allocation
 def from_body(a: Any, body: Any, shapes: AnyArray) -> tuple[float, float, float]:
     """Like `from_fixed`, for the nearest of a body's capsules."""
     gap, dx, dy = math.inf, 0.0, 0.0
@@ -140,7 +179,7 @@ def from_body(a: Any, body: Any, shapes: AnyArray) -> tuple[float, float, float]
     return dx, dy, gap
 
 
-@kernel
+@kernel_without_allocation
 def encloses(body: Any, shapes: AnyArray, x: float, y: float) -> bool:
     """Whether (x, y) is inside the loops of a body (even-odd rule); False for a disc."""
     inside = False
@@ -152,7 +191,7 @@ def encloses(body: Any, shapes: AnyArray, x: float, y: float) -> bool:
     return inside
 
 
-@kernel
+@kernel_without_allocation
 def from_agent(a: Any, b: Any) -> tuple[float, float, float]:
     """Like `from_fixed`, for another agent."""
     dx, dy = a.x - b.x, a.y - b.y

@@ -7,8 +7,10 @@ import pytest
 from benchmarks import __main__ as bench
 from benchmarks import orca_peers
 
-OWN = {"name": "benchnav", "version": "1", "agent_steps_per_second": 9e5}
-PEER = {"name": "pyrvo", "version": "2", "agent_steps_per_second": 3e5, "ratio": 3, "wanted": 4}
+PEER = {
+    "name": "ORCA crowd of 1,000, 1 thread against pyrvo 2", "value": 9e5, "unit": "agent-steps/s",
+    "peer": 3e5, "ratio": 3.0, "wanted": 4,
+}  # fmt: skip
 LIMIT = {"name": "start", "value": 0.2, "unit": "s", "wanted": 0.4, "ratio": 2.0}
 
 
@@ -34,28 +36,37 @@ def measured(monkeypatch, tmp_path):
 
 
 def test_what_was_measured_is_kept(measured):
-    text = measured(OWN, PEER)
-    assert (
-        "| ORCA crowd of 1,000 against pyrvo 2 | 0.90 M agent-steps/s | 0.30 M: 3.0 × | 4 × | no |"
-    ) in text
+    text = measured(PEER)
+    name = "ORCA crowd of 1,000, 1 thread against pyrvo 2"
+    assert f"| {name} | 0.90 M agent-steps/s | 0.30 M: 3.0 × | 4 × | no |" in text
     assert "| start | 0.2 s | – | 0.4 s | yes |" in text
 
 
-@pytest.mark.parametrize(
-    ("crowd", "cause"),
-    [
-        ((OWN, {"name": "pyrvo", "skipped": "pyrvo is not installed"}), "pyrvo is not installed"),
-        (({"name": "benchnav", "skipped": "benchnav failed"}, PEER), "benchnav failed"),
-    ],
-)
-def test_a_row_that_was_not_measured_fails(measured, crowd, cause):
-    crowd = [{key: row[key] for key in row if key not in ("ratio", "wanted")} for row in crowd]
+def test_a_row_that_was_not_measured_fails(measured):
     with pytest.raises(SystemExit) as failed:
-        measured(*crowd)
+        measured({"name": "ORCA crowd against pyrvo", "note": "pyrvo is not installed"})
     assert not measured.kept
     assert failed.value.code.startswith("Not measured, so no table was kept:\n")
-    assert "ORCA crowd of 1,000 against pyrvo" in failed.value.code
-    assert failed.value.code.endswith(f": {cause}")
+    assert failed.value.code.endswith("ORCA crowd against pyrvo: pyrvo is not installed")
+
+
+def test_ratios_compare_rates_of_one_run(monkeypatch):
+    """A crowd against a peer, and against another crowd of ours."""
+
+    def ask(python, part, crowd):
+        if part == "navground":
+            return {"skipped": "navground is not installed"}
+        seconds = crowd.agents * crowd.steps / 1e6 * (0.5 if part == "pyrvo" else 1.0)
+        return {"version": "1", "seconds": seconds / crowd.threads}
+
+    monkeypatch.setattr(orca_peers, "ask", ask)
+    rows = {row["name"]: row for row in orca_peers.measure("python")}
+    assert len(rows) == len(orca_peers.WANTED)
+    assert rows["ORCA crowd of 100, 1 thread against pyrvo 1"]["ratio"] == 0.5
+    two = rows["ORCA crowd of 1,000, 2 threads against ORCA crowd of 1,000, 1 thread"]
+    assert (two["ratio"], two["wanted"]) == (2.0, 1.6)
+    other = rows["ORCA crowd of 1,000, 1 thread against navground"]
+    assert other["note"] == "navground is not installed"
 
 
 def test_the_peers_must_be_given(monkeypatch, capsys):

@@ -1,6 +1,7 @@
 """Sensors against slow twins built on shapely, and what must hold of them."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -94,6 +95,20 @@ def test_rays_agree_with_marching(seed, thick):
                 assert rays.kind[0, i, r] == kind
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_rays_ahead_hit_the_same_as_within_a_full_turn(seed):
+    """Objects behind the agent are skipped only if no ray leads there."""
+    drawn, rays = random_world(seed), []
+    for count, fan in ((9, math.pi), (16, 2.0 * math.pi)):
+        sensing = Sensing(RaySensor(count, fan, 8.0, True), None, None)
+        simulation = Simulation([replace(drawn, sensing=sensing)])
+        rays.append(sense(simulation, everybody(simulation), ALL)[0])
+    ahead, around = rays
+    np.testing.assert_allclose(ahead.angle, around.angle[4:13], atol=1e-12)
+    np.testing.assert_allclose(ahead.distance, around.distance[..., 4:13], atol=1e-9)
+    assert (ahead.kind == around.kind[..., 4:13]).all()
+
+
 def test_what_a_thick_ray_meets_is_what_the_body_meets():
     """Driving along the ray, the body is stopped where the ray ended."""
     compared = 0
@@ -177,6 +192,46 @@ def slow_neighbours(simulation, i, most, limit):
             visible.append((np.hypot(*(q - p)), q, kind))
     visible.sort(key=lambda item: item[0])
     return [(q, kind) for _, q, kind in visible[:most]]
+
+
+def test_where_the_search_starts_changes_no_neighbour():
+    """Agents at one place, equal distances and searches that start too near or too far."""
+    rng = np.random.default_rng(1)
+    start = rng.integers(1, 19, (400, 2)).astype(float)
+    sensing = Sensing(None, NeighbourSensor(7, 6.0), None)
+    simulation = Simulation([world(agents(start, start), [], sensing=sensing)])
+    seen = []
+    for hint in (0.0, 1e-9, rng.uniform(0.0, 9.0, (1, 400)), 100.0, None):
+        if hint is not None:
+            simulation.near[:] = hint
+        seen.append(sense(simulation, everybody(simulation), ALL)[1])
+    for name in ("position", "velocity", "radius", "kind", "count"):
+        assert len({getattr(one, name).tobytes() for one in seen}) == 1, name
+    for i in range(0, 400, 7):
+        d2 = ((np.delete(start, i, axis=0) - start[i]) ** 2).sum(axis=1)
+        expected = np.sort(d2[d2 <= 36.0])[:7]
+        found = ((seen[0].position[0, i, : len(expected)] - start[i]) ** 2).sum(axis=1)
+        assert found.tolist() == expected.tolist()
+        assert seen[0].count[0, i] == len(expected)
+
+
+def test_neighbours_at_nearly_equal_distances_are_in_order():
+    """More candidates than slots, and distances that differ in their last bits only."""
+    rng = np.random.default_rng(2)
+    turn = rng.uniform(0.0, 2.0 * math.pi, 1400)
+    ring = np.stack([np.cos(turn), np.sin(turn)], axis=1) * rng.choice([2.0, 3.0], (1400, 1))
+    start = np.concatenate([[[0.0, 0.0]], ring]) + 10.0
+    for count in (4, 10, 12):
+        sensing = Sensing(None, NeighbourSensor(count, 3.5), None)
+        for few in (start, start[:300]):
+            simulation = Simulation([world(agents(few, few), [], sensing=sensing)])
+            for _ in range(2):  # the second search starts where the first one ended
+                seen = sense(simulation, everybody(simulation), ALL)[1]
+                for i in (0, 1, 7):
+                    d2 = (few[:, 0] - few[i, 0]) ** 2 + (few[:, 1] - few[i, 1]) ** 2
+                    d2[i] = math.inf
+                    nearest = np.lexsort((np.arange(len(few)), d2))[:count]
+                    assert seen.position[0, i].tolist() == few[nearest].tolist()
 
 
 def test_ignored_teams_are_not_sensed():

@@ -1,6 +1,7 @@
 """The common part of the ORCA navigator and controller: limits per row, and the kernel call."""
 
 from collections.abc import Iterable, Iterator, Sequence
+from functools import lru_cache
 
 import numpy as np
 from pydantic import Field
@@ -21,6 +22,7 @@ from .kernel import OWN, avoid, prepare
 
 LEAST_MARGIN = 1e-3  # [m] at edges: without a margin, rounding causes contacts
 LEAST = 64  # with fewer agents, a second thread costs more than it saves
+LEAST_BRIEF = 8192  # the same for a kernel of a few nanoseconds an agent
 
 
 class OrcaConfig(PluginConfig):
@@ -85,7 +87,7 @@ class Avoidance:
         )
         whole = (observation.position, observation.velocity, target, limits, offset)
         own, answer = np.empty((rows, OWN)), np.zeros((rows, 2))
-        run_rows(prepare, rows, *_flat(rows, whole), own, least=LEAST)
+        run_rows(prepare, rows, *_flat(rows, whole), own, least=LEAST_BRIEF)
         config = self.config
         edge_margin = np.full(rows, config.edge_margin)
         if clearance is not None:
@@ -116,6 +118,7 @@ def _sensed(observation: Observation) -> tuple[AnyArray, ...]:
     )  # fmt: skip
 
 
+@lru_cache(maxsize=8)
 def no_neighbours(worlds: int, agents: int) -> Neighbours:
     """Return readings without any neighbour."""
     at = (worlds, agents, 0)
@@ -125,6 +128,7 @@ def no_neighbours(worlds: int, agents: int) -> Neighbours:
     )  # fmt: skip
 
 
+@lru_cache(maxsize=8)  # kernels only read them
 def no_edges(worlds: int, agents: int) -> Edges:
     """Return readings without any edge."""
     at = (worlds, agents, 0)

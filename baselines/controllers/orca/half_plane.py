@@ -8,7 +8,7 @@ are relative to the agent. Formulas: van den Berg, Guy, Lin and Manocha 2011,
 
 import math
 
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 
 from .shadow import edge_shadow
 
@@ -17,7 +17,7 @@ COVERED = 1e-5  # [m/s] an edge that exceeds an earlier half-plane by less adds 
 HalfPlane = tuple[float, float, float, float]
 
 
-@kernel
+@kernel_without_allocation
 def neighbour_half_plane(
     px: float, py: float, vx: float, vy: float, ux: float, uy: float,
     reach: float, rate: float, step_rate: float, share: float,
@@ -50,7 +50,7 @@ def neighbour_half_plane(
     return ux + share * (along * dx - vx), uy + share * (along * dy - vy), dx, dy
 
 
-@kernel
+@kernel_without_allocation
 def _normal(
     wx: float, wy: float, w: float, px: float, py: float, distance2: float
 ) -> tuple[float, float]:
@@ -63,7 +63,7 @@ def _normal(
     return 1.0, 0.0
 
 
-@kernel
+@kernel_without_allocation
 def edge_half_plane(
     ax: float, ay: float, bx: float, by: float,
     before_x: float, before_y: float, after_x: float, after_y: float,
@@ -111,7 +111,7 @@ def edge_half_plane(
     )  # fmt: skip
 
 
-@kernel
+@kernel_without_allocation
 def _corner(x: float, y: float) -> HalfPlane:
     """Return the half-plane that forbids to approach a touched corner."""
     length = math.sqrt(x * x + y * y)
@@ -120,7 +120,7 @@ def _corner(x: float, y: float) -> HalfPlane:
     return 0.0, 0.0, -y / length, x / length
 
 
-@kernel
+@kernel_without_allocation
 def covers(
     half_plane: HalfPlane, ax: float, ay: float, bx: float, by: float, radius: float, rate: float
 ) -> bool:

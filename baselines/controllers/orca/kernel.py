@@ -11,7 +11,7 @@ import numpy as np
 
 from benchnav.arena import Kind
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel, kernel_without_allocation
 
 from .half_plane import covers, edge_half_plane, neighbour_half_plane
 from .program import least_excess, nearest_permitted
@@ -20,7 +20,7 @@ _MOVER = int(Kind.DYNAMIC)
 OWN = 9  # columns: x, y, vx, vy, preferred vx, preferred vy, radius, speed limit, 1 / step
 
 
-@kernel
+@kernel_without_allocation
 def prepare(
     low: int, high: int, position: FloatArray, velocity: FloatArray, target: FloatArray,
     limits: FloatArray, offset: FloatArray, own: FloatArray,
@@ -53,7 +53,7 @@ def prepare(
         own[i, 6], own[i, 7], own[i, 8] = limits[i, 0], limits[i, 1], 1.0 / step
 
 
-@kernel
+@kernel_without_allocation
 def edge_rows(
     i: int, px: float, py: float, vx: float, vy: float, radius: float, rate: float,
     start: FloatArray, end: FloatArray, before: FloatArray, after: FloatArray,
@@ -123,6 +123,23 @@ def avoid(
     """
     size = position.shape[1] + start.shape[1]
     planes, projected = np.empty((size, 4)), np.empty((size, 4))
+    _avoid_in_rows(
+        low, high, own, active, position, velocity, radius, kind, count, start, end, before, after,
+        start_convex, end_convex, edge_count, most, margin, edge_margin, rate, edge_rate, answer,
+        planes, projected,
+    )  # fmt: skip
+
+
+@kernel_without_allocation
+def _avoid_in_rows(
+    low: int, high: int, own: FloatArray, active: BoolArray,
+    position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
+    count: IntArray,
+    start: FloatArray, end: FloatArray, before: FloatArray, after: FloatArray,
+    start_convex: BoolArray, end_convex: BoolArray, edge_count: IntArray,
+    most: int, margin: float, edge_margin: FloatArray, rate: float, edge_rate: float,
+    answer: FloatArray, planes: FloatArray, projected: FloatArray,
+) -> None:  # fmt: skip
     for i in range(low, high):
         if not active[i]:
             continue

@@ -8,19 +8,19 @@ den Berg et al. 2011, section 5; half-planes come in a fixed order
 import math
 
 from benchnav.arrays import FloatArray
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 
 PARALLEL = 1e-5  # sine of the angle below which two boundaries count as parallel
 
 
-@kernel
+@kernel_without_allocation
 def excess(planes: FloatArray, i: int, x: float, y: float) -> float:
     """Return how far [m/s] (x, y) lies outside half-plane i; negative inside."""
     out: float = planes[i, 2] * (planes[i, 1] - y) - planes[i, 3] * (planes[i, 0] - x)
     return out
 
 
-@kernel
+@kernel_without_allocation
 def on_boundary(
     planes: FloatArray, i: int, speed: float, wx: float, wy: float, farthest: bool
 ) -> tuple[bool, float, float]:
@@ -56,7 +56,7 @@ def on_boundary(
     return True, x + t * dx, y + t * dy
 
 
-@kernel
+@kernel_without_allocation
 def nearest_permitted(
     planes: FloatArray, n: int, speed: float, wx: float, wy: float, farthest: bool
 ) -> tuple[int, float, float]:
@@ -80,7 +80,7 @@ def nearest_permitted(
     return n, x, y
 
 
-@kernel
+@kernel_without_allocation
 def least_excess(
     planes: FloatArray, n: int, fixed: int, first: int, speed: float, x: float, y: float,
     projected: FloatArray,
@@ -102,7 +102,7 @@ def least_excess(
     return x, y
 
 
-@kernel
+@kernel_without_allocation
 def _bisectors(planes: FloatArray, fixed: int, i: int, projected: FloatArray) -> int:
     """Write where half-plane i is exceeded no less than each earlier one; return the row count."""
     for j in range(fixed):

@@ -2,12 +2,12 @@
 
 import math
 
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 
 HalfPlane = tuple[float, float, float, float]
 
 
-@kernel
+@kernel_without_allocation
 def edge_shadow(
     ax: float, ay: float, bx: float, by: float, ex: float, ey: float,
     before_x: float, before_y: float, after_x: float, after_y: float,
@@ -47,7 +47,7 @@ def edge_shadow(
     return not right_foreign, _straight(bx, by, -right_x, -right_y, radius, rate)
 
 
-@kernel
+@kernel_without_allocation
 def _leg(
     x: float, y: float, convex: bool, ex: float, ey: float, fx: float, fy: float,
     radius: float, turn: float,
@@ -68,7 +68,7 @@ def _leg(
     return dx, dy, False
 
 
-@kernel
+@kernel_without_allocation
 def _arc(x: float, y: float, wx: float, wy: float, radius: float, rate: float) -> HalfPlane:
     """Return the tangent to the cut-off arc around a corner, beside w (never zero there)."""
     w = math.sqrt(wx * wx + wy * wy)
@@ -76,12 +76,12 @@ def _arc(x: float, y: float, wx: float, wy: float, radius: float, rate: float) -
     return rate * (x + radius * nx), rate * (y + radius * ny), ny, -nx
 
 
-@kernel
+@kernel_without_allocation
 def _straight(x: float, y: float, dx: float, dy: float, radius: float, rate: float) -> HalfPlane:
     """Return the line parallel to a leg or to the edge, one radius to the left of it."""
     return rate * (x - radius * dy), rate * (y + radius * dx), dx, dy
 
 
-@kernel
+@kernel_without_allocation
 def _square(x: float, y: float) -> float:
     return x * x + y * y

@@ -19,6 +19,7 @@ from benchnav.navigation.plugin.trace import trace
 from benchnav.navigation.rehearsal import Rehearsal, copied
 from benchnav.runner.execute.call_timer import Call, calling
 from benchnav.runner.rollouts.tamper_guard import Guard
+from benchnav.world.command import give_commands
 from benchnav.world.simulation import Simulation
 
 PROPERTIES: dict[str, Callable[[Any], Any]] = {  # name of a property → its validation
@@ -119,9 +120,7 @@ class Driver:
         except (Exception, SystemExit) as error:
             reason, traceback = _raised("act", error, time)
             raise CallFailed(self._at(reason, time), traceback=traceback) from error
-        world, agent = np.nonzero(active)
-        row = rows[world]
-        command[row, self.chosen[row, agent]] = commands[world, agent]
+        give_commands(0, len(rows), rows, self.chosen, active, commands, command)
         return seconds
 
     def remarks(self, row: int) -> tuple[str, ...]:
