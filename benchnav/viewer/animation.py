@@ -49,7 +49,7 @@ def save_mp4(episodes: Sequence[Episode], path: Path) -> None:
     high, wide = first.shape[0] // 2 * 2, first.shape[1] // 2 * 2  # H.264 needs even sizes
     rate = 1.0 / min(episode.world.clock.dt for episode in episodes)
     with writing(path):
-        path.open("wb").close()  # a missing folder is noticed here, not in the encoder
+        path.open("wb").close()  # an error is noticed here, not in the encoder
         encoder = write_frames(
             str(path), (wide, high), fps=rate, macro_block_size=2, ffmpeg_log_level="fatal"
         )

@@ -150,8 +150,9 @@ def test_saving(episode, tmp_path):
     assert "<iframe srcdoc=" in handle._repr_html_()
     with pytest.raises(UsageError, match="must end in"):
         handle.save(tmp_path / "a.mp5")
+    assert handle.save(tmp_path / "new" / "folder" / "a.html").is_file()
     with pytest.raises(StoreError, match="must be writable"):
-        handle.save(tmp_path / "missing" / "a.html")
+        handle.save(tmp_path / "a.html" / "b.html")
     with pytest.raises(UsageError, match="0 to 3"):
         Episode(episode).replay(agents=[4])
 

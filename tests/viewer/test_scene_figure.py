@@ -74,7 +74,7 @@ def test_a_film_has_a_frame_for_each_state(episode, tmp_path):
     path = episode.replay().save(tmp_path / "a.mp4")
     assert ffmpeg.count_frames_and_secs(str(path))[0] == len(episode.record.position)
     with pytest.raises(StoreError, match="must be writable"):
-        episode.replay().save(tmp_path / "missing" / "a.mp4")
+        episode.replay().save(path / "a.mp4")
 
 
 @pytest.mark.parametrize(

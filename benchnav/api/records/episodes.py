@@ -32,6 +32,11 @@ class Place(NamedTuple):
     seed: int
     folder: RunFolder
 
+    @property
+    def name(self) -> str:
+        """NAVIGATOR/SCENARIO/TRACK/SEED."""
+        return f"{self.navigator}/{self.scenario}/{self.track}/{self.seed}"
+
 
 class Episodes(Sequence[Episode]):
     """A sequence that reads an episode when it is used, in the order of the suite, by seed."""
@@ -96,6 +101,8 @@ class Episodes(Sequence[Episode]):
         """
         from benchnav.api.records.replay import MOST, Replay
 
+        if not self:
+            raise UsageError("A replay needs an episode. The choice holds none: choose others.")
         return Replay.of(self[: MOST + 1], agents)
 
     def __repr__(self) -> str:
@@ -134,8 +141,9 @@ def stored_episodes(
     """
     cells = [cell for cell in folder.manifest.cells if not cell["reason"]]
     _require("navigator", navigator, [cell["navigator"] for cell in folder.manifest.cells])
+    # Tracks are few and look alike: "Did you mean 'known'?" for 'unknown' would mislead.
     tracks = [t for cell in folder.manifest.cells for t in (*cell.get("also", ()), cell["track"])]
-    _require("track", track, tracks)
+    _require("track", track, tracks, hint=False)
     known = {cell["scenario"] for cell in folder.manifest.cells}
     scenarios = known if scenario is None else matching_scenarios(known, [scenario])
     places = [
@@ -163,10 +171,10 @@ def _read(places: Sequence[Place]) -> Iterator[Episode]:
             yield Episode(shown, partial(stored_origin, place.folder, record.identity))
 
 
-def _require(what: str, name: str | None, known: Sequence[str]) -> None:
+def _require(what: str, name: str | None, known: Sequence[str], *, hint: bool = True) -> None:
     every = list(dict.fromkeys(known))
     if name is not None and name not in every:
         raise UsageError(
             f"The {what} must be one that was run: {', '.join(every)}. Got {name!r} instead."
-            f"{did_you_mean(name, every)}"
+            f"{did_you_mean(name, every) if hint else ''}"
         )

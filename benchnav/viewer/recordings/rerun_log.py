@@ -34,7 +34,7 @@ def save_rerun(episode: Episode, agents: IntArray, path: Path) -> None:
     except ImportError as error:
         raise MissingExtraError("A Rerun file", "rerun") from error
     with writing(path):
-        path.open("wb").close()  # the library does not report a missing folder
+        path.open("wb").close()  # the library does not report an error
     identity = episode.identity
     stream = rerun.RecordingStream(
         "benchnav",
