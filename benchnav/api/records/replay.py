@@ -87,8 +87,9 @@ class Replay:
         """Write the replay to a file, in the format of its suffix, and return its path.
 
         Args:
-            path: its folder is created if it is missing. It ends in .html (a page), .gif or .mp4 (a moving picture), .png, .svg or .pdf (a
-                figure), .rrd (for the Rerun viewer) or .mcap (for Foxglove).
+            path: ends in .html (a page), .gif or .mp4 (a moving picture), .png, .svg or .pdf (a
+                figure), .rrd (for the Rerun viewer) or .mcap (for Foxglove). A missing folder is
+                created.
             times: [s] of a figure with snapshots in a row; none: one picture with trails.
 
         Raises UsageError for another suffix or a wrong time, StoreError if the file cannot be
