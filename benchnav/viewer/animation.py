@@ -27,7 +27,7 @@ def save_gif(episodes: Sequence[Episode], path: Path) -> None:
     """
     speed = max(1.0, longest(episodes) / LONGEST)
     times = frame_times(episodes, GIF_RATE / speed)
-    note = f", {speed:.2g}×" if speed > 1.0 else ""
+    note = f", {speed:.2g}x" if speed > 1.0 else ""
     frames = [Image.fromarray(frame) for frame in film(episodes, times, note=note)]
     palette = _palette(frames)
     same = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
