@@ -21,9 +21,9 @@ def print_list(run: "Run", found: "Episodes") -> None:
     for place, result in zip(places, episode_results(run.folder, places), strict=True):
         success, causes = f"{100 * result.success:.0f} %", ", ".join(result.causes)
         rows.append((place.name, success, f"{result.duration:.1f} s", causes))
-    name, success, duration, _ = (max(map(len, column)) for column in zip(*rows, strict=True))
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for row in rows:
-        line = f"{row[0]:<{name}}  {row[1]:>{success}}  {row[2]:>{duration}}  {row[3]}"
+        line = f"{row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}  {row[3]}"
         put(line.rstrip())
     if len(found) > len(places):
         say(f"{len(found) - len(places)} more: name a navigator, scenario, track or seed.")
