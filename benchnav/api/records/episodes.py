@@ -9,6 +9,7 @@ from benchnav.api.output.text_table import table_html
 from benchnav.api.records.episode import Episode
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.from_runs import matching_scenarios
+from benchnav.scenario.terms import TRACKS
 from benchnav.store.parts.part import Part
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.text.plural import counted
@@ -141,9 +142,9 @@ def stored_episodes(
     """
     cells = [cell for cell in folder.manifest.cells if not cell["reason"]]
     _require("navigator", navigator, [cell["navigator"] for cell in folder.manifest.cells])
-    # Tracks are few and look alike: "Did you mean 'known'?" for 'unknown' would mislead.
     tracks = [t for cell in folder.manifest.cells for t in (*cell.get("also", ()), cell["track"])]
-    _require("track", track, tracks, hint=False)
+    # 'unknown' is no misspelt 'known': it was not run.
+    _require("track", track, tracks, hint=track not in TRACKS)
     known = {cell["scenario"] for cell in folder.manifest.cells}
     scenarios = known if scenario is None else matching_scenarios(known, [scenario])
     places = [
