@@ -30,12 +30,13 @@ EPISODES = (  # of (file, scenario, seed, track, navigators, what to see)
     ),
     (
         "trap", "trap/u", 1, "unknown", ("orca", "mapping+visibility+orca"),
-        "A trap in an unknown map: ORCA alone runs into it; a planner that draws its own map"
-        " while it moves gets out. Choose an agent and *own map*.",
+        "A trap in an unknown map: ORCA alone moves into it and gets stuck. A planner that makes"
+        " its own map on the way gets out: click an agent to see this map.",
     ),
     (
         "groups", "groups/crossing-four", 0, "known", ("orca", "guided-crowd"),
-        "Four groups cross: ORCA for everyone, and leaders whose recorded paths guide their group.",
+        "Four groups cross: ORCA controls every agent alone, or the groups follow leaders whose"
+        " paths were recorded before.",
     ),
 )  # fmt: skip
 HEAD = """\

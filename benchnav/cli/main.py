@@ -109,6 +109,8 @@ def status(arguments: Sequence[str]) -> int:
         code = app(list(arguments), standalone_mode=False)
     except BenchnavError as error:
         say(f"benchnav: {error}")
+        if isinstance(error, NoRunError):
+            say("This command creates a run folder: benchnav run SUITE --out FOLDER")
         if DEBUG in arguments:
             say(notes(error) or trace(error))
         return 2 if isinstance(error, _USAGE_ERRORS) else 1

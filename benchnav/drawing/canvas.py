@@ -38,9 +38,12 @@ class Canvas:
         copy._begin(self._image.copy())
         return copy
 
-    def array(self) -> ByteArray:
-        """Return the picture (height, width, 3) of bytes."""
-        return np.asarray(self._image.reduce(self._finer))
+    def array(self, larger: int = 1) -> ByteArray:
+        """Return the picture (height, width, 3) of bytes, ``larger`` times as large.
+
+        ``larger`` divides the ``finer`` of the canvas.
+        """
+        return np.asarray(self._image.reduce(self._finer // larger))
 
     def solid(self, solid: Solid) -> None:
         """Fill a wall or an obstacle; the outside of a walled arena is filled up to the frame."""

@@ -16,15 +16,18 @@ NAVIGATORS = (
 """Colours of navigators: each has a contrast of at least 3 to white and to a dark page."""
 
 
-def color_of(team: int) -> str:
-    """Return the colour of a team's agents."""
-    return TEAMS[team % len(TEAMS)]
+def color_number(world: World, agent: int) -> int:
+    """Return the index in `TEAMS` of an agent's colour.
+
+    It is that of the agent's team, or of the agent itself if a single team has few agents.
+    """
+    single = len(world.teams) == 1 and len(world.agents) <= len(TEAMS)
+    return agent if single else int(world.agents.team[agent]) % len(TEAMS)
 
 
 def agent_color(world: World, agent: int) -> str:
-    """Return the colour of an agent's team; of the agent itself if one team has few agents."""
-    single = len(world.teams) == 1 and len(world.agents) <= len(TEAMS)
-    return color_of(agent if single else int(world.agents.team[agent]))
+    """Return the colour of an agent."""
+    return TEAMS[color_number(world, agent)]
 
 
 def channels(color: str) -> tuple[int, int, int]:

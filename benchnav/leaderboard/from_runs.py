@@ -173,8 +173,8 @@ def curve(
     return parameter_curves(results, metrics[metric], axis, settings)
 
 
-def _names(scenario: str) -> tuple[str, ...]:
-    """The names of a scenario: alone, with parameters, with version, with both."""
+def names_of_scenario(scenario: str) -> tuple[str, ...]:
+    """Return its names: alone, with version, with both version and parameters, with parameters."""
     named = re.sub(r"@\d+", "", scenario)
     return named.split(":")[0], scenario.split(":")[0], scenario, named
 
@@ -184,14 +184,14 @@ def matching_scenarios(known: Collection[str], wanted: Sequence[str]) -> set[str
 
     Raises UsageError for a name that stands for none of the ``known`` scenarios.
     """
-    names = {scenario: _names(scenario) for scenario in known}
+    names = {scenario: names_of_scenario(scenario) for scenario in known}
     chosen: set[str] = set()
     for name in wanted:
         found = {scenario for scenario, forms in names.items() if name in forms}
         if not found:
             every = sorted({forms[-1] for forms in names.values()})
             raise UsageError(
-                f"A scenario to compare in must be one that was run. Got {name!r} instead."
+                f"The scenario must be one that was run: {', '.join(every)}. Got {name!r} instead."
                 f"{did_you_mean(name, every)}"
             )
         chosen |= found

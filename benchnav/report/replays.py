@@ -8,7 +8,7 @@ from pathlib import Path
 
 from benchnav.episode.episode import Episode
 from benchnav.report.failed_episodes import Cell
-from benchnav.report.page import ASSETS, href, replay_path
+from benchnav.report.page import ASSETS, FAILURES, href, replay_path
 from benchnav.viewer.replay.page import replay_page
 from benchnav.viewer.replay.scene import interesting, scene
 
@@ -27,5 +27,6 @@ def write_replay(episode: Episode, folder: Path) -> None:
     path = replay_path(identity.navigator, identity.scenario, identity.track, identity.seed)
     target = folder / path
     target.parent.mkdir(exist_ok=True)
-    page = replay_page([scene(episode, interesting(episode))], href(path, ASSETS))
+    back = href(path, FAILURES)
+    page = replay_page([scene(episode, interesting(episode))], href(path, ASSETS), back)
     target.write_text(page, encoding="utf-8")

@@ -51,9 +51,10 @@ def require_writable(path: Path) -> None:
 
 @contextmanager
 def writing(path: Path) -> Iterator[None]:
-    """Translate an OSError in the block into the StoreError that names the file to write."""
+    """Create the folder of the file to write, and translate an OSError into a StoreError."""
     try:
         require_writable(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
         yield
     except OSError as error:
         reason = error.strerror or error

@@ -14,23 +14,26 @@ from benchnav.errors import MissingExtraError
 from benchnav.system.plain_file import writing
 from benchnav.viewer.episode_film import film
 
-FRAMES = 100  # of a GIF at most, whatever the length of the episode
-RATE = 10  # [frames/s]
+LONGEST = 10.0  # [s] that a GIF lasts, at most
+GIF_RATE, FILM_RATE = 10, 25  # [frames/s]
 _COLORS = 64
 
 
 def save_gif(episodes: Sequence[Episode], path: Path) -> None:
-    """Write episodes side by side as a GIF that repeats: at most 10 s, faster if need be.
+    """Write episodes side by side as a GIF that repeats, in real time.
 
+    Longer episodes than `LONGEST` are played faster, and the speed is written in the picture.
     Raises StoreError if the file cannot be written.
     """
-    times = frame_times(episodes, FRAMES)
-    frames = [Image.fromarray(frame) for frame in film(episodes, times)]
+    speed = max(1.0, longest(episodes) / LONGEST)
+    times = frame_times(episodes, GIF_RATE / speed)
+    note = f", {speed:.2g}x" if speed > 1.0 else ""
+    frames = [Image.fromarray(frame) for frame in film(episodes, times, note=note)]
     palette = _palette(frames)
     same = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
     with writing(path):
         same[0].save(
-            path, save_all=True, append_images=same[1:], duration=1000 // RATE, loop=0,
+            path, save_all=True, append_images=same[1:], duration=1000 // GIF_RATE, loop=0,
             optimize=True,
         )  # fmt: skip
 
@@ -44,14 +47,13 @@ def save_mp4(episodes: Sequence[Episode], path: Path) -> None:
         from imageio_ffmpeg import write_frames
     except ImportError as error:
         raise MissingExtraError("A film", "video") from error
-    frames = film(episodes, frame_times(episodes))
+    frames = film(episodes, frame_times(episodes, FILM_RATE), large=len(episodes) == 1)
     first = next(frames)
     high, wide = first.shape[0] // 2 * 2, first.shape[1] // 2 * 2  # H.264 needs even sizes
-    rate = 1.0 / min(episode.world.clock.dt for episode in episodes)
     with writing(path):
-        path.open("wb").close()  # a missing folder is noticed here, not in the encoder
+        path.open("wb").close()  # an error is noticed here, not in the encoder
         encoder = write_frames(
-            str(path), (wide, high), fps=rate, macro_block_size=2, ffmpeg_log_level="fatal"
+            str(path), (wide, high), fps=FILM_RATE, macro_block_size=2, ffmpeg_log_level="fatal"
         )
         encoder.send(None)
         for frame in chain([first], frames):
@@ -59,13 +61,16 @@ def save_mp4(episodes: Sequence[Episode], path: Path) -> None:
         encoder.close()
 
 
-def frame_times(episodes: Sequence[Episode], most: int | None = None) -> list[float]:
-    """Return the times [s] of frames: states of the longest episode, evenly spaced, or all."""
-    longest = max(episodes, key=lambda episode: len(episode.position))
-    states = len(longest.position)
-    count = states if most is None else min(states, most)
-    chosen = np.unique(np.linspace(0, states - 1, count).round().astype(int))
-    return [float(time) for time in longest.times[chosen]]
+def longest(episodes: Sequence[Episode]) -> float:
+    """Return the duration [s] of the longest episode."""
+    return max(float(episode.times[-1]) for episode in episodes)
+
+
+def frame_times(episodes: Sequence[Episode], rate: float) -> list[float]:
+    """Return the times [s] of ``rate`` frames a second, from the start to the last end."""
+    end = longest(episodes)
+    times: list[float] = np.linspace(0.0, end, round(end * rate) + 1).tolist()
+    return times
 
 
 def _palette(frames: Sequence[Image.Image]) -> Image.Image:

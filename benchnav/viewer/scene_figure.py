@@ -27,17 +27,19 @@ MOST_SNAPSHOTS = 8
 _RIM = 0.012  # of the width of an arena: how thick the wall along its bounds is drawn
 _WIDTH = 3.4  # [inch] of one arena in a row
 _SINGLE = 5.2  # [inch] of an arena alone
-_HEAD = 0.3  # [inch] for the title
+_HEAD, _FOOT = 0.3, 0.25  # [inch] for the title, and for the scale bar
+_LENGTHS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # [m] of scale bars
 
 
 def world_figure(world: World) -> Figure:
     """Return a world before it starts: agents at their starts, rings at their goals."""
-    figure = blank(_SINGLE, _SINGLE / aspect(world))
+    figure = blank(_SINGLE, _SINGLE / aspect(world) + _FOOT)
     axes = figure.subplots()
     frame = draw_arena(axes, world, _first_places(world))
     draw_agents(axes, world, world.agents.start, world.agents.heading)
     draw_goals(axes, world)
     _tidy(axes, frame)
+    _draw_scale(axes, world)
     return figure
 
 
@@ -45,19 +47,25 @@ def episode_figure(episodes: Sequence[Episode], times: Sequence[float] = ()) -> 
     """Return episodes side by side, with trails; or snapshots at ``times`` [s], a row each.
 
     A trail grows darker with time and has a mark every 5 s. A cross is where an agent was when its
-    attempt ended without arrival. Raises UsageError for a time outside an episode.
+    attempt ended without arrival. The first picture of each world has a scale bar.
+
+    Raises UsageError for a time outside an episode.
     """
     _check_times(episodes, times)
     columns = len(times) or len(episodes)
     rows = len(episodes) if times else 1
     wide = _SINGLE if columns == 1 else _WIDTH
     ratio = min(aspect(episode.world) for episode in episodes)
-    figure = blank(wide * columns, (wide / ratio + _HEAD) * rows)
+    figure = blank(wide * columns, (wide / ratio + _HEAD + _FOOT) * rows)
+    scaled = set()
     for axes, (episode, time, title) in zip(
         figure.subplots(rows, columns, squeeze=False).ravel(), _panels(episodes, times), strict=True
     ):
         draw_episode(axes, episode, time)
         axes.set_title(title, fontsize=9, color=INK)
+        if episode.world.bounds not in scaled:
+            _draw_scale(axes, episode.world)
+            scaled.add(episode.world.bounds)
     return figure
 
 
@@ -108,8 +116,8 @@ def draw_agents(
             continue
         radius = float(world.agents.radius[a])
         axes.add_patch(Circle((x, y), radius, color=agent_color(world, a), linewidth=0, zorder=4))
-        tip = radius * np.array([np.cos(heading[a]), np.sin(heading[a])])
-        axes.plot([x, x + tip[0]], [y, y + tip[1]], color="white", linewidth=0.8, zorder=5)
+        tip = 1.6 * radius * np.array([np.cos(heading[a]), np.sin(heading[a])])
+        axes.plot([x, x + tip[0]], [y, y + tip[1]], color=INK, linewidth=0.7, zorder=5)
 
 
 def draw_goals(axes: Axes, world: World) -> None:
@@ -175,6 +183,21 @@ def _first_places(world: World) -> FloatArray:
 
     places: FloatArray = Simulation([world]).body_position[0][: len(world.bodies)]
     return places
+
+
+def _draw_scale(axes: Axes, world: World) -> None:
+    """Draw a bar with its length below the lower left corner of an arena."""
+    x0, _, x1, _ = world.bounds
+    length = max([n for n in _LENGTHS if n <= 0.3 * (x1 - x0)], default=_LENGTHS[0])
+    place = axes.get_xaxis_transform()  # x in metres, y from 0 to 1
+    axes.plot(
+        [x0, x0 + length], [-0.02, -0.02], color=INK, linewidth=2.0, solid_capstyle="butt",
+        transform=place, clip_on=False,
+    )  # fmt: skip
+    axes.text(
+        x0 + length + 0.01 * (x1 - x0), -0.02, f"{length:g} m", transform=place, fontsize=7,
+        color=INK, verticalalignment="center",
+    )  # fmt: skip
 
 
 def _tidy(axes: Axes, frame: Extent) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray
-from benchnav.drawing.palette import FILL, color_of
+from benchnav.drawing.palette import FILL, agent_color
 from benchnav.episode.episode import Episode, Status
 from benchnav.world.simulation import Simulation
 
@@ -27,7 +27,7 @@ def episode_svg(episode: Episode) -> str:
     world = episode.world
     paths = [
         f'<polyline points="{_points(_thinned(episode.position[:, a]))}" fill="none"'
-        f' stroke="{_color(world, a)}" stroke-width="0.08" opacity="0.7"/>'
+        f' stroke="{agent_color(world, a)}" stroke-width="0.08" opacity="0.7"/>'
         for a in range(len(world.agents))
     ]
     failed = episode.status[-1] != int(Status.ARRIVED)
@@ -75,22 +75,18 @@ def _goals(world: World) -> Iterator[str]:
     for a, (x, y) in enumerate(world.agents.goal):
         yield (
             f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{world.agents.radius[a]:.3f}" fill="none"'
-            f' stroke="{_color(world, a)}" stroke-width="0.06" stroke-dasharray="0.2 0.15"/>'
+            f' stroke="{agent_color(world, a)}" stroke-width="0.06" stroke-dasharray="0.2 0.15"/>'
         )
 
 
 def _discs(world: World, position: FloatArray, hollow: BoolArray | None = None) -> Iterator[str]:
     """Yield agents at ``position`` (A, 2) [m]; agents in ``hollow`` (A,) are not filled."""
     for a, (x, y) in enumerate(position):
-        fill = "#fff" if hollow is not None and hollow[a] else _color(world, a)
+        fill = "#fff" if hollow is not None and hollow[a] else agent_color(world, a)
         yield (
             f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{world.agents.radius[a]:.3f}" fill="{fill}"'
-            f' stroke="{_color(world, a)}" stroke-width="0.08"/>'
+            f' stroke="{agent_color(world, a)}" stroke-width="0.08"/>'
         )
-
-
-def _color(world: World, agent: int) -> str:
-    return color_of(int(world.agents.team[agent]))
 
 
 def _points(points: FloatArray) -> str:

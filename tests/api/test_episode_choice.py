@@ -18,6 +18,7 @@ ROWS = (  # seed, role, metric, value
     (0, "leader", "time_to_goal", 9.0), (1, "leader", "time_to_goal", float("nan")),
     (2, "leader", "time_to_goal", 12.0),
     (0, "leader", "collisions_wall", 1.0),
+    (0, "leader", "stuck", 0.0), (1, "leader", "stuck", float("nan")), (2, "leader", "stuck", 0.5),
 )  # fmt: skip
 PLACES = [Place(None, "orca", "x@1", "known", seed, None) for seed in range(3)]
 
@@ -48,7 +49,14 @@ def test_episodes_without_a_value_are_left_out():
 
 
 def test_a_metric_must_be_held_and_have_a_better_side():
-    with pytest.raises(UsageError, match="Did you mean 'collided'"):
+    with pytest.raises(UsageError, match=r"collided, success.*Did you mean 'collided'"):
         worst_episodes(None, PLACES, "colided")
-    with pytest.raises(UsageError, match="must have a better side"):
+    with pytest.raises(UsageError, match="'collisions_wall' has none"):
         worst_episodes(None, PLACES, "collisions_wall")
+
+
+def test_failures_are_chosen_by_their_cause():
+    assert seeds(failed_episodes(None, PLACES, cause="stuck")) == [2]
+    assert seeds(failed_episodes(None, PLACES, cause="collided")) == [1, 2]  # 0 succeeded
+    with pytest.raises(UsageError, match="one of collided, timeout, stuck, failed"):
+        failed_episodes(None, PLACES, cause="crash")

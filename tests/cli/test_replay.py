@@ -58,16 +58,21 @@ def test_navigators_are_shown_side_by_side(run, here):
 
 def test_listed_names_are_taken(run, here, capsys):
     assert status(["replay", str(run), "--list"]) == 0
-    names = capsys.readouterr().out.split()
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].split() == ["episode", "success", "duration", "cause"]
+    assert re.fullmatch(r"\S+ +0 % +80\.0 s +timed out, got stuck", lines[1])
+    names = [line.split()[0] for line in lines[1:]]
     assert names == [f"{n}/trap/u@1/known/{s}" for n in ("orca", "straight-line") for s in (0, 1)]
     assert status(["replay", str(run), names[3], names[0], "--out", "two.html"]) == 0
     found = [scene[:2] for scene in scenes(here / "two.html")]
     assert found == [("straight-line", 1), ("orca", 0)]
+    assert status(["replay", str(run), "orca/trap/u/known/1", "--out", "new/one.html"]) == 0
+    assert [scene[:2] for scene in scenes(here / "new/one.html")] == [("orca", 1)]
 
 
 def test_the_worst_one_is_shown(run, here, capsys):
     assert status(["replay", str(run), "--worst", "success", "--list"]) == 0
-    assert len(capsys.readouterr().out.split()) == 4
+    assert len(capsys.readouterr().out.splitlines()) == 1 + 4
     assert status(["replay", str(run), "--worst", "success", "--out", "w.html"]) == 0
     assert scenes(here / "w.html")
 
@@ -76,12 +81,18 @@ def test_the_worst_one_is_shown(run, here, capsys):
     ("words", "sentence"),
     [
         (["--navigator", "orka"], "Did you mean 'orca'"),
-        (["--seed", "9"], "No stored episode"),
+        (["--seed", "9"], "holds no episode of seed 9"),
+        (["--scenario", "trap/v"], "must be one that was run: trap/u. Got 'trap/v' instead"),
+        (["--cause", "failed"], "No agent failed with the cause 'failed' in 4 stored episodes"),
+        (["--cause", "stuk"], "Did you mean 'stuck'"),
+        (["--failed", "stuck"], "Write --cause stuck"),
+        (["orca/trap/u/known/0", "--navigator", "orca"], "not both"),
+        (["orca/trap/u/known/0", "--list"], "not both"),
         (["--worst", "sucess"], "Did you mean 'success'"),
-        (["--worst", "collisions_wall"], "must have a better side"),
-        (["nonsense"], "NAVIGATOR/SCENARIO/TRACK/SEED"),
+        (["--worst", "collisions_wall"], "'collisions_wall' has none"),
+        (["nonsense"], "NAVIGATOR/SCENARIO/TRACK/SEED, such as orca/trap/u@1/known/0"),
         (["orca/trap/u@1/known/7"], "There is no stored episode 'orca/trap/u@1/known/7'"),
-        (["orca/trap/u@1/stale/1"], "must be one that was run"),
+        (["orca/trap/u@1/stale/1"], "must be one that was run: known. Got 'stale' instead.\n"),
         (["--out", "a.mp5"], "Did you mean '.mp4'"),
         (["--agent", "77"], "from 0 to 3"),
         (["--time", "1"], "Times are for a figure"),
@@ -95,7 +106,9 @@ def test_a_wrong_name_is_answered_with_what_exists(run, here, capsys, words, sen
 
 def test_what_is_no_run_is_refused(here, capsys):
     assert status(["replay", "nothing"]) == 2
-    assert "nothing" in capsys.readouterr().err
+    message = capsys.readouterr().err
+    assert "nothing" in message
+    assert "benchnav run SUITE --out FOLDER" in message
 
 
 def test_a_damaged_part_is_named(run, here, tmp_path, capsys):

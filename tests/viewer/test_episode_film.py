@@ -66,6 +66,24 @@ def test_a_contact_flashes_where_it_is(episode):
     assert not near(after, HIT, 60).any()
 
 
+def test_motion_between_states_is_linear(episode):
+    """Halfway between two states, agents are halfway."""
+    (picture,) = film([episode], [episode.times[3] + 0.5 * episode.world.clock.dt])
+    for a in np.flatnonzero(episode.status[4] == int(Status.ACTIVE)):
+        heading, radius = episode.heading[3, a], episode.world.agents.radius[a]
+        middle = 0.5 * (episode.position[3, a] + episode.position[4, a])
+        behind = middle - 0.5 * radius * np.array([np.cos(heading), np.sin(heading)])
+        assert near(at(episode, picture, behind), TEAMS[a]).any()
+
+
+def test_a_large_film_has_twice_the_size_and_a_note_is_seen(episode):
+    (small,), (large,) = film([episode], [1.0]), film([episode], [1.0], large=True)
+    assert large.shape == (2 * small.shape[0], 2 * small.shape[1], 3)
+    (noted,) = film([episode], [1.0], note=", 2x")
+    assert (noted[:HEAD] != small[:HEAD]).any()
+    assert (noted[HEAD:] == small[HEAD:]).all()
+
+
 def test_frames_do_not_depend_on_the_frames_before(episode):
     """Trails are drawn piece by piece: only their shade may differ a little."""
     (once,) = film([episode], [4.0])

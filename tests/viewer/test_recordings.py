@@ -101,5 +101,6 @@ def test_a_recording_holds_one_episode(episode, tmp_path, suffix):
 
     with pytest.raises(UsageError, match="one episode"):
         Replay([episode.record] * 2).save(tmp_path / f"a{suffix}")
+    (file := tmp_path / "file").touch()
     with pytest.raises(StoreError, match="must be writable"):
-        episode.replay().save(tmp_path / "missing" / f"a{suffix}")
+        episode.replay().save(file / f"a{suffix}")

@@ -14,6 +14,7 @@ import benchnav
 from benchnav.api.records.episode import Episode
 from benchnav.api.records.replay import Replay
 from benchnav.arena.solid import Kind
+from benchnav.drawing.palette import agent_color
 from benchnav.episode.episode import Status
 from benchnav.errors import StoreError, UsageError
 from benchnav.metrics.quantities.episode_analysis import analyse
@@ -51,6 +52,13 @@ def test_a_scene_holds_the_stored_motion(episode):
     assert np.abs(np.exp(1j * turned) - 1.0).max() < 0.001
     assert (unpacked(content["status"]) == episode.status).all()
     assert len(content["solids"]) == len(episode.world.solids)
+
+
+def test_agents_have_the_colours_of_figures(episode):
+    content = scene(episode, interesting(episode))
+    found = [content["colours"][number] for number in content["agents"]["colour"]]
+    assert found == [agent_color(episode.world, agent) for agent in range(4)]
+    assert len(set(found)) == 4
 
 
 def test_failed_agents_are_chosen_first(episode):
@@ -137,6 +145,21 @@ def test_a_page_asks_for_nothing_and_is_small(episode):
     assert len(page) <= 150_000
 
 
+def test_the_link_back_is_escaped(episode):
+    content = [scene(episode, interesting(episode))]
+    assert 'data-back=""' in replay_page(content)
+    assert 'data-back="../a.html?b=1&amp;c"' in replay_page(content, back="../a.html?b=1&c")
+
+
+def test_each_episode_is_named_if_worlds_differ(episode):
+    other = replace(episode, identity=replace(episode.identity, seed=8, navigator="other"))
+    assert repr(Replay([episode, other], agents=[])) == (
+        "Replay(orca/leaders/dynamic@1/unknown/7, other/leaders/dynamic@1/unknown/8)"
+    )
+    page = Replay([episode, other], agents=[]).html
+    assert "<title>orca in leaders/dynamic@1, seed 7; other in leaders/dynamic@1, seed 8<" in page
+
+
 def test_a_page_shows_one_to_nine(episode):
     assert Replay([episode] * 9, agents=[]).html
     for count in (0, 10):
@@ -150,8 +173,9 @@ def test_saving(episode, tmp_path):
     assert "<iframe srcdoc=" in handle._repr_html_()
     with pytest.raises(UsageError, match="must end in"):
         handle.save(tmp_path / "a.mp5")
+    assert handle.save(tmp_path / "new" / "folder" / "a.html").is_file()
     with pytest.raises(StoreError, match="must be writable"):
-        handle.save(tmp_path / "missing" / "a.html")
+        handle.save(tmp_path / "a.html" / "b.html")
     with pytest.raises(UsageError, match="0 to 3"):
         Episode(episode).replay(agents=[4])
 

@@ -42,7 +42,7 @@ def test_it_plays_is_scrubbed_and_jumps(page, tmp_path):
       replay.seek(0);
       button("Next").click();
       out.jumped = replay.time === replay.events()[0].event.time;
-      out.events = document.querySelectorAll(".side li").length === replay.events().length;
+      out.events = document.querySelectorAll(".side ol li").length === replay.events().length;
       const painted = replay.views[0].context.getImageData(0, 0, 400, 400).data;
       out.colours = new Set(new Uint32Array(painted.buffer)).size;
       replay.select(replay.views[1], 2);
@@ -56,6 +56,50 @@ def test_it_plays_is_scrubbed_and_jumps(page, tmp_path):
     assert result["events"]
     assert result["colours"] > 5
     assert result["title"] == "Agent 2 of straight-line"
+
+
+def test_it_shows_how_attempts_end(page, tmp_path):
+    linked = page.replace('data-back=""', 'data-back="../failures.html"')
+    result = in_browser(linked, READY + """
+      const view = replay.views[1], { agents } = view.scene, out = { agents };
+      const lost = agents.success.indexOf(false);
+      replay.select(view, lost);
+      out.lost = lost;
+      out.result = document.querySelector(".side .result").textContent;
+      out.title = document.querySelector(".chart span").textContent;
+      out.lengths = replay.charts.map((chart) => chart.values.length);
+      out.start = view.caption.textContent;
+      replay.seek(replay.duration);
+      out.now = document.querySelector(".chart output").textContent;
+      out.end = view.caption.textContent;
+      out.legend = document.querySelectorAll(".legend li").length;
+      out.back = document.querySelector(".back").getAttribute("href");
+      const lines = view.context.lineTo.bind(view.context);
+      const points = () => {
+        let count = 0;
+        view.context.lineTo = (x, y) => { count += 1; lines(x, y); };
+        view.drawTrails(view.context, 0.01, view.times - 1);
+        return count;
+      };
+      out.short = points();
+      replay.show.whole = true;
+      out.whole = points();
+      return out;
+    """, tmp_path)  # fmt: skip
+    last, success = result["agents"]["last"], result["agents"]["success"]
+    lost, arrived = result["lost"], sum(success)
+    assert result["result"] == f"No success: {result['agents']['end'][lost]}."
+    assert " at " in result["result"]
+    assert result["title"].startswith("speed, ")
+    assert result["lengths"] == [last[lost], last[lost], last[lost] + 1, last[lost] + 1]
+    assert result["now"] == "ended"
+    assert f"0 of 4 arrived now, {arrived} at the end" in result["start"]
+    assert f"{arrived} of 4 arrived" in result["end"]
+    assert "at the end" not in result["end"]
+    assert result["legend"] == 4
+    assert result["back"] == "../failures.html"
+    assert result["whole"] == sum(last)  # a line for each step of every attempt
+    assert 0 < result["short"] <= 4 * 31  # the last 6 s, also of agents that vanished
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE])

@@ -43,6 +43,16 @@ def test_trails_marks_and_crosses(episode):
     assert axes.get_title() == f"straight-line: {4 - len(lost)} of 4 arrived"
 
 
+def test_the_first_picture_of_a_world_has_a_scale(episode):
+    other = benchnav.load_scenario("trap/u").world(seed=0)
+    there = benchnav.simulate(other, "straight-line").record
+    axes = episode_figure([episode.record, episode.record, there]).axes
+    assert [[text.get_text() for text in a.texts] for a in axes] == [["5 m"], [], ["10 m"]]
+    for a, length in ((axes[0], 5.0), (axes[2], 10.0)):
+        left, right = a.lines[-1].get_xdata()
+        assert right - left == length
+
+
 def test_snapshots_stand_in_a_row(episode):
     axes = episode_figure([episode.record] * 2, [0.0, 1.0, 2.0]).axes
     assert [a.get_title() for a in axes[:3]] == ["straight-line, 0 s", "1 s", "2 s"]
@@ -62,19 +72,23 @@ def test_equal_episodes_give_equal_figures(episode, tmp_path, suffix):
 def test_a_gif_moves(episode, tmp_path):
     path = episode.replay().save(tmp_path / "a.gif")
     with Image.open(path) as picture:
-        assert picture.n_frames == len(frame_times([episode.record], 100))
+        lasts = (picture.n_frames - 1) * picture.info["duration"] / 1000
+        assert lasts == pytest.approx(episode.duration, abs=0.1)  # shorter than 10 s
         first = np.asarray(picture.convert("RGB")).copy()
         picture.seek(picture.n_frames - 1)
         assert (np.asarray(picture.convert("RGB")) != first).any()
 
 
 @pytest.mark.slow
-def test_a_film_has_a_frame_for_each_state(episode, tmp_path):
+def test_a_film_has_25_frames_a_second(episode, tmp_path):
     ffmpeg = pytest.importorskip("imageio_ffmpeg")
     path = episode.replay().save(tmp_path / "a.mp4")
-    assert ffmpeg.count_frames_and_secs(str(path))[0] == len(episode.record.position)
+    frames, seconds = ffmpeg.count_frames_and_secs(str(path))
+    assert frames == len(frame_times([episode.record], 25)) == round(25 * episode.duration) + 1
+    assert seconds == pytest.approx(episode.duration, abs=0.1)
+    assert next(ffmpeg.read_frames(str(path)))["size"][0] >= 800
     with pytest.raises(StoreError, match="must be writable"):
-        episode.replay().save(tmp_path / "missing" / "a.mp4")
+        episode.replay().save(path / "a.mp4")
 
 
 @pytest.mark.parametrize(

@@ -11,6 +11,7 @@ from benchnav.arrays import BoolArray
 from benchnav.episode.episode import Episode as Record
 from benchnav.episode.episode import Status
 from benchnav.errors import UsageError, did_you_mean
+from benchnav.metrics.attempt_ends import end_counts
 from benchnav.metrics.measure import all_metrics, load_metric
 from benchnav.metrics.metric import evaluate
 from benchnav.metrics.quantities.trajectory import cut
@@ -143,16 +144,10 @@ class Episode:
 
     def _facts(self) -> list[tuple[str, str]]:
         record = self.record
-        last = record.status[-1][record.world.agents.evaluated]
-        counts = (
-            f"{int((last == int(status)).sum())} {status.name.lower()}"
-            for status in Status
-            if (last == int(status)).any()
-        )
         facts = [
             ("navigator", self.navigator), ("scenario", self.scenario), ("track", self.track),
             ("seed", str(self.seed)), ("duration", f"{self.duration:g} s"),
-            ("agents", ", ".join(counts)),
+            ("agents", end_counts(record)),
             ("contacts", counted(len(record.contacts), "event")),
         ]  # fmt: skip
         facts += [("failure", self.failure)] if self.failure else []

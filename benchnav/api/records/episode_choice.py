@@ -3,10 +3,12 @@
 import math
 from collections.abc import Mapping, Sequence
 
+import pyarrow as pa
 import pyarrow.compute as pc
 
 from benchnav.api.records.episodes import Episodes, Place, stored_episodes
 from benchnav.errors import UsageError, did_you_mean
+from benchnav.report.failed_episodes import CAUSES
 from benchnav.store.runs.reading import results_of
 from benchnav.store.runs.run_folder import RunFolder
 
@@ -14,10 +16,25 @@ SUCCESS = "success"
 Key = tuple[str, str, str, int]  # navigator, scenario, track, seed
 
 
-def failed_episodes(folder: RunFolder, places: Sequence[Place], owner: object = None) -> Episodes:
-    """Return those in which an evaluated agent did not succeed, in the same order."""
-    values = _values(folder, SUCCESS)
-    lost = [place for place in places if min(values.get(_key(place), [1.0])) < 1.0]
+def failed_episodes(
+    folder: RunFolder, places: Sequence[Place], owner: object = None, cause: str | None = None
+) -> Episodes:
+    """Return those in which an evaluated agent did not succeed, in the same order.
+
+    ``cause`` is one of `CAUSES`, and keeps those in which it applies to an agent. Raises UsageError
+    for another one.
+    """
+    if cause is not None and cause not in CAUSES:
+        raise UsageError(
+            f"The cause of a failure must be one of {', '.join(CAUSES)}. Got {cause!r} instead."
+            f"{did_you_mean(cause, CAUSES)}"
+        )
+    table = results_of(folder)
+    values = metric_values(table, SUCCESS)
+    lost = [place for place in places if min(values.get(key_of(place), [1.0])) < 1.0]
+    if cause is not None:
+        found = metric_values(table, cause)
+        lost = [place for place in lost if max(found.get(key_of(place), [0.0])) > 0.0]
     return Episodes(lost, owner)
 
 
@@ -31,16 +48,20 @@ def worst_episodes(
     from benchnav.metrics.declared import declared_metrics
 
     declared = declared_metrics()[0]
-    values = _values(folder, metric)
-    better = declared[metric].better if metric in declared else None
-    if better is None:
+    better = {name: found.better for name, found in declared.items() if found.better is not None}
+    table = results_of(folder)
+    held = table["metric"].unique().to_pylist()
+    ranked = sorted(name for name in held if name in better)
+    if metric not in ranked:
+        problem = f"{metric!r} has none" if metric in held else f"Got {metric!r} instead"
         raise UsageError(
-            "The metric must have a better side, higher or lower, to define the worst."
-            f" {metric!r} has none; {SUCCESS!r} and 'collided' have one."
+            "The metric must be one that the run holds and that has a better side, to define the"
+            f" worst: {', '.join(ranked)}. {problem}.{did_you_mean(metric, ranked)}"
         )
-    worst, sign = (min, 1.0) if better == "higher" else (max, -1.0)
-    known = [place for place in places if _key(place) in values]
-    return Episodes(sorted(known, key=lambda place: sign * worst(values[_key(place)])), owner)
+    values = metric_values(table, metric)
+    worst, sign = (min, 1.0) if better[metric] == "higher" else (max, -1.0)
+    known = [place for place in places if key_of(place) in values]
+    return Episodes(sorted(known, key=lambda place: sign * worst(values[key_of(place)])), owner)
 
 
 def in_same_world(
@@ -62,18 +83,8 @@ def in_same_world(
     return Episodes(found, owner)
 
 
-def _values(folder: RunFolder, metric: str) -> Mapping[Key, list[float]]:
-    """Return the defined values of a metric: one for each role of an episode.
-
-    Raises UsageError for a metric that the run does not hold.
-    """
-    table = results_of(folder)
-    held = table["metric"].unique().to_pylist()
-    if metric not in held:
-        raise UsageError(
-            f"The metric must be one that the run holds. Got {metric!r} instead."
-            f"{did_you_mean(metric, held)}"
-        )
+def metric_values(table: pa.Table, metric: str) -> Mapping[Key, list[float]]:
+    """Return the defined values of a metric: one for each role of an episode."""
     table = table.filter(pc.equal(table["metric"], metric))
     names = ("navigator", "scenario", "track", "seed", "value")
     found: dict[Key, list[float]] = {}
@@ -83,5 +94,6 @@ def _values(folder: RunFolder, metric: str) -> Mapping[Key, list[float]]:
     return found
 
 
-def _key(place: Place) -> Key:
+def key_of(place: Place) -> Key:
+    """Return navigator, scenario, track and seed."""
     return place.navigator, place.scenario, place.track, place.seed

@@ -9,6 +9,7 @@ from benchnav.api.output.text_table import table_html
 from benchnav.api.records.episode import Episode
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.from_runs import matching_scenarios
+from benchnav.scenario.terms import TRACKS
 from benchnav.store.parts.part import Part
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.text.plural import counted
@@ -31,6 +32,11 @@ class Place(NamedTuple):
     track: str
     seed: int
     folder: RunFolder
+
+    @property
+    def name(self) -> str:
+        """NAVIGATOR/SCENARIO/TRACK/SEED."""
+        return f"{self.navigator}/{self.scenario}/{self.track}/{self.seed}"
 
 
 class Episodes(Sequence[Episode]):
@@ -96,6 +102,8 @@ class Episodes(Sequence[Episode]):
         """
         from benchnav.api.records.replay import MOST, Replay
 
+        if not self:
+            raise UsageError("A replay needs an episode. The choice holds none: choose others.")
         return Replay.of(self[: MOST + 1], agents)
 
     def __repr__(self) -> str:
@@ -135,7 +143,8 @@ def stored_episodes(
     cells = [cell for cell in folder.manifest.cells if not cell["reason"]]
     _require("navigator", navigator, [cell["navigator"] for cell in folder.manifest.cells])
     tracks = [t for cell in folder.manifest.cells for t in (*cell.get("also", ()), cell["track"])]
-    _require("track", track, tracks)
+    # 'unknown' is no misspelt 'known': it was not run.
+    _require("track", track, tracks, hint=track not in TRACKS)
     known = {cell["scenario"] for cell in folder.manifest.cells}
     scenarios = known if scenario is None else matching_scenarios(known, [scenario])
     places = [
@@ -163,10 +172,10 @@ def _read(places: Sequence[Place]) -> Iterator[Episode]:
             yield Episode(shown, partial(stored_origin, place.folder, place.part, record))
 
 
-def _require(what: str, name: str | None, known: Sequence[str]) -> None:
+def _require(what: str, name: str | None, known: Sequence[str], *, hint: bool = True) -> None:
     every = list(dict.fromkeys(known))
     if name is not None and name not in every:
         raise UsageError(
             f"The {what} must be one that was run: {', '.join(every)}. Got {name!r} instead."
-            f"{did_you_mean(name, every)}"
+            f"{did_you_mean(name, every) if hint else ''}"
         )

@@ -49,8 +49,8 @@ class Replay:
         """
         if not 1 <= len(records) <= MOST:
             raise UsageError(
-                f"A replay shows 1 to {MOST} episodes side by side. Got {len(records)}: name a"
-                " navigator, a scenario, a track or a seed."
+                f"A replay shows 1 to {MOST} episodes side by side. Got"
+                f" {len(records) or 'none'}{': choose fewer' if records else ''}."
             )
         for record in records:
             _require_agents(agents, len(record.world.agents))
@@ -88,7 +88,8 @@ class Replay:
 
         Args:
             path: ends in .html (a page), .gif or .mp4 (a moving picture), .png, .svg or .pdf (a
-                figure), .rrd (for the Rerun viewer) or .mcap (for Foxglove).
+                figure), .rrd (for the Rerun viewer) or .mcap (for Foxglove). A missing folder is
+                created.
             times: [s] of a figure with snapshots in a row; none: one picture with trails.
 
         Raises UsageError for another suffix or a wrong time, StoreError if the file cannot be
@@ -138,9 +139,16 @@ class Replay:
         return interesting(record) if self._agents is None else np.array(self._agents, np.int64)
 
     def __repr__(self) -> str:
-        names = ", ".join(record.identity.navigator for record in self._records)
-        first = self._records[0].identity
-        return f"Replay({names} in {first.scenario!r}, track={first.track!r}, seed={first.seed})"
+        every = [record.identity for record in self._records]
+        first = every[0]
+        if len({(one.scenario, one.track, one.seed) for one in every}) > 1:
+            names = (f"{one.navigator}/{one.scenario}/{one.track}/{one.seed}" for one in every)
+            return f"Replay({', '.join(names)})"
+        names = (one.navigator for one in every)
+        return (
+            f"Replay({', '.join(names)} in {first.scenario!r}, track={first.track!r},"
+            f" seed={first.seed})"
+        )
 
     def _repr_html_(self) -> str:
         return (

@@ -223,7 +223,7 @@ class Run:
         track: str | None = None,
         seed: int | None = None,
         *,
-        failed: bool = False,
+        failed: bool | str = False,
         worst: str | None = None,
     ) -> "Episodes":
         """Return the stored episodes, or those of one navigator, scenario, track or seed.
@@ -235,16 +235,20 @@ class Run:
             scenario: its name.
             track: the knowledge track.
             seed: of the world.
-            failed: only those in which an evaluated agent did not succeed.
+            failed: True: only those in which an evaluated agent did not succeed; or a cause:
+                "collided", "timeout", "stuck" or "failed" (the navigator failed).
             worst: a metric: they come in its order, worst first.
+
+        Raises UsageError for a name, cause or metric that the run does not have.
         """
         from benchnav.api.records.episodes import stored_episodes
 
         found = stored_episodes(self.folder, navigator, scenario, track, seed, owner=self)
-        if failed:
+        if failed is not False:
             from benchnav.api.records.episode_choice import failed_episodes
 
-            found = failed_episodes(self.folder, found.places, owner=self)
+            cause = None if failed is True else failed
+            found = failed_episodes(self.folder, found.places, owner=self, cause=cause)
         if worst is not None:
             from benchnav.api.records.episode_choice import worst_episodes
 

@@ -6,15 +6,12 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from benchnav.cli.console import put, say
-from benchnav.errors import UsageError
+from benchnav.cli.viewing.episode_filter import EpisodeFilter
+from benchnav.cli.viewing.episode_list import print_list
 from benchnav.text.file_name import file_name
 
 if TYPE_CHECKING:
-    from benchnav.api.records.episodes import Episodes, Place
-    from benchnav.api.records.run import Run
-
-_LISTED = 200  # lines of --list at most
-_PARTS = ("navigator", "scenario", "track", "seed")
+    from benchnav.api.records.episodes import Place
 
 
 def replay(
@@ -33,6 +30,13 @@ def replay(
     failed: Annotated[
         bool, typer.Option("--failed", help="Only where an agent did not succeed.")
     ] = False,
+    cause: Annotated[
+        str | None,
+        typer.Option(
+            help="Only where an agent did not succeed for this cause: collided, timeout, stuck or"
+            " failed (the navigator)."
+        ),
+    ] = None,
     worst: Annotated[
         str | None, typer.Option(metavar="METRIC", help="The one that is worst by this metric.")
     ] = None,
@@ -44,7 +48,7 @@ def replay(
         ),
     ] = None,
     list_: Annotated[
-        bool, typer.Option("--list", help="List the episodes, and write nothing.")
+        bool, typer.Option("--list", help="List the episodes and how they ended; write nothing.")
     ] = False,
     out: Annotated[
         Path | None,
@@ -64,86 +68,28 @@ def replay(
 
     Without options it shows the first episode in which an agent did not succeed, or the first one.
     """
+    from benchnav.api.records.episode_names import named_episodes
     from benchnav.api.records.replay import open_in_browser
     from benchnav.api.records.run import open_run
 
-    navigators = navigator or []
+    wanted = EpisodeFilter(
+        navigators=tuple(navigator or ()), scenario=scenario, track=track, seed=seed,
+        failed=failed if cause is None else cause, worst=worst,
+    )  # fmt: skip
+    if episodes:
+        wanted.require_unused(episodes, lists=list_)
     with open_run(run) as opened:
-        one = navigators[0] if navigators else None
-        found = opened.episodes(one, scenario, track, seed, failed=failed, worst=worst)
         if list_:
-            _print_list(found)
+            found = wanted.all_of(opened)
+            print_list(opened, found) if found else put(wanted.why_none(opened))
             return
-        if episodes:
-            chosen = _named(opened, episodes)
-        else:
-            is_unnamed = not (failed or worst or seed is not None)
-            chosen = _first(opened, found, navigators, failed_first=is_unnamed)
+        chosen = named_episodes(opened, episodes) if episodes else wanted.first_of(opened)
         page = chosen.replay(agent)
         path = page.save(out or Path(_file_name(chosen.places)), time or ())
     say(f"{page!r}")
     put(str(path))
     if show and not open_in_browser(path):
         say("No browser could be opened here: open the file above in one.")
-
-
-def _first(
-    run: "Run", found: "Episodes", navigators: list[str], *, failed_first: bool
-) -> "Episodes":
-    """Return the first episode found, and those of the other navigators in the same world."""
-    from benchnav.api.records.episode_choice import failed_episodes, in_same_world
-
-    if not len(found):
-        raise UsageError(
-            f"No stored episode of {run.path} is like that."
-            f" 'benchnav replay {run.path} --list' shows all."
-        )
-    if failed_first:
-        found = failed_episodes(run.folder, found.places, run)[:1] or found
-    if len(navigators) > 1:
-        return in_same_world(run.folder, found.places[0], navigators, run)
-    return found[:1]
-
-
-def _named(run: "Run", names: list[str]) -> "Episodes":
-    """Return the episodes that are named as in the list."""
-    from benchnav.api.records.episodes import Episodes
-
-    places = []
-    for name in names:
-        parts = name.rsplit("/", 2) if name.count("/") >= 3 else []
-        if not parts or not parts[2].isdigit():
-            raise UsageError(
-                f"An episode must be named NAVIGATOR/SCENARIO/TRACK/SEED. Got {name!r} instead;"
-                f" 'benchnav replay {run.path} --list' shows all."
-            )
-        there = next(
-            (
-                found
-                for found in run.episodes(track=parts[1], seed=int(parts[2])).places
-                if episode_name(found) == name
-            ),
-            None,
-        )
-        if there is None:
-            raise UsageError(
-                f"There is no stored episode {name!r}."
-                f" 'benchnav replay {run.path} --list' shows all."
-            )
-        places.append(there)
-    return Episodes(places, run)
-
-
-def episode_name(place: "Place") -> str:
-    """Return NAVIGATOR/SCENARIO/TRACK/SEED."""
-    return "/".join(str(getattr(place, part)) for part in _PARTS)
-
-
-def _print_list(found: "Episodes") -> None:
-    names = [episode_name(place) for place in found.places[:_LISTED]]
-    put("\n".join(names) if names else "No stored episode is like that.")
-    if len(found) > len(names):
-        say(f"{len(found) - len(names)} more: name a navigator, scenario, track or seed.")
 
 
 def _file_name(places: "tuple[Place, ...]") -> str:

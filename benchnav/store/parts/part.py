@@ -90,6 +90,14 @@ class Part:
         """Yield its scored episodes, by seed. Raises CorruptPartError."""
         yield from self._episodes(EPISODES_FILE, len(self.seeds))
 
+    def steps(self) -> dict[int, int]:
+        """Return the number of decisions of each scored episode, by seed. Raises CorruptPartError.
+
+        No episode is decoded for it.
+        """
+        table = self._table(EPISODES_FILE, EPISODES, EPISODES_LATER)
+        return dict(zip(table["seed"].to_pylist(), table["steps"].to_pylist(), strict=True))
+
     def rehearsals(self) -> Iterator[Episode]:
         """Yield the rehearsals of its episodes, by seed.
 

@@ -127,7 +127,7 @@ def load_manifest(run: RunPath) -> Manifest:
         problem = "Got a file" if run.is_file() else "It does not exist" if not run.exists() else ""
         raise NoRunError(
             f"{run} must be a run folder, with a {MANIFEST}."
-            f" {problem or 'It has none'}. Running a suite into it creates one."
+            f" {problem or 'It has none'}. Running a suite creates one."
         )
     try:
         text = bounded_json.read_text(path, MAX_BYTES)

@@ -15,7 +15,7 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.drawing.palette import FILL, color_of, rgb
+from benchnav.drawing.palette import FILL, agent_color, rgb
 from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.metrics.quantities.episode_analysis import analyse
@@ -107,7 +107,7 @@ class _Log:
             )
             cylinder = self._make(
                 "CylinderPrimitive", size=size, bottom_scale=1.0, top_scale=1.0,
-                color=self._color(rgb(color_of(int(agents.team[a])))),
+                color=self._color(rgb(agent_color(episode.world, int(a)))),
                 pose=self._pose(episode.position[t, a], 0.5 * AGENT_HEIGHT, episode.heading[t, a]),
             )  # fmt: skip
             entity = self._make(

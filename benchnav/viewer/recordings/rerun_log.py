@@ -12,7 +12,7 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import IntArray
-from benchnav.drawing.palette import FILL, color_of, rgb
+from benchnav.drawing.palette import FILL, agent_color, rgb
 from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.metrics.quantities.episode_analysis import analyse
@@ -34,7 +34,7 @@ def save_rerun(episode: Episode, agents: IntArray, path: Path) -> None:
     except ImportError as error:
         raise MissingExtraError("A Rerun file", "rerun") from error
     with writing(path):
-        path.open("wb").close()  # the library does not report a missing folder
+        path.open("wb").close()  # the library does not report an error
     identity = episode.identity
     stream = rerun.RecordingStream(
         "benchnav",
@@ -70,7 +70,7 @@ def _mesh(rerun: Any, mesh: Any, color: tuple[float, float, float]) -> Any:
 
 def _log_motion(rerun: Any, stream: Any, episode: Episode) -> None:
     agents, leaves = episode.world.agents, analyse(episode).trajectories.leaves
-    colors = np.array([rgb(color_of(int(team))) for team in agents.team])
+    colors = np.array([rgb(agent_color(episode.world, a)) for a in range(len(agents))])
     for t, time in enumerate(episode.times):
         stream.set_time("time", duration=float(time))
         for m, place in enumerate(episode.body_position[t]):

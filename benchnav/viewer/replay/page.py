@@ -9,17 +9,20 @@ from typing import Any
 ASSETS = ("replay.css", "replay.js")
 
 
-def replay_page(scenes: Sequence[dict[str, Any]], assets: str = "") -> str:
+def replay_page(scenes: Sequence[dict[str, Any]], assets: str = "", back: str = "") -> str:
     """Return the page that plays episodes side by side and in step.
 
-    ``assets`` is the relative link to a folder with the files `ASSETS`; "": they are in the page.
+    Args:
+        scenes: the episodes, as `benchnav.viewer.replay.scene.scene` returns them.
+        assets: the relative link to a folder with the files `ASSETS`; "": they are in the page.
+        back: the relative link to the page of a report that led here; "": no link is shown.
     """
     # Stored numbers are finite: the simulator and the reader of runs refuse others.
     content = json.dumps(list(scenes), separators=(",", ":"), allow_nan=False)
     style, script = _linked(assets) if assets else _included()
     return _PAGE.format(
         title=escape(_title(scenes)), style=style, script=script,
-        content=content.replace("<", "\\u003c"),
+        content=content.replace("<", "\\u003c"), back=escape(back),
     )  # fmt: skip
 
 
@@ -39,9 +42,12 @@ def _linked(folder: str) -> tuple[str, str]:
 
 
 def _title(scenes: Sequence[dict[str, Any]]) -> str:
-    first = scenes[0]
+    """Return the navigators and the world, or each of them if the worlds differ."""
+    worlds = {f"{scene['scenario']}, seed {scene['seed']}": scene["navigator"] for scene in scenes}
+    if len(worlds) > 1:
+        return "; ".join(f"{navigator} in {world}" for world, navigator in worlds.items())
     navigators = ", ".join(dict.fromkeys(scene["navigator"] for scene in scenes))
-    return f"{navigators} in {first['scenario']}, seed {first['seed']}"
+    return f"{navigators} in {next(iter(worlds))}"
 
 
 _PAGE = """<!doctype html>
@@ -50,7 +56,7 @@ _PAGE = """<!doctype html>
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{title}</title>
 {style}
-<div id="replay"></div>
+<div id="replay" data-back="{back}"></div>
 <script type="application/json" id="scenes">{content}</script>
 {script}
 </html>

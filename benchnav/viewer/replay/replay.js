@@ -5,6 +5,8 @@
 const ACTIVE = 0,
   ARRIVED = 1;
 const TRAIL = 6; // [s] length of the trail behind an agent
+const POINTS = 40000; // of whole trails, at most
+const NUMBERED = 12; // agents have their numbers at any size if there are no more than these
 const FLASH = 0.6; // [s] that a contact stays marked after its end
 const CROWD = 200; // with more agents, trails are short, goals are dots, and headings are not drawn
 
@@ -54,6 +56,11 @@ function element(tag, attributes = {}, ...children) {
   }
   made.append(...children);
   return made;
+}
+
+/** A number with digits after the point, without the sign of a zero. */
+function withDigits(value, digits) {
+  return (Math.abs(value) < 0.5 * 10 ** -digits ? 0 : value).toFixed(digits);
 }
 
 /** The area of loops, as a path that is filled by the even-odd rule. */
@@ -159,9 +166,6 @@ class View {
   present(a, k) {
     return k < this.scene.agents.leaves[a];
   }
-  colourOf(team) {
-    return this.scene.colours[team % this.scene.colours.length];
-  }
 
   /** Scale [pixels per metre] and origin of the picture. */
   frame() {
@@ -259,11 +263,12 @@ class View {
     this.drawSolids(c, pixel, k);
     if (show.map && this.map) this.drawMap(c, pixel);
     if (show.own) this.drawOwnMap(c, pixel, k);
-    if (show.trails) this.drawTrails(c, pixel, k);
+    if (show.trails || show.whole) this.drawTrails(c, pixel, k);
     if (show.goals) this.drawGoals(c, pixel, k);
     if (show.senses) this.drawSenses(c, pixel, k);
     this.drawAgents(c, pixel, k);
     this.drawContacts(c, pixel, time);
+    if (show.numbers) this.drawNumbers(c, ratio, k);
     this.describe(k);
   }
 
@@ -337,25 +342,26 @@ class View {
     return path;
   }
 
-  /** One path for each team: a crowd of a thousand stays fast. */
+  /** One path for each colour: a crowd of a thousand stays fast. Trails end with the attempts. */
   drawTrails(c, pixel, k) {
-    const isCrowd = this.count > CROWD;
-    const first = Math.max(0, Math.floor(k - (isCrowd ? 1 : TRAIL) / this.scene.dt));
-    const stride = isCrowd ? 2 : 1;
-    this.byTeam((team, members) => {
+    const isCrowd = this.count > CROWD,
+      whole = this.replay.show.whole;
+    const length = whole ? Infinity : (isCrowd ? 1 : TRAIL) / this.scene.dt;
+    const stride = whole ? Math.ceil((this.count * this.times) / POINTS) : isCrowd ? 2 : 1;
+    this.byColour((colour, members) => {
       c.beginPath();
       for (const a of members) {
-        if (!this.present(a, k)) continue;
-        const [sx, sy] = this.at(a, first);
-        c.moveTo(sx, sy);
-        for (let j = first + stride; j < k; j += stride) {
+        if (isCrowd && !whole && !this.present(a, k)) continue;
+        const end = Math.min(k, this.scene.agents.last[a]),
+          first = Math.max(0, Math.floor(end - length));
+        c.moveTo(...this.at(a, first));
+        for (let j = first + stride; j < end; j += stride) {
           const row = 2 * a * this.times + j;
           c.lineTo(this.scene.position[row], this.scene.position[row + this.times]);
         }
-        const [x, y] = this.at(a, k);
-        c.lineTo(x, y);
+        c.lineTo(...this.at(a, end));
       }
-      c.strokeStyle = this.colourOf(team);
+      c.strokeStyle = colour;
       c.globalAlpha = 0.5;
       c.lineWidth = (isCrowd ? 1 : 2) * pixel;
       c.stroke();
@@ -366,8 +372,8 @@ class View {
   drawGoals(c, pixel, k) {
     const { goal, radius } = this.scene.agents,
       isCrowd = this.count > CROWD;
-    this.byTeam((team, members) => {
-      c.fillStyle = c.strokeStyle = this.colourOf(team);
+    this.byColour((colour, members) => {
+      c.fillStyle = c.strokeStyle = colour;
       c.beginPath();
       for (const a of members) {
         const r = Math.max(radius[a], 4 * pixel),
@@ -384,11 +390,40 @@ class View {
       c.stroke();
       c.setLineDash([]);
     });
+    if (this.hasChosen()) this.drawChosenGoal(c, pixel);
+  }
+
+  /** A filled ring: the goal of the chosen agent. */
+  drawChosenGoal(c, pixel) {
+    const { goal, radius, colour } = this.scene.agents,
+      a = this.replay.selected.agent;
+    c.beginPath();
+    c.arc(...goal[a], Math.max(radius[a], 4 * pixel), 0, 2 * Math.PI);
+    c.fillStyle = this.scene.colours[colour[a]];
+    c.globalAlpha = 0.35;
+    c.fill();
+    c.globalAlpha = 1;
+    this.ring(c, pixel, goal[a], radius[a]);
+  }
+
+  /** The mark of the chosen agent and of its goal. */
+  ring(c, pixel, [x, y], radius) {
+    c.beginPath();
+    c.arc(x, y, radius + 4 * pixel, 0, 2 * Math.PI);
+    c.strokeStyle = colour("ink");
+    c.lineWidth = 2 * pixel;
+    c.stroke();
+  }
+
+  hasChosen() {
+    const chosen = this.replay.selected;
+    return chosen && chosen.agent < this.count && this.replay.sameWorld(chosen.view, this);
   }
 
   drawAgents(c, pixel, k) {
-    const { radius } = this.scene.agents;
-    this.byTeam((team, members) => {
+    const { radius } = this.scene.agents,
+      ink = colour("ink");
+    this.byColour((colour, members) => {
       const discs = new Path2D(),
         headings = new Path2D(),
         still = new Path2D();
@@ -405,21 +440,67 @@ class View {
         headings.moveTo(x, y);
         headings.lineTo(x + 1.6 * r * Math.cos(heading), y + 1.6 * r * Math.sin(heading));
       }
-      c.fillStyle = c.strokeStyle = this.colourOf(team);
+      c.fillStyle = c.strokeStyle = colour;
       c.fill(discs);
       c.lineWidth = 1.5 * pixel;
       c.stroke(still);
-      c.strokeStyle = colour("ink");
+      c.strokeStyle = ink;
       c.stroke(headings);
     });
-    const chosen = this.replay.selected;
-    if (chosen && chosen.agent < this.count && this.replay.sameWorld(chosen.view, this)) {
-      const [x, y] = this.at(chosen.agent, k);
+    this.drawLost(c, pixel, k);
+    const a = this.replay.selected?.agent;
+    if (this.hasChosen() && this.present(a, k)) {
+      this.ring(c, pixel, this.at(a, k), radius[a]);
+    }
+  }
+
+  /** A cross where an agent vanished without arrival. */
+  drawLost(c, pixel, k) {
+    if (this.count > CROWD) return;
+    const { radius, last } = this.scene.agents;
+    this.byColour((colour, members) => {
       c.beginPath();
-      c.arc(x, y, radius[chosen.agent] + 4 * pixel, 0, 2 * Math.PI);
-      c.strokeStyle = colour("ink");
-      c.lineWidth = 2 * pixel;
+      for (const a of members) {
+        if (this.present(a, k) || this.status(a, k) === ARRIVED) continue;
+        const [x, y] = this.at(a, last[a]),
+          r = Math.max(0.6 * radius[a], 4 * pixel);
+        c.moveTo(x - r, y - r);
+        c.lineTo(x + r, y + r);
+        c.moveTo(x - r, y + r);
+        c.lineTo(x + r, y - r);
+      }
+      c.strokeStyle = colour;
+      c.lineWidth = 3 * pixel;
       c.stroke();
+    });
+  }
+
+  /** Numbers beside agents and on moving obstacles, if they have room. */
+  drawNumbers(c, ratio, k) {
+    const { scale, x, y } = this.frame(),
+      { radius } = this.scene.agents;
+    c.setTransform(ratio, 0, 0, ratio, 0, 0);
+    c.font = "600 11px system-ui, sans-serif";
+    c.textBaseline = "middle";
+    c.lineJoin = "round";
+    c.lineWidth = 3;
+    const write = (text, [wx, wy], away, align) => {
+      const px = x + scale * wx + away,
+        py = y - scale * wy - away;
+      if (px < 0 || py < 0 || px > this.canvas.clientWidth || py > this.canvas.clientHeight) return;
+      c.textAlign = align;
+      c.strokeStyle = colour("paper");
+      c.strokeText(text, px, py);
+      c.fillStyle = colour("ink");
+      c.fillText(text, px, py);
+    };
+    for (let m = 0; m < this.bodies.length && scale > 8; m++)
+      write(String(m + 1), this.bodyAt(m, Math.floor(k + 1e-6)), 0, "center");
+    for (let a = 0; a < this.count; a++) {
+      const size = scale * radius[a];
+      if (this.count > NUMBERED && size < 10) continue;
+      if (!this.present(a, k) && this.status(a, k) === ARRIVED) continue;
+      write(String(a), this.at(a, k), 0.75 * size + 3, "left");
     }
   }
 
@@ -512,15 +593,21 @@ class View {
 
   describe(k) {
     const { evaluated } = this.scene.agents;
+    const last = this.times - 1;
     let total = 0,
-      arrived = 0;
+      arrived = 0,
+      final = 0;
     for (let a = 0; a < this.count; a++) {
       if (!evaluated[a]) continue;
       total++;
       if (this.status(a, k) === ARRIVED) arrived++;
+      if (this.status(a, last) === ARRIVED) final++;
     }
     const { navigator, scenario, track, seed } = this.scene;
-    const text = `${arrived} of ${total} arrived`;
+    const text =
+      k >= last
+        ? `${final} of ${total} arrived`
+        : `${arrived} of ${total} arrived now, ${final} at the end`;
     if (this.caption.dataset.text === text) return;
     this.caption.dataset.text = text;
     const where =
@@ -532,15 +619,16 @@ class View {
     this.caption.replaceChildren(element("b", {}, navigator), element("span", {}, where));
   }
 
-  byTeam(action) {
+  byColour(action) {
     if (!this.members) {
       this.members = new Map();
-      this.scene.agents.team.forEach((team, a) => {
-        if (!this.members.has(team)) this.members.set(team, []);
-        this.members.get(team).push(a);
+      this.scene.agents.colour.forEach((number, a) => {
+        const colour = this.scene.colours[number];
+        if (!this.members.has(colour)) this.members.set(colour, []);
+        this.members.get(colour).push(a);
       });
     }
-    for (const [team, members] of this.members) action(team, members);
+    for (const [colour, members] of this.members) action(colour, members);
   }
 }
 
@@ -551,7 +639,15 @@ class Replay {
     this.speed = 1;
     this.playing = false;
     this.selected = null;
-    this.show = { trails: true, goals: true, senses: true, map: false, own: true };
+    this.show = {
+      trails: true,
+      whole: false,
+      goals: true,
+      numbers: true,
+      senses: true,
+      map: false,
+      own: true,
+    };
     this.views = scenes.map((scene) => new View(scene, this));
     this.duration = Math.max(...this.views.map((view) => view.duration));
     this.dt = this.views[0].scene.dt;
@@ -586,12 +682,12 @@ class Replay {
     this.grid = element("div", { class: "views", style: `--columns: ${columns}` });
     this.grid.append(...this.views.map((view) => view.node));
     this.side = element("aside", { class: "side" });
-    root.append(this.grid, this.side, this.bar());
+    root.append(this.grid, this.side, this.bar(root.dataset.back));
     this.panel = element("div", { class: "panel" });
-    this.side.append(this.panel, this.toggles(), ...this.eventList());
+    this.side.append(this.panel, this.toggles(), ...this.legend(), ...this.eventList());
   }
 
-  bar() {
+  bar(back) {
     this.playButton = element(
       "button",
       { class: "play", title: "Space", onclick: () => this.toggle() },
@@ -626,6 +722,7 @@ class Replay {
     return element(
       "div",
       { class: "bar" },
+      ...(back ? [element("a", { class: "back", href: back }, "← Report")] : []),
       this.playButton,
       button("−1", "Step back (left arrow)", () => this.step(-1)),
       button("+1", "Step (right arrow)", () => this.step(1)),
@@ -652,8 +749,10 @@ class Replay {
 
   toggles() {
     const names = {
-      trails: "trails",
+      trails: `trails of ${TRAIL} s`,
+      whole: "whole trails",
       goals: "goals",
+      numbers: "numbers",
       senses: "sensor readings",
       map: "granted map",
       own: "own map",
@@ -675,6 +774,26 @@ class Replay {
       return element("label", {}, box, ` ${text}`);
     });
     return element("div", { class: "toggles" }, ...boxes);
+  }
+
+  /** What the lines of the sensor readings mean, for the sensors that there are. */
+  legend() {
+    const has = (name) => this.views.some((view) => view.scene.senses?.[name]);
+    const lines = [
+      [
+        "distance",
+        "ray",
+        "ray; it is as wide as the agent, so it ends where the agent would touch",
+      ],
+      ["distance", "dot", "hit of a ray"],
+      ["neighbours", "neighbour", "sensed neighbour"],
+      ["edges", "edge", "sensed edge"],
+    ].filter(([name]) => has(name));
+    if (!lines.length) return [];
+    const items = lines.map(([, kind, text]) =>
+      element("li", {}, element("i", { class: kind }), element("span", {}, text)),
+    );
+    return [element("h2", {}, "Sensor readings"), element("ul", { class: "legend" }, ...items)];
   }
 
   events() {
@@ -725,13 +844,7 @@ class Replay {
     if (event.kind === "failure") return `${name}the navigator of agent ${event.agent} fails`;
     if (event.kind === "timeout")
       return `${name}time is over for ${event.agents.length === 1 ? "agent" : "agents"} ${event.agents.slice(0, 6).join(", ")}${event.agents.length > 6 ? ", …" : ""}`;
-    const partner = {
-      agent: `agent ${event.partner}`,
-      wall: "a wall",
-      static: "a static obstacle",
-      dynamic: `moving obstacle ${-1 - event.partner}`,
-    }[event.with];
-    return `${name}agent ${event.agent} hits ${partner}${event.charged ? "" : " (not charged)"}`;
+    return `${name}agent ${event.agent} hits ${event.text}${event.charged ? "" : " (not charged)"}`;
   }
 
   select(view, agent) {
@@ -752,13 +865,14 @@ class Replay {
       n = charts.agents.indexOf(agent);
     const result = agents.evaluated[agent]
       ? agents.success[agent]
-        ? "succeeds"
-        : "does not succeed"
-      : "is not scored";
+        ? "Success"
+        : "No success"
+      : "Not scored";
     const name = this.views.length > 1 ? ` of ${view.scene.navigator}` : "";
     this.panel.append(
       element("h2", {}, `Agent ${agent}${name}`),
-      element("p", {}, `Team ${agents.teams[agents.team[agent]]}. It ${result}.`),
+      element("p", { class: "result" }, `${result}: ${agents.end[agent]}.`),
+      element("p", {}, `Team ${agents.teams[agents.team[agent]]}.`),
     );
     if (n < 0) {
       this.panel.append(
@@ -770,23 +884,38 @@ class Replay {
       );
       return;
     }
-    const add = (title, unit, array, digits) => {
+    const add = (title, unit, array, digits, end) => {
       const output = element("output"),
         canvas = element("canvas");
+      const times = view.times;
+      const values = array.subarray(n * times, n * times + end + 1);
+      const number = (value) => withDigits(value, digits);
+      const range = values.reduce(
+        ([low, top], v) => [Math.min(low, v), Math.max(top, v)],
+        [Infinity, -Infinity],
+      );
       this.panel.append(
         element(
           "div",
           { class: "chart" },
-          element("div", {}, element("span", {}, title), output),
+          element(
+            "div",
+            {},
+            element("span", {}, `${title}, ${number(range[0])} to ${number(range[1])} ${unit}`),
+            output,
+          ),
           canvas,
         ),
       );
-      this.charts.push({ view, array, row: n, unit, digits, output, canvas });
+      this.charts.push({ view, values, range, unit, number, output, canvas });
     };
-    add("speed", "m/s", charts.speed, 2);
-    add("turn rate", "rad/s", charts.turn, 2);
-    add("clearance", "m", charts.clearance, 2);
-    if (senses?.probability) add("collision probability (Eq. 24)", "", senses.probability, 2);
+    // Values after the end of the attempt mean nothing; speeds are those of the next step.
+    const end = agents.last[agent],
+      before = Math.max(0, end - 1);
+    add("speed", "m/s", charts.speed, 2, before);
+    add("turn rate", "rad/s", charts.turn, 2, before);
+    add("clearance", "m", charts.clearance, 2, end);
+    if (senses?.probability) add("collision probability", "", senses.probability, 2, end);
     if (view.scene.own_map?.reason)
       this.panel.append(
         element(
@@ -806,8 +935,9 @@ class Replay {
   }
 
   drawChart(chart) {
-    const { view, array, row, canvas, output, unit, digits } = chart,
-      times = view.times;
+    const { view, values, range, canvas, output, unit, number } = chart,
+      times = view.times,
+      end = values.length - 1;
     const ratio = window.devicePixelRatio || 1,
       wide = canvas.clientWidth,
       high = canvas.clientHeight;
@@ -815,17 +945,8 @@ class Replay {
     canvas.width = wide * ratio;
     canvas.height = high * ratio;
     const c = canvas.getContext("2d"),
-      values = array.subarray(row * times, (row + 1) * times);
-    if (!chart.range) {
-      let low = Infinity,
-        top = -Infinity;
-      for (const v of values) {
-        low = Math.min(low, v);
-        top = Math.max(top, v);
-      }
-      chart.range = [Math.min(0, low), Math.max(top, low + 1e-6, 0.1)];
-    }
-    const [low, top] = chart.range,
+      low = Math.min(0, range[0]),
+      top = Math.max(range[1], low + 0.1),
       x = (k) => (k / Math.max(1, times - 1)) * (wide - 2) + 1;
     const y = (v) => high - 4 - ((v - low) / (top - low)) * (high - 10);
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
@@ -838,7 +959,7 @@ class Replay {
     c.strokeStyle = colour("accent");
     c.lineWidth = 1.4;
     c.beginPath();
-    for (let k = 0; k < times; k++)
+    for (let k = 0; k <= end; k++)
       if (k === 0) c.moveTo(x(0), y(values[0]));
       else c.lineTo(x(k), y(values[k]));
     c.stroke();
@@ -848,8 +969,8 @@ class Replay {
     c.moveTo(x(k), 0);
     c.lineTo(x(k), high);
     c.stroke();
-    const now = values[Math.floor(k + 1e-6)];
-    output.textContent = `${(Math.abs(now) < 0.5 * 10 ** -digits ? 0 : now).toFixed(digits)} ${unit}`;
+    const state = Math.floor(k + 1e-6);
+    output.textContent = state > end ? "ended" : `${number(values[state])} ${unit}`;
   }
 
   toggle() {

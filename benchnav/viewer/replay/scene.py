@@ -7,8 +7,9 @@ import numpy as np
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.drawing.palette import TEAMS
+from benchnav.drawing.palette import TEAMS, color_number
 from benchnav.episode.episode import Contacts, Episode, Status
+from benchnav.metrics.attempt_ends import attempt_ends, partner_text
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.navigation.tracks import granted_map
 from benchnav.verify.own_map import Origin, OwnMaps, map_changes, own_maps
@@ -70,12 +71,13 @@ def events(episode: Episode) -> list[dict[str, Any]]:
     for n in range(len(contacts)):
         agent, partner = int(contacts.agent[n]), int(contacts.partner[n])
         kind = Kind(int(contacts.kind[n]))
+        text = partner_text(int(kind), partner)
         if mirrored[n]:
             continue
         out.append({
             "kind": "contact",
             "time": _rounded(contacts.start[n]), "end": _rounded(contacts.end[n]),
-            "agent": agent, "with": kind.name.lower(), "partner": partner,
+            "agent": agent, "with": kind.name.lower(), "partner": partner, "text": text,
             "charged": bool(contacts.charged[n]),
         })  # fmt: skip
     for agent in range(len(world.agents)):
@@ -112,12 +114,13 @@ def _mirrored(contacts: Contacts) -> list[bool]:
 
 def _agents(episode: Episode) -> dict[str, Any]:
     agents, names = episode.world.agents, episode.world.teams
-    success = analyse(episode).success
+    found = analyse(episode)
     return {
         "radius": _numbers(agents.radius), "team": agents.team.tolist(), "teams": list(names),
         "goal": _numbers(agents.goal), "evaluated": agents.evaluated.tolist(),
-        "success": success.tolist(),
-        "leaves": analyse(episode).trajectories.leaves.tolist(),
+        "success": found.success.tolist(), "end": attempt_ends(episode),
+        "last": found.trajectories.last.tolist(), "leaves": found.trajectories.leaves.tolist(),
+        "colour": [color_number(episode.world, a) for a in range(len(agents))],
     }  # fmt: skip
 
 
