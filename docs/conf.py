@@ -70,6 +70,17 @@ def setup(app: Sphinx) -> None:
     """Connect the handlers that prepare the text of pages and docstrings."""
     app.connect("source-read", _prepare)
     app.connect("autodoc-process-docstring", _adapt, priority=400)  # before napoleon
+    app.connect("build-finished", _add_reports)
+
+
+def _add_reports(app: Sphinx, error: Exception | None) -> None:
+    """Unpack the reports of docs/leaderboard beside the pages that name them."""
+    if error is not None or app.builder.format != "html":
+        return
+    from studies.reference_run import unpack_report
+
+    for archive in DOCS.glob("leaderboard/*-report.tar.xz"):
+        unpack_report(archive, Path(app.outdir, "leaderboard"))
 
 
 def _adapt(app: Sphinx, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:

@@ -6,6 +6,8 @@ on), packs it beside itself, and writes into docs/leaderboard:
 * ``standard-1.md``: the page, with the tables over all scenarios;
 * ``standard-1.csv``: every record of the leaderboard, by the metrics of the page;
 * ``standard-1.json``: salt, hashes, versions, the pack's sha256, the digest of every episode;
+* ``standard-1-report.tar.xz``: its report with a few replays, without the files of libraries;
+  the documentation site shows it;
 * ``standard-1-sample.bnrun``: a few of its scenarios with one seed, verified here and in CI.
 """
 
@@ -14,6 +16,8 @@ import csv
 import io
 import json
 import os
+import shutil
+import tarfile
 from collections.abc import Iterator
 from datetime import datetime
 from pathlib import Path
@@ -23,7 +27,10 @@ from typing import Any
 import pyarrow.parquet as pq
 
 from benchnav.api.output.messages import message
+from benchnav.api.records.run import open_run
 from benchnav.leaderboard.from_runs import stored_values
+from benchnav.report.page import ASSETS
+from benchnav.report.shared_files import LIBRARIES, write_libraries
 from benchnav.runner.execute.progress import progress
 from benchnav.runner.plan.suite import Selection, load_suite
 from benchnav.runner.run import run_suite
@@ -40,6 +47,7 @@ SEEDS = 10
 SALT = "0123456789abcdef0123456789abcdef"  # public, so that the run can be repeated
 METRICS = ("success", "collided", "spl")
 SAMPLE = ("circle/antipodal:agents=8", "leaders/dynamic", "trap/u")
+REPLAYS = 10  # in the report
 DIGITS = 16  # of a digest that is kept
 
 
@@ -140,6 +148,9 @@ def page(run: RunFolder, summary: dict[str, Any], rows: list[dict[str, str]], no
                 ["`benchnav verify`", f"of the sample: {summary['verified']}"],
             ],
         ),
+        f'The <a href="{name}-report/index.html">report of the run</a> (on the documentation site)'
+        " shows every scenario and navigator, any two navigators compared, and failures.",
+        "",
         *_how(name, summary),
         "## Over all scenarios",
         "",
@@ -204,6 +215,30 @@ def _percent(text: str) -> str:
     return f"{100 * float(text):.0f}" if text not in ("", "nan") else "–"
 
 
+def keep_report(run: RunFolder, out: Path) -> None:
+    """Write the report to the archive ``out``: equal pages make equal bytes."""
+    with TemporaryDirectory() as folder, tarfile.open(out, "w:xz") as archive:
+        report = Path(folder) / "report"
+        with open_run(run.path) as opened:
+            opened.report(report, replays=REPLAYS)
+        for path in sorted(report.rglob("*")):
+            if path.is_file() and path.name not in LIBRARIES:
+                facts = tarfile.TarInfo(path.relative_to(report).as_posix())
+                facts.size = path.stat().st_size
+                with path.open("rb") as file:
+                    archive.addfile(facts, file)
+
+
+def unpack_report(archive: Path, folder: Path) -> Path:
+    """Unpack an archive of `keep_report` into a new folder in ``folder``, and complete it."""
+    report = folder / archive.name.removesuffix(".tar.xz")
+    shutil.rmtree(report, ignore_errors=True)
+    with tarfile.open(archive) as packed:
+        packed.extractall(report, filter="data")
+    write_libraries(report / ASSETS)
+    return report
+
+
 def keep_sample(out: Path, every: dict[str, Any]) -> str:
     """Run the sample, see that it is one, verify it, pack it to ``out``; the verdict in words."""
     with TemporaryDirectory() as folder:
@@ -239,6 +274,7 @@ def main() -> None:
     name = f"{run.manifest.suite['name']}-{run.manifest.suite['version']}"
     options.out.mkdir(parents=True, exist_ok=True)
     summary["verified"] = keep_sample(options.out / f"{name}-sample{SUFFIX}", summary["digests"])
+    keep_report(run, options.out / f"{name}-report.tar.xz")
     (options.out / f"{name}.csv").write_text(text, encoding="utf-8")
     (options.out / f"{name}.json").write_text(
         json.dumps(summary, indent=1) + "\n", encoding="utf-8"

@@ -12,6 +12,7 @@ from benchnav.viewer.replay.page import ASSETS as REPLAY_ASSETS
 from benchnav.viewer.replay.page import asset as replay_asset
 
 PLOTLY = ("plotly", "package_data/plotly.min.js")
+LIBRARIES = ("plotly.min.js", "datatables.js")  # the files that they become
 DATATABLES = ("itables", "html/dt_bundle.js")
 
 
@@ -30,6 +31,14 @@ def write_assets(folder: Path) -> None:
         (folder / path.name).write_bytes(path.read_bytes())
     for name in REPLAY_ASSETS:
         (folder / name).write_text(replay_asset(name), encoding="utf-8")
+    write_libraries(folder)
+
+
+def write_libraries(folder: Path) -> None:
+    """Write the files of libraries, `LIBRARIES`, into ``folder``.
+
+    Raises OSError if the disk refuses.
+    """
     (folder / "plotly.min.js").write_bytes(_library(*PLOTLY).read_bytes())
     # Browsers refuse to import a module from disk, but they import one from a data address.
     module = base64.b64encode(_library(*DATATABLES).read_bytes()).decode("ascii")

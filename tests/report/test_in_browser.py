@@ -1,8 +1,11 @@
 """A report in a real browser: its pages load, sort, filter and play, and ask for no other host."""
 
+from pathlib import Path
+
 import pytest
 
 from benchnav.report.page import FAILURES, LEADERBOARD, replay_path, scenario_path
+from studies.reference_run import unpack_report
 from tests.report.conftest import EVIL
 from tests.viewer.browser import DESKTOP, PHONE, from_disk, in_site, needs_chromium
 
@@ -104,3 +107,11 @@ def test_it_opens_from_disk(report, tmp_path):
     assert 'data-tables="ready"' in from_disk(report / LEADERBOARD, tmp_path)
     page = replay_path("straight-line", "trap/u@1", "known", 0)
     assert 'data-ready="true"' in from_disk(report / page, tmp_path)
+
+
+def test_the_report_of_the_reference_run_loads(tmp_path):
+    archive = Path(__file__).parents[2] / "docs/leaderboard/standard-1-report.tar.xz"
+    report = unpack_report(archive, tmp_path / "site")
+    replay = sorted((report / "replays").glob("*.html"))[0]
+    for page in [*pages(report), str(replay.relative_to(report))]:
+        in_site(report, page, "return document.title;", tmp_path, DESKTOP)
