@@ -159,6 +159,17 @@ def cache_base() -> UserFolder:
     return UserFolder(user_cache().path, f"NUMBA_CACHE_DIR={requested} cannot be used ({cause})")
 
 
+def compiled_since(moment: float) -> int:
+    """Return how many kernels were put into the cache after ``moment`` [s since 1970]."""
+    base = cache_base().path
+    found = base.glob("kernels-*/*.kernel") if base is not None else ()
+    times = (path.stat().st_mtime for path in found)
+    try:
+        return sum(time >= moment for time in times)
+    except OSError:  # another process removes an old folder
+        return 0
+
+
 def _remove_old(base: Path) -> None:
     """Remove kernel folders that were not used for a month."""
     for folder in base.glob("kernels-*"):

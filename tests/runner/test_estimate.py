@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 
+from benchnav.runner.execute import progress
 from benchnav.runner.execute.progress import UNKNOWN, Lines
 from benchnav.runner.plan.estimate import Estimate, Load
 
@@ -123,3 +124,15 @@ def test_without_tasks_episodes_are_counted(capsys):
     clock.now = 10.0
     lines.advance(5)
     assert capsys.readouterr().err == "15 of 20 episodes, about 10 s left\n"
+
+
+def test_compilation_at_the_first_run_is_told(monkeypatch):
+    clock, compiled = [0.0], [0]
+    monkeypatch.setattr(progress, "compiled_since", lambda moment: compiled[0])
+    shown = Lines(clock=lambda: clock[0])
+    shown.begin(40, 0)
+    assert shown.left() == UNKNOWN
+    clock[0] = 5.0
+    assert shown.left() == UNKNOWN
+    compiled[0] = 7
+    assert shown.left() == "compiling kernels, once per version: 7 so far"

@@ -8,11 +8,13 @@ import pytest
 
 from benchnav.api.records.run import open_run
 from benchnav.errors import CorruptPartError
+from benchnav.store.packs.unpack import opened
 from benchnav.store.runs import checked_json
 from benchnav.store.runs.manifest import SCHEMA, Manifest, load_manifest, parse_manifest
 from benchnav.store.runs.run_folder import RunFolder
+from benchnav.verify.verify import Wanted, verify
 
-SAMPLE = Path(__file__).parents[2] / "docs" / "leaderboard" / "standard-1-sample.bnrun"
+OLD_RUN = Path(__file__).with_name("run-of-0.1.0.bnrun")
 SUITE = {
     "name": "own", "version": 1, "split": "test", "seeds": [0, 4], "tracks": ["known"],
     "scenarios": [{"scenario": "a/b@1", "hash": "f" * 16, "says": {"title": "x"}, "files": {}}],
@@ -80,6 +82,15 @@ def test_both_keys_are_refused(tmp_path):
 
 
 def test_a_published_pack_is_read():
-    run = open_run(SAMPLE)
+    run = open_run(OLD_RUN)
     assert run.folder.manifest.schema < SCHEMA
     assert all(entry["config"]["type"] for entry in run.folder.manifest.suite["navigators"])
+
+
+@pytest.mark.slow
+def test_a_published_pack_is_verified_and_ranked():
+    with opened(OLD_RUN) as folder:
+        report = verify(folder, Wanted(twin=1), workers=0)
+        assert report.findings == []
+        assert report.counts["episodes"] > 50
+    assert "orca" in open_run(OLD_RUN).leaderboard().to_markdown()

@@ -13,7 +13,6 @@ from benchnav.store.runs import provenance
 from benchnav.store.runs.manifest import MANIFEST, load_manifest
 from benchnav.store.runs.run_folder import RunFolder
 
-ROOT = Path(__file__).parents[2]
 MADE = {"commit": "a" * 40, "dirty": True, "processor": "A CPU", "command": "benchnav run quick"}
 
 
@@ -63,7 +62,7 @@ def test_other_values_are_refused_with_key(tools, run, key, value):
 
 
 def test_runs_of_0_1_have_none():
-    with opened(ROOT / "docs" / "leaderboard" / "standard-1-sample.bnrun") as folder:
+    with opened(Path(__file__).with_name("run-of-0.1.0.bnrun")) as folder:
         assert folder.manifest.versions["benchnav"] == "0.1.0"
         assert folder.manifest.provenance == {}
         assert provenance.sentence(folder.manifest.provenance) == ""

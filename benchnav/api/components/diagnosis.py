@@ -42,6 +42,7 @@ _EXTRAS = {
         "mcap-protobuf-support": "mcap_protobuf",
         "foxglove-schemas-protobuf": "foxglove_schemas_protobuf",
     },
+    "report": {"itables": "itables", "Jinja2": "jinja2", "plotly": "plotly"},
     "rerun": {"rerun-sdk": "rerun"},
     "ray": {"ray": "ray"},
 }  # extra → package → module

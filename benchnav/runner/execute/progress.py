@@ -2,13 +2,15 @@
 
 import sys
 from collections.abc import Callable, Hashable, Iterable
-from time import monotonic
+from time import monotonic, time
 from typing import Any
 
+from benchnav.kernels import compiled_since
 from benchnav.runner.plan.estimate import Estimate, Load
 from benchnav.text.plural import counted
 
 UNKNOWN = "estimating the time left"
+_AT_ONCE = 3.0  # [s] in which compiled kernels are loaded
 EPISODE = "episode"
 
 
@@ -47,6 +49,7 @@ class _Shown(Progress):
     def begin(self, total: int, stored: int) -> None:
         self._total, self._stored, self._done = total, stored, stored
         self._began, self._by_load = self._clock(), False
+        self._moment = time()
 
     def expect(self, loads: Iterable[Load]) -> None:
         self._by_load = True
@@ -66,14 +69,20 @@ class _Shown(Progress):
         self._done += episodes
 
     def left(self) -> str:
-        """Return a text like ``about 40 s left``, or `UNKNOWN`."""
+        """Return a text like ``about 40 s left``, or what is done before that is known."""
         if self._by_load:
             seconds = self._estimate.left()
         else:
             fresh = self._done - self._stored
             elapsed = self._clock() - self._began
             seconds = elapsed / fresh * (self._total - self._done) if fresh else None
-        return UNKNOWN if seconds is None else f"about {_span(seconds)} left"
+        return self._beginning() if seconds is None else f"about {_span(seconds)} left"
+
+    def _beginning(self) -> str:
+        if self._clock() - self._began < _AT_ONCE:
+            return UNKNOWN
+        compiled = compiled_since(self._moment)
+        return f"compiling kernels, once per version: {compiled} so far" if compiled else UNKNOWN
 
 
 class Bar(_Shown):
