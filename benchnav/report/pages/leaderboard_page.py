@@ -9,7 +9,7 @@ from itertools import groupby
 
 from benchnav.leaderboard.columns import choose
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Record
-from benchnav.leaderboard.rendering.cell import cell, rank, training
+from benchnav.leaderboard.rendering.cell import Cell, column, rank, training
 from benchnav.leaderboard.rendering.layout import legend
 from benchnav.leaderboard.statistics.order import by_merit, leading
 from benchnav.report.analysis.view import ROLES
@@ -139,7 +139,9 @@ def _rows(data: ReportData, group: Sequence[Record], is_unique: bool) -> Iterato
     lead = leading(group, held)
     scales = {name: _scale(data, [r for r in group if r.metric == name]) for name in held}
     decided = {r.metric for r in group if (r.rank_low or 0) > 1}
-    for navigator in by_merit({r.navigator: r for r in group if r.metric == lead}):
+    ordered = by_merit({r.navigator: r for r in group if r.metric == lead})
+    texts = {m: column([at.get((name, m)) for name in ordered], decided=m in decided) for m in held}
+    for place, navigator in enumerate(ordered):
         r = at[navigator, lead]
         whole = r.scenario == ALL
         yield Row(
@@ -151,7 +153,10 @@ def _rows(data: ReportData, group: Sequence[Record], is_unique: bool) -> Iterato
             rank=rank(r).text if r.episodes else r.note,
             rank_order=_LAST if r.rank_low is None else r.rank_low,
             cells=tuple(
-                _cell(at.get((navigator, m)), scales.get(m), m in decided) for m in data.metrics
+                _cell(at[navigator, m], texts[m][place], scales[m])
+                if (navigator, m) in at
+                else MetricCell("", "", _LAST, False, None)
+                for m in data.metrics
             ),
             training=training(r).text,
             notes=tuple(_notes([at[navigator, m] for m in held if (navigator, m) in at], r)),
@@ -175,11 +180,10 @@ def _scale(data: ReportData, records: Sequence[Record]) -> tuple[float, float]:
     return min([0.0, *ends]), max([0.0, *ends])
 
 
-def _cell(r: Record | None, scale: tuple[float, float] | None, decided: bool) -> MetricCell:
-    if r is None or scale is None or not r.episodes or math.isnan(r.value):
-        missing = -_LAST if r is not None and r.better == "higher" else _LAST
-        return MetricCell("–" if r is not None and r.episodes else "", "", missing, False, None)
-    shown = cell(r, interval=True, decided=decided)
+def _cell(r: Record, shown: Cell, scale: tuple[float, float]) -> MetricCell:
+    if not r.episodes or math.isnan(r.value):
+        missing = -_LAST if r.better == "higher" else _LAST
+        return MetricCell("–" if r.episodes else "", "", missing, False, None)
     low, high = (r.value, r.value) if math.isnan(r.low) else (r.low, r.high)
     bar = _interval(low, high, r.value, scale)
     return MetricCell(*_split(shown.text), r.value, shown.bold, bar)
