@@ -12,7 +12,8 @@ from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Record
 from benchnav.leaderboard.rendering.cell import Cell, column, rank, training
 from benchnav.leaderboard.rendering.layout import legend
 from benchnav.leaderboard.statistics.order import by_merit, leading
-from benchnav.report.analysis.view import ROLES
+from benchnav.report.analysis.best import Best, best_of, more_seeds
+from benchnav.report.analysis.view import ROLES, title_of, views_of
 from benchnav.report.line_style import LineStyle
 from benchnav.report.page import LEADERBOARD, Page
 from benchnav.report.report_data import ReportData, family_of
@@ -67,6 +68,7 @@ class Row:
 def pages(data: ReportData) -> Iterator[Page]:
     """Yield the page."""
     rows = tuple(leaderboard_rows(data))
+    best = list(_best(data))
     usual = choose(data.metrics, None)
     known = data.values.metrics
     body = fill(
@@ -83,7 +85,8 @@ def pages(data: ReportData) -> Iterator[Page]:
             ("scenario", "Scenario", list(dict.fromkeys(r.scenario for r in rows)), 0),
             ("role", "Role", [role for role in ROLES if role in {r.role for r in rows}], 0),
         ],
-        has_training=any(r.training for r in rows), has_notes=any(r.notes for r in rows),
+        has_training=any(r.training for r in rows),
+        best=best, more=list(more_seeds(data.folders)) if any(b.is_tied for _, b in best) else (),
         summary=_summary(data), verification=_verification(data),
         any_verified=any(r.is_verified for r in rows),
     )  # fmt: skip
@@ -113,14 +116,33 @@ def _verification(data: ReportData) -> str:
 
 def leaderboard_rows(data: ReportData) -> Iterator[Row]:
     """Yield the rows, the mean over scenarios first, the best navigator of each group first."""
+    groups = _groups(data)
+    names = [_names(group[0]) for group in groups]
+    for group, name in zip(groups, names, strict=True):
+        yield from _rows(data, group, is_unique=names.count(name) == 1)
+
+
+def _groups(data: ReportData) -> list[list[Record]]:
+    """Return the records that are ranked together; those over all scenarios first in a track."""
     records = [r for r in data.board.records if r.track != PRICE]
     records = [r for r in records if r.scenario != ALL_INTERQUARTILE]
     order = {track: place for place, track in enumerate(data.tracks)}
     records.sort(key=lambda r: (r.split, order.get(r.track, len(order)), r.scenario != ALL))
-    groups = [list(group) for _, group in groupby(records, key=_key)]
-    names = [_names(group[0]) for group in groups]
-    for group, name in zip(groups, names, strict=True):
-        yield from _rows(data, group, is_unique=names.count(name) == 1)
+    return [list(group) for _, group in groupby(records, key=_key)]
+
+
+def _best(data: ReportData) -> Iterator[tuple[str, Best]]:
+    """Yield the title of each view and its best navigators, over all scenarios or in its first."""
+    groups = _groups(data)
+    views = views_of(r for group in groups for r in group)
+    for view in views:
+        group = next(group for group in groups if view.holds(group[0]))
+        lead = leading(group, [m for m in data.metrics if any(r.metric == m for r in group)])
+        leaders = {r.navigator: r for r in group if r.metric == lead}
+        best = best_of([leaders[name] for name in by_merit(leaders)])
+        if best is not None:
+            where = "" if group[0].scenario == ALL else f", {group[0].scenario}"
+            yield f"{title_of(view, views)}{where}", best
 
 
 def _key(r: Record) -> tuple[object, ...]:

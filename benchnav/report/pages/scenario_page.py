@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.record import Record
@@ -110,9 +111,13 @@ class _Scenario:
         """The obstacles and walls that are the same in all stored worlds."""
         return fixed_obstacles(self.scenario.worlds) if self.scenario.worlds else set()
 
+    @property
+    def _path(self) -> PurePosixPath:
+        return scenario_path(self.scenario.identity)
+
     def page(self) -> Page:
         """Return the page of the scenario."""
-        path = scenario_path(self.scenario.identity)
+        path = self._path
         config = self.scenario.config
         body = fill(
             "scenario.html",
@@ -176,9 +181,7 @@ class _Scenario:
         figures += self._parameters(view, where)
         shown = [m for m in self.data.metrics if m in self.data.values.metrics][:SHOWN]
         chosen = [r for r in self.records if view.holds(r)]
-        return figures, metric_table(
-            scenario_path(self.scenario.identity), chosen, shown, self.data
-        )
+        return figures, metric_table(self._path, chosen, shown, self.data)
 
     @cached_property
     def _horizon(self) -> HorizonCurves:
