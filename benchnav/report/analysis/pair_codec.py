@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from benchnav.leaderboard.record import ALL
+from benchnav.leaderboard.rendering.digits import RATE_DECIMALS
 from benchnav.leaderboard.statistics.comparison import Comparison, least_worlds
 from benchnav.leaderboard.statistics.head_to_head import Duel
 from benchnav.metrics.metric import Metric
@@ -58,5 +59,5 @@ def metric_fields(metric: Metric) -> Mapping[str, Any]:
     among = ", among agents that arrive" if metric.conditional else ""
     return {
         "name": metric.name, "title": f"{metric.title}{among}", "better": metric.better,
-        "unit": metric.unit,
+        "unit": metric.unit, "decimals": RATE_DECIMALS if metric.rate else 0,
     }  # fmt: skip

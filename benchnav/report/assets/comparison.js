@@ -61,13 +61,14 @@
     return parts.join(", ");
   }
 
-  /** Return the decimals that the narrowest interval of some rows resolves. */
+  /** Return the decimals that the narrowest interval of some rows of one metric resolves. */
   function placesOf(rows) {
     const halves = rows.map((row) => (row.high - row.low) / 2).filter((half) => half > 0);
-    if (!halves.length) return 2;
+    const least = rows[0]?.metric.decimals ?? 0;
+    if (!halves.length) return Math.max(2, least);
     const half = Math.min(...halves);
     const power = Math.floor(Math.log10(half));
-    return Math.min(Math.max(0, (half / 10 ** power < 3 ? 1 : 0) - power), 9);
+    return Math.min(Math.max(least, (half / 10 ** power < 3 ? 1 : 0) - power), 9);
   }
 
   /** Return a number with a sign. */
