@@ -37,7 +37,7 @@ def number(value: float, whole: float | None = None) -> str:
     if not SMALLEST <= size < LARGEST:
         return f"{value:.1e}"
     power = _power(size)
-    places = max(0, 2 - max(power, 0)) if power >= -1 else 1 - power
+    places = _places_alone(power)
     if whole is not None and size <= whole:
         if whole - size <= ROUNDING * whole:
             return f"{value:.0f}"
@@ -105,7 +105,7 @@ def aligned(
     if most >= LARGEST or most > 10.0**MOST_FIGURES * least:
         return None
     widths = [high - low for _, low, high in rows if high - low > NARROWEST * most]
-    places = max(map(_places, widths)) if widths else max(0, 2 - max(_power(least), 0))
+    places = max(map(_places, widths)) if widths else _places_alone(_power(least))
     if whole is not None:
         places = max(places, RATE_DECIMALS)
     grid = _Grid(min(places, max(0, MOST_FIGURES - 1 - _power(most))), whole)
@@ -128,6 +128,11 @@ def signed(text: str) -> str:
 def _power(x: float) -> int:
     """Return the power of ten of the first figure."""
     return math.floor(math.log10(abs(x)))
+
+
+def _places_alone(power: int) -> int:
+    """Return the number of decimals of a number without an interval."""
+    return max(0, 2 - max(power, 0)) if power >= -1 else 1 - power
 
 
 def _places(width: float) -> int:
