@@ -49,8 +49,8 @@ def test_two_menus_choose_a_pair(report, run, tmp_path):
 
 def test_notes_are_those_of_the_chosen_track(report, tmp_path):
     notes = in_site(report, str(COMPARISON), SETUP + """
-      choose("first", "straight-line");
       choose("second", "visibility+orca");
+      choose("first", "straight-line");
       const found = {};
       for (const track of ["known", "unknown"]) {
         choose("track", track);
