@@ -106,6 +106,8 @@ def aligned(
         return None
     widths = [high - low for _, low, high in rows if high - low > NARROWEST * most]
     places = max(map(_places, widths)) if widths else _places_alone(_power(least))
+    if whole is not None and most > whole * (1 + ROUNDING):
+        whole = None
     if whole is not None:
         places = max(places, RATE_DECIMALS)
     grid = _Grid(min(places, max(0, MOST_FIGURES - 1 - _power(most))), whole)
