@@ -154,5 +154,5 @@ def test_numbers_of_a_column_have_equal_decimals():
     ]  # fmt: skip
     nan = math.nan
     assert aligned([(675.1, nan, nan), (57.7, nan, nan)]) == [("675.1",), ("57.7",)]
-    assert aligned([(0.999, nan, nan), (12.0, nan, nan)], 1.0) == [("0.999",), ("12.000",)]
+    assert aligned([(0.999, nan, nan), (12.0, nan, nan)], 1.0) == [("1.00",), ("12.00",)]
     assert aligned([(0.002, 0.001, 0.003), (9e8, 8e8, 1e9)]) is None
