@@ -10,7 +10,10 @@ PAPER = """\
   author  = {Sun, L. and Zhai, J. and Qin, W.},
   journal = {IEEE Access},
   year    = {2019},
+  url     = {https://doaj.org/article/0dcb806d76a14c07bb197d938fe8f173},
 }"""
+OF_PAPER = ("recurrent-ppo", "recurrent-ppo-plus", "guided-crowd")
+"""The navigators that follow the paper."""
 
 
 def software(year: str) -> str:

@@ -68,7 +68,7 @@ def _worst(results: pa.Table, metric: str, *, lowest: bool) -> defaultdict[Cell,
 def choose_replays(failures: Iterable[Failures], most: int) -> list[Failures]:
     """Return at most ``most`` cells whose first failed episode gets a replay.
 
-    Navigators, scenarios and tracks get equal shares, as far as they have failures.
+    They are spread evenly over the navigators, scenarios and tracks that have failures.
     """
     left = list(failures)
     count: Counter[tuple[str, str]] = Counter()

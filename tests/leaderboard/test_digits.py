@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from benchnav.leaderboard.rendering.digits import (
     LARGEST,
     NARROWEST,
+    aligned,
     figure,
     figures,
     number,
@@ -143,3 +144,15 @@ def test_a_rate_without_an_interval_is_1_only_if_it_is(value):
 )  # fmt: skip
 def test_differences_have_a_sign(text, shown):
     assert signed(text) == shown
+
+
+def test_numbers_of_a_column_have_equal_decimals():
+    rows = [(0.417, 0.1, 0.7), (0.708, 0.34, 0.95), (0.125, 0.003, 0.548), (0.0, 0.0, 0.5)]
+    assert aligned(rows, 1.0) == [
+        ("0.42", "0.10", "0.70"), ("0.71", "0.34", "0.95"), ("0.12", "<0.01", "0.55"),
+        ("0", "0", "0.50"),
+    ]  # fmt: skip
+    nan = math.nan
+    assert aligned([(675.1, nan, nan), (57.7, nan, nan)]) == [("675.1",), ("57.7",)]
+    assert aligned([(0.999, nan, nan), (12.0, nan, nan)], 1.0) == [("1.00",), ("12.00",)]
+    assert aligned([(0.002, 0.001, 0.003), (9e8, 8e8, 1e9)]) is None

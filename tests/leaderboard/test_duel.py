@@ -13,6 +13,8 @@ from hypothesis import strategies as st
 from benchnav.errors import UsageError
 from benchnav.leaderboard import NotApplicable, comparisons
 from benchnav.leaderboard.rendering.prose import render_duel
+from benchnav.leaderboard.statistics.comparison import least_worlds
+from benchnav.leaderboard.statistics.difference import least_p
 from benchnav.leaderboard.statistics.head_to_head import duel
 from benchnav.leaderboard.statistics.significance import holm
 from tests.leaderboard.tables import METRICS, scores, simulated, table
@@ -184,3 +186,9 @@ def test_wrong_wishes_are_refused():
     other = scores({"a": GOOD}, horizon=9.0) + scores({"b": GOOD})
     with pytest.raises(UsageError, match="ran other worlds"):
         met(other, "a", "b")
+
+
+@pytest.mark.parametrize("family", [1, 12, 400])
+def test_fewer_worlds_than_the_least_show_no_difference(family):
+    worlds = least_worlds(family)
+    assert family * least_p(worlds) < 0.05 <= family * least_p(worlds - 1)

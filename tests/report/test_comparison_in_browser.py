@@ -34,24 +34,39 @@ def test_two_menus_choose_a_pair(report, run, tmp_path):
       };
     """, tmp_path, PHONE)  # fmt: skip
     assert found["menus"] == ["visibility+orca", "straight-line"]
-    assert found["command"] == "benchnav compare RUN visibility+orca straight-line"
+    assert found["command"] == f"benchnav compare {run.path} visibility+orca straight-line"
     assert found["address"] == "visibility+orca"
     assert found["figures"] >= 4
     assert found["wide"] <= 0
     compared = run.compare("straight-line", "visibility+orca").records
     difference = {c.scenario: c.difference for c in compared if c.metric == "success"}
     for row, mirrored in zip(found["one"], found["other"], strict=True):
-        wanted = 100 * difference["all" if row[0] == "all scenarios" else row[0]]
+        wanted = difference["all" if row[0] == "all scenarios" else row[0]]
         value, turned = (float(each[2].split()[0].replace("−", "-")) for each in (row, mirrored))
-        assert value == pytest.approx(wanted, abs=1.0)
+        assert value == pytest.approx(wanted, abs=0.01)
         assert turned == -value
 
 
-def test_a_label_that_tries_to_be_markup_is_text(report, tmp_path):
+def test_notes_are_those_of_the_chosen_track(report, tmp_path):
+    notes = in_site(report, str(COMPARISON), SETUP + """
+      choose("second", "visibility+orca");
+      choose("first", "straight-line");
+      const found = {};
+      for (const track of ["known", "unknown"]) {
+        choose("track", track);
+        found[track] = document.getElementById("notes").textContent;
+      }
+      return found;
+    """, tmp_path)  # fmt: skip
+    assert notes["known"] == ""
+    assert "visibility+orca needs a map" in notes["unknown"]
+
+
+def test_a_label_that_tries_to_be_markup_is_text(report, run, tmp_path):
     found = in_site(report, str(COMPARISON), SETUP + f"""
       choose("second", "straight-line");
       choose("first", {EVIL!r});
       const images = document.querySelectorAll("img").length;
       return [images, document.getElementById("command").textContent];
     """, tmp_path)  # fmt: skip
-    assert found == [0, f"benchnav compare RUN '{EVIL}' straight-line"]
+    assert found == [0, f"benchnav compare {run.path} '{EVIL}' straight-line"]

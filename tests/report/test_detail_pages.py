@@ -2,13 +2,15 @@
 
 import json
 import re
+from html import escape
 
 import pytest
 
 import benchnav
+from benchnav.drawing.palette import NAVIGATORS, TEAMS
 from benchnav.leaderboard.from_runs import stored_values
-from benchnav.leaderboard.rendering.cell import cell
-from benchnav.report.page import COMPARISON, navigator_path, scenario_path
+from benchnav.leaderboard.rendering.cell import column
+from benchnav.report.page import COMPARISON, SCENARIOS, navigator_path, scenario_path
 from benchnav.report.pages import comparison_page, navigator_page, scenario_page
 from benchnav.report.report_data import read_runs
 from tests.report.conftest import EVIL, ODD
@@ -45,11 +47,10 @@ def test_a_scenario_page_shows_its_worlds_results_and_failures(bodies, run):
     assert text.count("<h2 id=") == 2  # tracks
     assert len(figures(text)) >= 6
     success = [r for r in run.leaderboard().records if r.metric == "success"]
-    (record,) = (
-        r for r in success
-        if (r.navigator, r.scenario, r.track) == ("visibility+orca", "trap/u@1", "known")
-    )  # fmt: skip
-    assert cell(record, interval=True, decided=False).text in text
+    shown = [r for r in success if (r.scenario, r.track) == ("trap/u@1", "known")]
+    for each in column(shown, decided=False):
+        assert escape(each.text) in text
+    (record,) = (r for r in shown if r.navigator == "visibility+orca")
     (dot,) = (t for t in traces(text, "scatter") if t["y"] == ["visibility+orca"])
     assert dot["x"] == [pytest.approx(record.value)]
 
@@ -77,6 +78,21 @@ def test_obstacles_that_were_hit_are_named_and_numbered(bodies):
     assert any("static obstacle 1" in t["y"] for t in traces(text, "bar"))
     assert ">1</text>" in text
     assert "<title>straight-line: static obstacle 1, " in text
+
+
+def test_a_picture_has_the_colours_of_navigators_only_in_its_crosses(bodies):
+    for path in (SCENARIOS, scenario_path("trap/u@1"), scenario_path("odd@1")):
+        pictures = re.findall(r"<svg.*?</svg>", bodies[path], re.DOTALL)
+        assert pictures
+        for picture in pictures:
+            bare = re.sub(r"<path[^>]*><title>.*?</path>", "", picture)
+            assert not {color for color in (*NAVIGATORS, *TEAMS) if color in bare}
+
+
+def test_the_table_of_a_scenario_links_its_navigators(bodies):
+    text = SCRIPTS.sub("", bodies[scenario_path("trap/u@1")])
+    name = navigator_path("straight-line").name
+    assert f'href="../navigators/{name}">straight-line</a>' in text
 
 
 def test_a_navigator_page_has_its_profile_price_cost_and_configuration(bodies):

@@ -102,6 +102,12 @@ def test_numbers_are_those_of_the_leaderboard(report, run):
     assert row[5].startswith(f"{record.value:.0f}")
 
 
+def test_the_leaderboard_names_the_best_and_a_command_for_more_worlds(report, run):
+    text = (report / LEADERBOARD).read_text(encoding="utf-8")
+    assert "Track known: no navigator is separated from the others in success by these 4" in text
+    assert f"benchnav run small --out {run.path} --seeds 8" in text
+
+
 def test_a_failure_without_a_replay_has_its_command(run, tmp_path):
     folder = run.report(tmp_path / "report", replays=1, quiet=True).parent
     assert len(list((folder / "replays").iterdir())) == 1
@@ -123,7 +129,10 @@ def test_a_page_says_where_the_numbers_come_from(report, run):
     manifest = run.folder.manifest
     for fact in (manifest.salt, manifest.suite_hash, manifest.created, manifest.platform):
         assert fact in text
-    assert "@software{benchnav," in text
+    assert f"benchnav verify {run.path}" in text
+    entries = re.findall(r'<pre class="copied">(.*?)</pre>', text, re.DOTALL)
+    year = entries[0].partition("year    = {")[2][:4]
+    assert entries == [citation.software(year), citation.PAPER]
     assert "not verified on the machine" in text
 
 
@@ -138,6 +147,8 @@ def test_citations_agree_with_the_citation_file():
     names = (f"{a['family-names']}, {a['given-names']}" for a in reference["authors"])
     assert " and ".join(names) in paper
     assert reference["journal"] in paper
+    assert reference["url"] in paper
+    assert all(name in cff["message"] for name in citation.OF_PAPER)
 
 
 def test_a_verified_run_is_marked(report, run, tmp_path):

@@ -1,10 +1,11 @@
 """One cell of a table: a number, its interval, and the number of episodes behind it."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from benchnav.leaderboard.record import PRICE, Record
-from benchnav.leaderboard.rendering.digits import figure, figures, number, prefixed, signed
+from benchnav.leaderboard.rendering.digits import aligned, figure, figures, number, prefixed, signed
 from benchnav.text.plural import counted
 
 
@@ -27,6 +28,31 @@ def cell(r: Record | None, *, interval: bool, decided: bool) -> Cell:
     if math.isnan(r.value):
         return Cell("–")
     text, name = _figures(r, interval)
+    return _with_unit(r, text, name, decided)
+
+
+def column(records: Sequence[Record | None], *, decided: bool) -> list[Cell]:
+    """Return the cells of one metric with intervals: one unit and equal decimals, if possible."""
+    alone = [cell(r, interval=True, decided=decided) for r in records]
+    shown = [r for r in records if r is not None and r.episodes and not math.isnan(r.value)]
+    if not shown:
+        return alone
+    unit = shown[0].unit
+    size, name = prefixed(unit, max(abs(r.value) for r in shown))
+    texts = aligned(
+        [(r.value / size, r.low / size, r.high / size) for r in shown], None if unit else 1.0
+    )
+    if texts is None:
+        return alone
+    found = {
+        id(r): _with_unit(r, f"{value} [{', '.join(ends)}]" if ends else value, name, decided)
+        for r, (value, *ends) in zip(shown, texts, strict=True)
+    }
+    return [found.get(id(r), each) for r, each in zip(records, alone, strict=True)]
+
+
+def _with_unit(r: Record, text: str, name: str, decided: bool) -> Cell:
+    """Return a number with its unit, and the number of defining episodes if not all define it."""
     unit = f" {name}" if name else ""
     count = f" ({r.defined})" if r.defined < r.episodes else ""
     return Cell(f"{text}{unit}{count}", decided and r.rank_low == 1)

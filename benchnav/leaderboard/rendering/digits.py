@@ -12,6 +12,8 @@ ROUNDING = 1e-12  # smaller numbers are rounding errors
 NARROWEST = 1e-6  # smallest relative width of an interval that determines the digits
 SMALLEST, LARGEST = 1e-4, 1e6  # numbers outside are written with an exponent
 FIGURES_ALONE = 4  # at most, of a number without its interval
+MOST_FIGURES = 5  # of the largest number of a column of equal decimals
+RATE_DECIMALS = 2  # at least, in a column of rates
 TWO_FIGURES = 3.0  # a half-width with a smaller first figure has a second one
 
 
@@ -35,7 +37,7 @@ def number(value: float, whole: float | None = None) -> str:
     if not SMALLEST <= size < LARGEST:
         return f"{value:.1e}"
     power = _power(size)
-    places = max(0, 2 - max(power, 0)) if power >= -1 else 1 - power
+    places = _places_alone(power)
     if whole is not None and size <= whole:
         if whole - size <= ROUNDING * whole:
             return f"{value:.0f}"
@@ -87,6 +89,35 @@ def figure(value: float, low: float, high: float, whole: float | None = None) ->
     return text if text == "0" else text + suffix
 
 
+def aligned(
+    rows: Sequence[tuple[float, float, float]], whole: float | None = None
+) -> list[tuple[str, ...]] | None:
+    """Return the texts of (value, low, high) of each row, all with equal decimals.
+
+    The narrowest interval determines the decimals. 0 and ``whole`` have none. A row whose bounds
+    are NaN gives only its value. None: the numbers are too different for equal decimals.
+    """
+    values = [abs(row[0]) for row in rows if abs(row[0]) > ROUNDING]
+    sizes = [abs(x) for row in rows for x in row if abs(x) > ROUNDING]
+    if not sizes:
+        return [_texts(_Grid(0, whole), row) for row in rows]
+    least, most = min(values or sizes), max(sizes)
+    if most >= LARGEST or most > 10.0**MOST_FIGURES * least:
+        return None
+    widths = [high - low for _, low, high in rows if high - low > NARROWEST * most]
+    places = max(map(_places, widths)) if widths else _places_alone(_power(least))
+    if whole is not None and most > whole * (1 + ROUNDING):
+        whole = None
+    if whole is not None:
+        places = max(places, RATE_DECIMALS)
+    grid = _Grid(min(places, max(0, MOST_FIGURES - 1 - _power(most))), whole)
+    return [_texts(grid, row) for row in rows]
+
+
+def _texts(grid: "_Grid", row: tuple[float, float, float]) -> tuple[str, ...]:
+    return tuple(grid.bound(0.0 if abs(x) <= ROUNDING else x) for x in row if not math.isnan(x))
+
+
 def signed(text: str) -> str:
     """Return the text of a difference: ``+1.25``, ``−0.5``, ``0``, ``<+0.01``."""
     bare = text.lstrip("<>")
@@ -99,6 +130,11 @@ def signed(text: str) -> str:
 def _power(x: float) -> int:
     """Return the power of ten of the first figure."""
     return math.floor(math.log10(abs(x)))
+
+
+def _places_alone(power: int) -> int:
+    """Return the number of decimals of a number without an interval."""
+    return max(0, 2 - max(power, 0)) if power >= -1 else 1 - power
 
 
 def _places(width: float) -> int:

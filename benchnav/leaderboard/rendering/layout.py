@@ -23,8 +23,8 @@ ABREAST = 5  # navigators side by side in such a table
 LEGEND = (
     "value [low, high]: mean over worlds and its 95 % interval; (n): only n episodes define it."
     " ↑ more is better, ↓ less.",
-    "rank: 1 + entries significantly better – N − entries significantly worse, by the first metric"
-    " that ranks; 1–3 is a tie.",
+    "rank: the places that an entry may have, by the first metric that ranks. 1–3: no entry is"
+    " significantly better, and 2 others tie with it.",
     "Significant: the paired 95 % interval over the worlds excludes 0, after Holm. Scenarios are"
     " fixed: a rank holds for other seeds of these.",
     "Bold: not significantly worse than any other entry; nothing is bold where all tie.",

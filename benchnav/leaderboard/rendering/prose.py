@@ -151,6 +151,6 @@ def _explained(duel: Duel) -> str:
         " often a difference as large would be seen if the true one were 0, by the t-test of the"
         " same interval, adjusted by Holm's procedure for the"
         f" {counted(family, 'comparison')} above as one family. Rarer than once in"
-        " 20 it is called a difference. An interval is not adjusted, so a tie may exclude 0."
+        " 20 it is called a difference. Intervals are not adjusted: one may exclude 0 in a tie."
         " Scenarios are fixed: other seeds may differ, not other scenarios."
     )

@@ -67,6 +67,23 @@ def duels(
         yield Duel(*pair, as_family(comparisons, metrics), tuple(notes))
 
 
+def notes_by_track(
+    results: pa.Table,
+    metrics: Mapping[str, Metric],
+    tracks: Sequence[str],
+    gaps: Sequence[NotApplicable] = (),
+) -> dict[Pair, list[list[str]]]:
+    """Return for every two navigators the notes of `Duel` on each of the tracks alone."""
+    every = strata(results, metrics, mixed=True)
+    navigators = sorted(results["navigator"].unique().to_pylist())
+    found: dict[Pair, list[list[str]]] = {}
+    for pair in combinations(navigators, 2):
+        shared = _strata_of(every, pair)
+        each = ([s for s in shared if s.track == track] for track in tracks)
+        found[pair] = [absences(chosen, *pair, gaps) for chosen in each]
+    return found
+
+
 def _all_comparisons(every: Sequence[Stratum], metrics: Sequence[Metric]) -> dict[Pair, _Found]:
     found: dict[Pair, _Found] = {}
     for s in every:

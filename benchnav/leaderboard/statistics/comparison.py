@@ -60,6 +60,14 @@ def as_family(found: Sequence[Comparison], metrics: Mapping[str, Metric]) -> tup
     return tuple(replace(c, verdict=_verdict(c, metrics.get(c.metric))) for c in judged)
 
 
+def least_worlds(family: int) -> int:
+    """Return the fewest worlds in which one of ``family`` comparisons can show a difference."""
+    worlds = 2
+    while family * least_p(worlds) >= ALPHA:
+        worlds += 1
+    return worlds
+
+
 def _verdict(c: Comparison, metric: Metric | None) -> Verdict:
     """Return the verdict; "too few worlds" if even the largest differences would be a tie."""
     if not c.worlds:

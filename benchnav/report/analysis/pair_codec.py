@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from benchnav.leaderboard.record import ALL
-from benchnav.leaderboard.statistics.comparison import Comparison
+from benchnav.leaderboard.rendering.digits import RATE_DECIMALS
+from benchnav.leaderboard.statistics.comparison import Comparison, least_worlds
 from benchnav.leaderboard.statistics.head_to_head import Duel
 from benchnav.metrics.metric import Metric
 
@@ -26,15 +27,17 @@ class PairCodec:
     metrics: Sequence[str]
     places: dict[Place, int] = field(default_factory=dict)
 
-    def pair(self, duel: Duel) -> dict[str, Any]:
+    def pair(self, duel: Duel, notes: Sequence[Sequence[str]]) -> dict[str, Any]:
         """Return the comparisons of a pair: a list of 8 numbers for each.
 
         These are the indices of metric and place, the number of worlds, the difference, both ends
-        of its interval, p after Holm's correction, and the index of the verdict.
+        of its interval, p after Holm's correction, and the index of the verdict. ``notes`` are
+        those of each track.
         """
         family = max((c.family for c in duel.comparisons), default=0)
         rows = [self._row(c) for c in duel.comparisons]
-        return {"family": family, "notes": list(duel.notes), "rows": rows}
+        needed = least_worlds(family)
+        return {"family": family, "needed": needed, "notes": notes, "rows": rows}
 
     def _row(self, c: Comparison) -> list[float | None]:
         place = "" if c.scenario == ALL else c.scenario, c.track, c.role, c.split
@@ -52,9 +55,9 @@ def rounded(number: float) -> float | None:
 
 
 def metric_fields(metric: Metric) -> Mapping[str, Any]:
-    """Return what the page needs to know of a metric; rates are shown in points."""
+    """Return what the page needs to know of a metric."""
     among = ", among agents that arrive" if metric.conditional else ""
     return {
         "name": metric.name, "title": f"{metric.title}{among}", "better": metric.better,
-        "unit": "points" if metric.rate else metric.unit, "scale": 100 if metric.rate else 1,
+        "unit": metric.unit, "decimals": RATE_DECIMALS if metric.rate else 0,
     }  # fmt: skip

@@ -61,26 +61,29 @@
     return parts.join(", ");
   }
 
-  /** Return a number with a sign, with the decimals that the interval resolves. */
-  function signed(x, width) {
-    const half = width / 2;
-    const power = half > 0 ? Math.floor(Math.log10(half)) : 0;
-    const places = half > 0 ? Math.max(0, (half / 10 ** power < 3 ? 1 : 0) - power) : 2;
-    const text = Math.abs(x).toFixed(Math.min(places, 9));
+  /** Return the decimals that the narrowest interval of some rows of one metric resolves. */
+  function placesOf(rows) {
+    const halves = rows.map((row) => (row.high - row.low) / 2).filter((half) => half > 0);
+    const least = rows[0]?.metric.decimals ?? 0;
+    if (!halves.length) return Math.max(2, least);
+    const half = Math.min(...halves);
+    const power = Math.floor(Math.log10(half));
+    return Math.min(Math.max(least, (half / 10 ** power < 3 ? 1 : 0) - power), 9);
+  }
+
+  /** Return a number with a sign. */
+  function signed(x, places) {
+    const text = Math.abs(x).toFixed(places);
     return Number(text) === 0 ? "0" : `${x < 0 ? "−" : "+"}${text}`;
   }
 
-  /** Return "+4.2 points [+2.9, +5.6]". */
-  function textOf(row) {
+  /** Return "+4.2 s [+2.9, +5.6]". */
+  function textOf(row, places) {
     if (!row.worlds || row.difference === null) return "no common value";
-    const { scale, unit } = row.metric;
-    const name = unit ? ` ${unit}` : "";
-    if (row.low === null) return `${signed(scale * row.difference, 0)}${name}`;
-    const width = scale * (row.high - row.low);
-    const [value, low, high] = [row.difference, row.low, row.high].map((x) =>
-      signed(scale * x, width),
-    );
-    return `${value}${name} [${low}, ${high}]`;
+    const name = row.metric.unit ? ` ${row.metric.unit}` : "";
+    const value = `${signed(row.difference, places)}${name}`;
+    if (row.low === null) return value;
+    return `${value} [${signed(row.low, places)}, ${signed(row.high, places)}]`;
   }
 
   /** Whether a comparison shows a difference. */
@@ -100,7 +103,7 @@
     const shown = rows.filter((row) => row.worlds && row.difference !== null);
     const y = shown.map((row) => plain(placeOf(row, every)));
     const [x, low, high] = ["difference", "low", "high"].map((key) =>
-      shown.map((row) => metric.scale * (row[key] ?? row.difference)),
+      shown.map((row) => row[key] ?? row.difference),
     );
     const marks = shown.map((row) => markOf(row, a, b));
     const reach = 1.08 * Math.max(...[...x, ...low, ...high].map(Math.abs), 0) || 1;
@@ -114,10 +117,11 @@
     }));
     const sides = {
       better: "",
-      higher: `← ${b.shown} better<br>${a.shown} better →`,
-      lower: `← ${a.shown} better<br>${b.shown} better →`,
+      higher: "← B better · A better →",
+      lower: "← A better · B better →",
     };
     const order = [...new Set(y)].reverse();
+    const places = placesOf(shown);
     return {
       data: [
         ...bars,
@@ -132,7 +136,9 @@
             size: 10,
             line: { width: 1.5, color: marks.map((mark) => mark.color) },
           },
-          text: shown.map((row) => `${plain(textOf(row))}<br>${row.verdict}, ${row.worlds} worlds`),
+          text: shown.map(
+            (row) => `${plain(textOf(row, places))}<br>${row.verdict}, ${row.worlds} worlds`,
+          ),
           hovertemplate: "%{y}<br>%{text}<extra></extra>",
         },
       ],
@@ -144,7 +150,7 @@
           range: [-reach, reach],
           zeroline: true,
           title: {
-            text: `${plain(metric.unit || "difference")}<br>${sides[metric.better] ?? ""}`,
+            text: `A − B${metric.unit ? ` [${plain(metric.unit)}]` : ""}<br>${sides[metric.better] ?? ""}`,
             font: { size: 12 },
           },
         },
@@ -220,8 +226,9 @@
     const head = element("tr");
     head.append(element("th", "scenario"), element("th", "worlds", "number"));
     for (const metric of metrics) head.append(element("th", `${metric.name}, A − B`, "number"));
-    const places = [...new Set(rows.map((row) => placeOf(row, rows)))];
-    const body = places.map((place) => {
+    const every = [...new Set(rows.map((row) => placeOf(row, rows)))];
+    const places = metrics.map((metric) => placesOf(rows.filter((row) => row.metric === metric)));
+    const body = every.map((place) => {
       const line = element("tr");
       const cells = metrics.map((metric) =>
         rows.find((row) => row.metric === metric && placeOf(row, rows) === place),
@@ -230,10 +237,10 @@
         element("td", place),
         element("td", String(cells.find((row) => row)?.worlds ?? ""), "number"),
       );
-      for (const row of cells) {
+      for (const [k, row] of cells.entries()) {
         const cell = element(
           "td",
-          row ? textOf(row) : "",
+          row ? textOf(row, places[k]) : "",
           row && isDecided(row) ? "number best" : "number",
         );
         if (row?.worlds) cell.append(element("div", row.verdict, "muted"));
@@ -263,7 +270,8 @@
       const other = menu === first ? second : first;
       for (const option of menu.options) option.disabled = option.value === other.value;
     }
-    const { family, notes: texts, rows } = comparisons(a, b);
+    const { family, needed, notes: noted, rows } = comparisons(a, b);
+    const texts = noted[track.value];
     rows.sort((one, other) => Boolean(one.scenario) - Boolean(other.scenario));
     if (texts.length || !rows.length) {
       const list = element("ul");
@@ -275,9 +283,15 @@
     const shown = rows.filter((row) => row.track === shared.tracks[track.value]);
     drawFigures(shown, shared.navigators[a], shared.navigators[b]);
     drawTable(shown);
-    document.getElementById("family").textContent = family;
-    document.getElementById("command").textContent =
-      `benchnav compare RUN ${quoted(names[a])} ${quoted(names[b])}`;
+    for (const each of document.querySelectorAll(".family")) each.textContent = family;
+    document.getElementById("needed").textContent = needed;
+    document.getElementById("too-few").hidden = !shown.some(
+      (row) => row.verdict === "too few worlds",
+    );
+    document.getElementById("command").textContent = [
+      "benchnav compare",
+      ...[...shared.runs, names[a], names[b]].map(quoted),
+    ].join(" ");
     const state = new URLSearchParams({
       a: names[a],
       b: names[b],

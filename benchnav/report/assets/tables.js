@@ -1,5 +1,7 @@
 // Makes tables of the class "data" sortable, and connects them to the filters above them.
 
+const PHONE = "(max-width: 640px)";
+const FEW = 2; // metrics that are shown at first on a phone
 const ROWS = 50; // a longer table has several pages
 
 /** Show the rows whose data attributes are those of the filters. */
@@ -91,6 +93,11 @@ async function start() {
   for (const element of document.querySelectorAll("table.data")) {
     const rows = element.tBodies[0].rows.length;
     const heads = [...element.tHead.rows[0].cells];
+    if (matchMedia(PHONE).matches)
+      for (const box of boxes(element.id)
+        .filter((each) => each.checked)
+        .slice(FEW))
+        box.checked = false;
     const hidden = new Set(
       boxes(element.id)
         .filter((box) => !box.checked)
@@ -122,4 +129,7 @@ async function start() {
   }
   document.documentElement.dataset.tables = "ready";
 }
+addEventListener("beforeprint", () => {
+  for (const details of document.querySelectorAll("details.notes")) details.open = true;
+});
 start();

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
+from functools import partial
 from html import escape
 from typing import TYPE_CHECKING
 
+from benchnav.arena.solid import Kind
 from benchnav.arena.world import World
+from benchnav.drawing.palette import FILL, INK, PAPER, TEAMS
 from benchnav.report.analysis.episode_summary import Collision
 from benchnav.report.analysis.partner import obstacles_of
 from benchnav.report.line_style import LineStyle
@@ -21,6 +25,8 @@ if TYPE_CHECKING:
 MOST_MARKS = 60  # of one picture
 MARK = 0.012  # half the size of a cross, as a share of the longer side of the arena
 LETTER = 0.05  # the size of numbers, likewise
+HATCH = 0.012  # the distance of the lines in moving obstacles, likewise
+_PAINT = re.compile(r'(fill|stroke)="(#[0-9a-f]{6})"')
 Hit = tuple[str, Collision]
 """A navigator, and the collision of one of its agents."""
 
@@ -43,7 +49,36 @@ def world_picture(
     side = max(x1 - x0, y1 - y0)
     drawn = _first_of_each(hits)[:MOST_MARKS]
     marks = [_mark(*hit, MARK * side, styles[hit[0]].color) for hit in drawn]
-    return Markup(world_svg(world, [*_labels(world, labelled, LETTER * side), *marks]))  # noqa: S704
+    size = f"{HATCH * side:.3g}"
+    scene = _PAINT.sub(
+        partial(_neutral, f"url(#moving-{size})"),
+        world_svg(world, _labels(world, labelled, LETTER * side)),
+    )
+    body = scene.removesuffix("</g></svg>")
+    return Markup(f"{body}{_hatch(size)}{''.join(marks)}</g></svg>")  # noqa: S704
+
+
+def _neutral(hatch: str, paint: re.Match[str]) -> str:
+    """Return a colour that is not the colour of a navigator, in place of one that may be.
+
+    Agents become white discs with dark edges, and moving obstacles are hatched.
+    """
+    name, color = paint.groups()
+    if color in TEAMS:
+        color = PAPER if name == "fill" else INK
+    elif color == FILL[Kind.DYNAMIC]:
+        color = hatch if name == "fill" else INK
+    return f'{name}="{color}"'
+
+
+def _hatch(size: str) -> str:
+    """Return the pattern of moving obstacles; equal ones in a page share an identifier."""
+    return (
+        f'<defs><pattern id="moving-{size}" patternUnits="userSpaceOnUse" width="{size}"'
+        f' height="{size}" patternTransform="rotate(45)"><rect width="{size}"'
+        f' height="{size}" fill="#e3e7eb"/><rect width="{float(size) / 3:.3g}"'
+        f' height="{size}" fill="{INK}"/></pattern></defs>'
+    )
 
 
 def _first_of_each(hits: Sequence[Hit]) -> list[Hit]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from benchnav.report.citation import PAPER, software
-from benchnav.report.page import ABOUT, Page
+from benchnav.report.citation import OF_PAPER, PAPER, software
+from benchnav.report.page import ABOUT, ASSETS, Page, href
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
 from benchnav.runner.plan.limits import Limits
@@ -26,6 +27,7 @@ class RunFacts:
     name: str
     facts: tuple[tuple[str, str], ...]
     verification: str
+    verify: str  # the command that verifies it
     navigators: tuple[tuple[str, str, str, str], ...]  # label, package, mode, source hash
     scenarios: tuple[tuple[str, str], ...]  # identity, hash
 
@@ -38,6 +40,7 @@ def pages(data: ReportData, made: datetime) -> Iterator[Page]:
         page=ABOUT, runs=[_facts(folder, verified) for folder in data.folders],
         caveats=data.board.caveats, made=made.isoformat(timespec="minutes"),
         software=software(str(made.year)), paper=PAPER,
+        of_paper=OF_PAPER, copy=href(ABOUT, ASSETS / "copy.js"),
     )  # fmt: skip
     yield Page(ABOUT, "How this report was made", body, ABOUT)
 
@@ -49,6 +52,7 @@ def _facts(folder: RunFolder, verified: set[str]) -> RunFacts:
         name=f"{suite['name']}@{suite['version']}",
         facts=tuple((key, text) for key, text in _lines(folder, manifest) if text),
         verification=_verification(folder, verified),
+        verify=shlex.join(["benchnav", "verify", str(folder.shown)]),
         navigators=tuple(
             (
                 str(e["label"]), str(e.get("source", "")), str(e.get("mode", IN_PROCESS)),

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+import shlex
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from benchnav.leaderboard.from_runs import COMPARED
-from benchnav.leaderboard.statistics.all_pairs import duels
+from benchnav.leaderboard.statistics.all_pairs import duels, notes_by_track
+from benchnav.report.analysis.best import more_seeds
 from benchnav.report.analysis.pair_codec import VERDICTS, PairCodec, metric_fields
 from benchnav.report.figure import plain
 from benchnav.report.page import ASSETS, COMPARISON, Page, href
@@ -16,6 +18,7 @@ from benchnav.report.template import fill
 from benchnav.text.visible import visible
 
 if TYPE_CHECKING:
+    import pyarrow as pa
     from markupsafe import Markup
 
 SCRIPT = "comparison.js"  # in report/assets
@@ -28,22 +31,35 @@ def pages(data: ReportData) -> Iterator[Page]:
     metrics = compared or [m for m in data.metrics if m in values.metrics][:4]
     codec = PairCodec(metrics)
     labels = sorted(set(values.results["navigator"].unique().to_pylist()))
+    shown = values.results.filter(_named(values.results, metrics))
+    notes = notes_by_track(shown, values.metrics, data.tracks, values.not_applicable)
     pairs = []
     for duel in duels(values.results, values.metrics, metrics, values.not_applicable):
         key = f"pair-{labels.index(duel.first)}-{labels.index(duel.second)}"
-        pairs.append((key, _json(codec.pair(duel))))
+        pairs.append((key, _json(codec.pair(duel, notes[duel.first, duel.second]))))
+    runs = [str(folder.shown) for folder in data.folders]
     shared = {
         "navigators": [_navigator(data, label) for label in labels],
         "metrics": [metric_fields(values.metrics[name]) for name in metrics],
         "places": list(codec.places),
         "verdicts": VERDICTS,
         "tracks": data.tracks,
+        "runs": runs,
     }
     body = fill(
-        "comparison.html", page=COMPARISON, several=len(labels) > 1,
+        "comparison.html", page=COMPARISON, several=len(labels) > 1, runs=shlex.join(runs),
+        more=list(more_seeds(data.folders)),
         shared=_json(shared), pairs=pairs, script=href(COMPARISON, ASSETS / SCRIPT),
     )  # fmt: skip
     yield Page(COMPARISON, "Two navigators compared", body, COMPARISON, has_figures=True)
+
+
+def _named(results: pa.Table, metrics: Sequence[str]) -> pa.ChunkedArray:
+    """Return a mask of the results of some metrics."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    return pc.is_in(results["metric"], value_set=pa.array(metrics, pa.string()))
 
 
 def _navigator(data: ReportData, label: str) -> dict[str, str]:

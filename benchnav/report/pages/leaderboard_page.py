@@ -9,10 +9,11 @@ from itertools import groupby
 
 from benchnav.leaderboard.columns import choose
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Record
-from benchnav.leaderboard.rendering.cell import cell, rank, training
+from benchnav.leaderboard.rendering.cell import Cell, column, rank, training
 from benchnav.leaderboard.rendering.layout import legend
 from benchnav.leaderboard.statistics.order import by_merit, leading
-from benchnav.report.analysis.view import ROLES
+from benchnav.report.analysis.best import Best, best_of, more_seeds
+from benchnav.report.analysis.view import ROLES, title_of, views_of
 from benchnav.report.line_style import LineStyle
 from benchnav.report.page import LEADERBOARD, Page
 from benchnav.report.report_data import ReportData, family_of
@@ -67,6 +68,7 @@ class Row:
 def pages(data: ReportData) -> Iterator[Page]:
     """Yield the page."""
     rows = tuple(leaderboard_rows(data))
+    best = list(_best(data))
     usual = choose(data.metrics, None)
     known = data.values.metrics
     body = fill(
@@ -83,7 +85,8 @@ def pages(data: ReportData) -> Iterator[Page]:
             ("scenario", "Scenario", list(dict.fromkeys(r.scenario for r in rows)), 0),
             ("role", "Role", [role for role in ROLES if role in {r.role for r in rows}], 0),
         ],
-        has_training=any(r.training for r in rows), has_notes=any(r.notes for r in rows),
+        has_training=any(r.training for r in rows),
+        best=best, more=list(more_seeds(data.folders)) if any(b.is_tied for _, b in best) else (),
         summary=_summary(data), verification=_verification(data),
         any_verified=any(r.is_verified for r in rows),
     )  # fmt: skip
@@ -113,14 +116,33 @@ def _verification(data: ReportData) -> str:
 
 def leaderboard_rows(data: ReportData) -> Iterator[Row]:
     """Yield the rows, the mean over scenarios first, the best navigator of each group first."""
+    groups = _groups(data)
+    names = [_names(group[0]) for group in groups]
+    for group, name in zip(groups, names, strict=True):
+        yield from _rows(data, group, is_unique=names.count(name) == 1)
+
+
+def _groups(data: ReportData) -> list[list[Record]]:
+    """Return the records that are ranked together; those over all scenarios first in a track."""
     records = [r for r in data.board.records if r.track != PRICE]
     records = [r for r in records if r.scenario != ALL_INTERQUARTILE]
     order = {track: place for place, track in enumerate(data.tracks)}
     records.sort(key=lambda r: (r.split, order.get(r.track, len(order)), r.scenario != ALL))
-    groups = [list(group) for _, group in groupby(records, key=_key)]
-    names = [_names(group[0]) for group in groups]
-    for group, name in zip(groups, names, strict=True):
-        yield from _rows(data, group, is_unique=names.count(name) == 1)
+    return [list(group) for _, group in groupby(records, key=_key)]
+
+
+def _best(data: ReportData) -> Iterator[tuple[str, Best]]:
+    """Yield the title of each view and its best navigators, over all scenarios or in its first."""
+    groups = _groups(data)
+    views = views_of(r for group in groups for r in group)
+    for view in views:
+        group = next(group for group in groups if view.holds(group[0]))
+        lead = leading(group, [m for m in data.metrics if any(r.metric == m for r in group)])
+        leaders = {r.navigator: r for r in group if r.metric == lead}
+        best = best_of([leaders[name] for name in by_merit(leaders)])
+        if best is not None:
+            where = "" if group[0].scenario == ALL else f", {group[0].scenario}"
+            yield f"{title_of(view, views)}{where}", best
 
 
 def _key(r: Record) -> tuple[object, ...]:
@@ -139,7 +161,9 @@ def _rows(data: ReportData, group: Sequence[Record], is_unique: bool) -> Iterato
     lead = leading(group, held)
     scales = {name: _scale(data, [r for r in group if r.metric == name]) for name in held}
     decided = {r.metric for r in group if (r.rank_low or 0) > 1}
-    for navigator in by_merit({r.navigator: r for r in group if r.metric == lead}):
+    ordered = by_merit({r.navigator: r for r in group if r.metric == lead})
+    texts = {m: column([at.get((name, m)) for name in ordered], decided=m in decided) for m in held}
+    for place, navigator in enumerate(ordered):
         r = at[navigator, lead]
         whole = r.scenario == ALL
         yield Row(
@@ -151,7 +175,10 @@ def _rows(data: ReportData, group: Sequence[Record], is_unique: bool) -> Iterato
             rank=rank(r).text if r.episodes else r.note,
             rank_order=_LAST if r.rank_low is None else r.rank_low,
             cells=tuple(
-                _cell(at.get((navigator, m)), scales.get(m), m in decided) for m in data.metrics
+                _cell(at[navigator, m], texts[m][place], scales[m])
+                if (navigator, m) in at
+                else MetricCell("", "", _LAST, False, None)
+                for m in data.metrics
             ),
             training=training(r).text,
             notes=tuple(_notes([at[navigator, m] for m in held if (navigator, m) in at], r)),
@@ -175,11 +202,10 @@ def _scale(data: ReportData, records: Sequence[Record]) -> tuple[float, float]:
     return min([0.0, *ends]), max([0.0, *ends])
 
 
-def _cell(r: Record | None, scale: tuple[float, float] | None, decided: bool) -> MetricCell:
-    if r is None or scale is None or not r.episodes or math.isnan(r.value):
-        missing = -_LAST if r is not None and r.better == "higher" else _LAST
-        return MetricCell("–" if r is not None and r.episodes else "", "", missing, False, None)
-    shown = cell(r, interval=True, decided=decided)
+def _cell(r: Record, shown: Cell, scale: tuple[float, float]) -> MetricCell:
+    if not r.episodes or math.isnan(r.value):
+        missing = -_LAST if r.better == "higher" else _LAST
+        return MetricCell("–" if r.episodes else "", "", missing, False, None)
     low, high = (r.value, r.value) if math.isnan(r.low) else (r.low, r.high)
     bar = _interval(low, high, r.value, scale)
     return MetricCell(*_split(shown.text), r.value, shown.bold, bar)

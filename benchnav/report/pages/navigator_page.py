@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
 from benchnav.leaderboard.record import Record
-from benchnav.leaderboard.rendering.cell import cell
+from benchnav.leaderboard.rendering.cell import cell, column
 from benchnav.metrics.success import success
 from benchnav.report.analysis.configuration import facts_of, parameters_of, training_text
 from benchnav.report.analysis.cost import MEANINGS, costs
@@ -101,14 +101,18 @@ def _list(shared: _Shared) -> Page:
         for times in [_times(shared.costs[view])]
         if times and shared.success[view]
     ]  # fmt: skip
+    columns = [
+        column([shared.success[view].get(name) for name in data.navigators], decided=False)
+        for view in shared.views
+    ]
     rows = [
         {
             "navigator": name, "style": data.styles[name],
             "training": training_text(data.navigator_configs[name].get("training")),
             "map": data.navigator_configs[name].get("uses_map") is not False,
-            "values": [_text(shared.success[view].get(name)) for view in shared.views],
+            "values": [cells[k].text or "–" for cells in columns],
         }
-        for name in data.navigators
+        for k, name in enumerate(data.navigators)
     ]  # fmt: skip
     heads = [title_of(view, shared.views) for view in shared.views]
     body = fill(

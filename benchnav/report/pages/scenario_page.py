@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.record import Record
@@ -22,7 +23,8 @@ from benchnav.report.figures.failures import LINES, outcomes_figure, partners_fi
 from benchnav.report.figures.intervals import by_value, intervals_figure
 from benchnav.report.figures.style import height_of
 from benchnav.report.figures.world import Hit, hits_text, world_picture
-from benchnav.report.page import SCENARIOS, Page, scenario_path
+from benchnav.report.line_style import LineStyle
+from benchnav.report.page import LEADERBOARD, SCENARIOS, Page, scenario_path
 from benchnav.report.pages.grouping import grouped
 from benchnav.report.pages.records import records_with
 from benchnav.report.pages.table import metric_table
@@ -64,11 +66,23 @@ def pages(data: ReportData) -> Iterator[Page]:
     yield Page(
         SCENARIOS,
         "Scenarios",
-        fill("scenarios.html", page=SCENARIOS, cards=cards),
+        fill(
+            "scenarios.html",
+            page=SCENARIOS,
+            cards=cards,
+            leaderboard=LEADERBOARD,
+            styles=_styles(data, data.summaries),
+        ),
         SCENARIOS,
     )
     for each in found:
         yield each.page()
+
+
+def _styles(data: ReportData, summaries: Iterable[EpisodeSummary]) -> dict[str, LineStyle]:
+    """Return the styles of the navigators whose collisions the pictures show."""
+    hit = {s.navigator for s in summaries if s.collisions}
+    return {name: style for name, style in data.styles.items() if name in hit}
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,14 +111,19 @@ class _Scenario:
         """The obstacles and walls that are the same in all stored worlds."""
         return fixed_obstacles(self.scenario.worlds) if self.scenario.worlds else set()
 
+    @property
+    def _path(self) -> PurePosixPath:
+        return scenario_path(self.scenario.identity)
+
     def page(self) -> Page:
         """Return the page of the scenario."""
-        path = scenario_path(self.scenario.identity)
+        path = self._path
         config = self.scenario.config
         body = fill(
             "scenario.html",
             page=path,
             scenario=self.scenario,
+            styles=_styles(self.data, self.summaries),
             title=str(config.get("title", "")),
             description=str(config.get("description", "")),
             facts=scenario_facts(config, self.scenario.worlds, self.scenario.hash),
@@ -162,7 +181,7 @@ class _Scenario:
         figures += self._parameters(view, where)
         shown = [m for m in self.data.metrics if m in self.data.values.metrics][:SHOWN]
         chosen = [r for r in self.records if view.holds(r)]
-        return figures, metric_table(chosen, shown, self.data)
+        return figures, metric_table(self._path, chosen, shown, self.data)
 
     @cached_property
     def _horizon(self) -> HorizonCurves:

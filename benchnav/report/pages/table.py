@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.record import Record
-from benchnav.leaderboard.rendering.cell import cell, heading, rank
+from benchnav.leaderboard.rendering.cell import column, heading, rank
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
 
@@ -14,30 +15,32 @@ if TYPE_CHECKING:
     from markupsafe import Markup
 
 
-def metric_table(records: Sequence[Record], metrics: Sequence[str], data: ReportData) -> Markup:
+def metric_table(
+    page: PurePosixPath, records: Sequence[Record], metrics: Sequence[str], data: ReportData
+) -> Markup:
     """Return a table of the records of one scenario and view, in the order of the navigators.
 
     Cells have the text of the leaderboard; a navigator that was not run has the reason instead.
+    ``page`` holds the table.
     """
     at = {(r.navigator, r.metric): r for r in records}
     held = [m for m in metrics if any(r.metric == m for r in records)]
-    decided = {m: _is_decided(records, m) for m in held}
+    present = {r.navigator for r in records if r.metric in held}
+    names = [name for name in data.navigators if name in present]
+    columns = [
+        column([at.get((name, m)) for name in names], decided=_is_decided(records, m)) for m in held
+    ]
     rows = []
-    for name in data.navigators:
+    for name, cells in zip(names, zip(*columns, strict=True), strict=True):
         found = [at.get((name, m)) for m in held]
-        if not any(found):
-            continue
         first = next(r for r in found if r is not None)
-        cells = [
-            cell(r, interval=True, decided=decided[m]) for r, m in zip(found, held, strict=True)
-        ]
         rows.append({
             "navigator": name, "style": data.styles[name], "rehearsal": first.rehearsal,
             "rank": rank(found[0]).text, "cells": cells,
             "note": "" if first.episodes else first.note,
         })  # fmt: skip
     heads = [heading(next(r for r in records if r.metric == m)).text for m in held]
-    return fill("metric_table.html", heads=heads, rows=rows)
+    return fill("metric_table.html", page=page, heads=heads, rows=rows)
 
 
 def _is_decided(records: Sequence[Record], metric: str) -> bool:
