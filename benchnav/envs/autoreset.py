@@ -29,6 +29,7 @@ class AutoresetSimulation(Simulation):
         self._opened, self._closed = self._opened[first], self._closed[first]
         self._kept = [[] for _ in first]
         self.hashed, self.spots = self.hashed[first], self.spots[first]
+        self.near = self.near[first]
         self._views()
 
     def restart(self, rows: IntArray, worlds: IntArray) -> None:

@@ -25,7 +25,7 @@ def can_mount():
 pytestmark = pytest.mark.skipif(not can_mount(), reason="the system lets nobody mount a disk")
 
 SCRIPT = """
-mount -t tmpfs -o size=240k tmpfs disk
+mount -t tmpfs -o size=100k tmpfs disk
 benchnav() { "$PYTHON" -c 'from benchnav.cli.main import main; main()' "$@"; }
 tell() { echo "== $1"; shift; benchnav "$@" 2>&1; echo "status $?"; }
 tell full run suite.yaml --out disk/run --seeds 120 --workers 1

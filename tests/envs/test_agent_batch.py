@@ -315,3 +315,24 @@ def test_strict_success_is_what_the_runner_records(tensors, scenario, tmp_path):
         assert not np.isin(episode.contacts.agent, np.flatnonzero(there)).any()
     if tensors is STEERING and not drivers:
         assert 0 < arrived.mean() < 1
+
+
+def test_every_array_with_a_row_for_each_world_of_the_pool_has_one_for_each_row():
+    worlds = [random_world(seed) for seed in range(7)]
+
+    def lengths(simulation):
+        return {
+            name: len(value)
+            for name, value in vars(simulation).items()
+            if isinstance(value, np.ndarray)
+        }
+
+    few, all_, rows = (
+        lengths(simulation)
+        for simulation in (
+            Simulation(worlds[:5]), Simulation(worlds), AutoresetSimulation(worlds[:5], 11)
+        )
+    )  # fmt: skip
+    by_world = {name for name in few if (few[name], all_[name]) == (5, 7)}
+    assert {"agents", "hashed", "spots", "near", "position"} <= by_world
+    assert {rows[name] for name in by_world} == {11}
