@@ -10,6 +10,7 @@ from typing import Any
 
 from benchnav.config.yaml_reader import read_yaml, validate
 from benchnav.errors import BenchnavError, UnknownPluginError
+from benchnav.navigation.hierarchy.composition import HIERARCHICAL, is_pair, parameters_of
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.contestant import label_of
 from benchnav.runner.plan.limits import Limits
@@ -150,8 +151,12 @@ def _members(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
 
 def _fits(spec: Any, config: Mapping[str, Any]) -> bool:
     """Whether a navigator has the parameters in the suite file; defaults are not compared."""
+    if spec is True:  # a part with the defaults
+        return True
     given = {"type": spec} if isinstance(spec, str) else dict(spec)
     given.pop("label", None)
+    if is_pair(str(given.get("type", ""))):
+        given = {"type": HIERARCHICAL, **parameters_of(given.pop("type"), given)}
     return all(
         _fits(value, config[key])
         if isinstance(config.get(key), Mapping)
