@@ -73,6 +73,19 @@ def from_disk(path, folder, size=DESKTOP):
     return done.stdout
 
 
+def picture(path, folder, size=DESKTOP):
+    """A PNG of the page that was opened from disk, after its scripts ran."""
+    address = path.as_uri()
+    if size[0] < NARROWEST:
+        frame = folder / "frame.html"
+        frame.write_text(_FRAME.format(address, *size))
+        address = frame.as_uri()
+    made = folder / "picture.png"
+    command = [*_command(folder, size), "--virtual-time-budget=4000", f"--screenshot={made}"]
+    subprocess.run([*command, address], capture_output=True, timeout=60, check=True)
+    return made
+
+
 def _visit(read, path, script, folder, size, limit):
     """The result of ``script`` in the page at ``path``, and what the page asked for.
 
