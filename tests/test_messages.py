@@ -10,6 +10,7 @@ COMMANDS = {  # which show the command line of a program
     "benchnav/api/authoring/navigator_template.py",
     "benchnav/isolation/sandbox.py",
     "benchnav/isolation/subprocess_host.py",
+    "benchnav/report/analysis/best.py",
 }
 
 

@@ -12,8 +12,6 @@ PAPER = """\
   year    = {2019},
   url     = {https://doaj.org/article/0dcb806d76a14c07bb197d938fe8f173},
 }"""
-OF_PAPER = ("recurrent-ppo", "recurrent-ppo-plus", "guided-crowd")
-"""The navigators that follow the paper."""
 
 
 def software(year: str) -> str:

@@ -148,7 +148,6 @@ def test_citations_agree_with_the_citation_file():
     assert " and ".join(names) in paper
     assert reference["journal"] in paper
     assert reference["url"] in paper
-    assert all(name in cff["message"] for name in citation.OF_PAPER)
 
 
 def test_a_verified_run_is_marked(report, run, tmp_path):

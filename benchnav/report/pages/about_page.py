@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from benchnav.report.citation import OF_PAPER, PAPER, software
+from benchnav.report.citation import PAPER, software
 from benchnav.report.page import ABOUT, ASSETS, Page, href
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
@@ -40,7 +40,7 @@ def pages(data: ReportData, made: datetime) -> Iterator[Page]:
         page=ABOUT, runs=[_facts(folder, verified) for folder in data.folders],
         caveats=data.board.caveats, made=made.isoformat(timespec="minutes"),
         software=software(str(made.year)), paper=PAPER,
-        of_paper=OF_PAPER, copy=href(ABOUT, ASSETS / "copy.js"),
+        copy=href(ABOUT, ASSETS / "copy.js"),
     )  # fmt: skip
     yield Page(ABOUT, "How this report was made", body, ABOUT)
 
