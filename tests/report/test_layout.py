@@ -44,7 +44,12 @@ def test_a_page_looks_as_it_did(report, tmp_path, page, screen):
         kept.parent.mkdir(exist_ok=True)
         now.save(kept)
         pytest.fail(f"{kept} is new: look at the page, and run the test again")
-    assert difference(now, Image.open(kept)) < ALIKE
+    apart = difference(now, Image.open(kept))
+    for _ in range(3):  # on a busy machine, a picture may be taken before the tables are there
+        if apart >= ALIKE:
+            again = reduced(picture(report / PAGES[page], tmp_path, size), size)
+            apart = difference(again, Image.open(kept))
+    assert apart < ALIKE
 
 
 @pytest.mark.parametrize("screen", SIZES)
