@@ -20,7 +20,7 @@ SCALE = 20  # pixels that become one
 ALIKE = 5.0  # mean difference of grey values (0 to 255) that fonts and numbers may make
 SIZES = {"desktop": DESKTOP, "phone": PHONE}
 PAGES = {
-    "leaderboard": "index.html", "comparison": "comparison.html", "failures": "failures.html",
+    "leaderboard": "index.html", "comparison": "comparison.html",
     "scenario": str(scenario_path("odd@1")),
 }  # fmt: skip
 
