@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from benchnav.leaderboard.record import ALL, Record
-from benchnav.navigation.command_check import grouped, kind_of
+from benchnav.navigation.command_check import grouped, one_of_each_kind
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -61,10 +61,10 @@ def _worlds(rows: pa.Table, column: str) -> Iterator[dict[str, Any]]:
 def _counted(found: Iterator[tuple[dict[str, Any], list[str]]]) -> Texts:
     texts: dict[tuple[str, ...], Counter[str]] = {}
     for row, remarked in found:
-        kinds = {kind_of(text): text for text in reversed(remarked)}  # a world counts once for each
+        texts_of_world = one_of_each_kind(remarked)
         for scenario in (row["scenario"], ALL):
             key = *(str(row[name]) for name in KEYS), str(scenario)
-            texts.setdefault(key, Counter()).update(kinds.values())
+            texts.setdefault(key, Counter()).update(texts_of_world)
     return texts
 
 

@@ -2,7 +2,7 @@
 
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from itertools import islice
 from typing import Any
 
@@ -12,7 +12,7 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation.plugin.trace import class_name, location, plain
 from benchnav.text.visible import shortened
 
-_PLACE = re.compile(r" (\([^()]+:\d+\))\.?( at t = \S+ s)?$")
+_PLACE = re.compile(r" (\([^()]+:\d+\))\.?$")
 MOST_REMARKS = 20  # stored per episode
 _NUMBER = re.compile(r"-?\d[\d.]*(e[-+]?\d+)?")
 _TIME = re.compile(r" at t = \S+ s$")
@@ -83,8 +83,17 @@ def kind_of(reason: str) -> str:
 
     If a reason names a line of code, only the exception and that line count.
     """
+    reason = _TIME.sub("", reason)
     place = _PLACE.search(reason)
     return reason.partition(": ")[0] + place[1] if place else _NUMBER.sub("#", reason)
+
+
+def one_of_each_kind(reasons: Iterable[str]) -> list[str]:
+    """Return the first reason of each kind, so that a world counts once for reasons of one kind."""
+    first: dict[str, str] = {}
+    for reason in reasons:
+        first.setdefault(kind_of(reason), reason)
+    return list(first.values())
 
 
 def grouped(reasons: Mapping[str, int]) -> list[tuple[str, int]]:

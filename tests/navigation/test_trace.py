@@ -7,7 +7,13 @@ import numpy as np
 import pytest
 
 from benchnav.errors import BrokenPluginError
-from benchnav.navigation.command_check import exception_text, grouped, kind_of, short
+from benchnav.navigation.command_check import (
+    exception_text,
+    grouped,
+    kind_of,
+    one_of_each_kind,
+    short,
+)
 from benchnav.navigation.plugin.trace import MOST, bounded, location, plain, trace
 
 PLUGIN = """
@@ -189,3 +195,8 @@ def test_reasons_of_one_fault_are_one_group():
         ("act raised KeyError: 7 (a.py:3)", 1),
     ]
     assert kind_of("ValueError: 3 (a.py:3)") == kind_of("ValueError: 4 (a.py:3)")
+
+
+def test_a_reason_and_its_times_are_one_kind():
+    reasons = ["no path at t = 0.4 s", "no path", "no path at t = 3 s", "lost"]
+    assert one_of_each_kind(reasons) == ["no path at t = 0.4 s", "lost"]

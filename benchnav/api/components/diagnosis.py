@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+from benchnav.api.execution.warm import compile_kernels
 from benchnav.api.output.text_table import table_html
 from benchnav.errors import BenchnavError, MissingExtraError
 from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS
@@ -84,9 +85,16 @@ class Diagnosis:
         return table_html("Installation", Check._fields, self.checks)
 
 
-def doctor() -> Diagnosis:
-    """Check this installation: versions, cores, the user's folders, extras and plugins."""
+def doctor(*, warm: bool = False, quiet: bool = False) -> Diagnosis:
+    """Check this installation: versions, cores, the user's folders, extras and plugins.
+
+    Args:
+        warm: first compile the kernels, so that no run waits for it; takes a minute, once.
+        quiet: print no progress of it.
+    """
     stop_import_of_main()
+    if warm:
+        compile_kernels(quiet=quiet)
     return Diagnosis([*_machine(), *_packages(), *_cache(), *_receipts(), *_plugins()])
 
 

@@ -3,8 +3,6 @@
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from benchnav.api.execution.run import run
-
 SUITE = "standard"  # whose navigators use all kernels
 SCENARIOS = ("leaders/dynamic", "trap/u")
 
@@ -14,8 +12,10 @@ def compile_kernels(*, quiet: bool = False) -> None:
 
     Every navigator of the suite `standard` runs once in two scenarios; nothing of it is kept.
     """
+    from benchnav.runner.execute.progress import progress
+    from benchnav.runner.plan.suite import Selection, load_suite
+    from benchnav.runner.run import run_suite
+
+    suite = load_suite(SUITE, Selection(scenarios=SCENARIOS, tracks=("known",), seeds="1"))
     with TemporaryDirectory() as folder:
-        run(
-            SUITE, scenarios=SCENARIOS, tracks="known", seeds=1, out=Path(folder, "run"),
-            quiet=quiet,
-        )  # fmt: skip
+        run_suite(suite, Path(folder, "run"), progress=progress(quiet))

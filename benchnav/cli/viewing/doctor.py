@@ -19,12 +19,7 @@ def doctor(
     """
     from benchnav.api.components.diagnosis import doctor as check
 
-    if warm:
-        from benchnav.api.execution.warm import compile_kernels
-
-        compile_kernels()
-
-    found = check()
+    found = check(warm=warm)
     put(found.text())
     if not found:
         raise typer.Exit(1)

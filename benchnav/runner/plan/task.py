@@ -12,7 +12,7 @@ from benchnav.errors import MissingExtraError
 from benchnav.generation.build import build
 from benchnav.isolation import sandbox
 from benchnav.metrics.measure import all_metrics
-from benchnav.navigation.command_check import kind_of
+from benchnav.navigation.command_check import kind_of, one_of_each_kind
 from benchnav.plugins import Registration
 from benchnav.runner.execute.call_timer import beat
 from benchnav.runner.execute.measurement import failed_metrics, measured, tracebacks_of
@@ -209,7 +209,7 @@ def measure_part(
         len(expected), sum(one.redraws for one in seen),
         tuple(sorted((one.seed, one.failure) for one in seen if one.failure)),
         played.unled,
-        tuple(sorted((one.seed, text) for one in seen for text in one.remarks)),
+        tuple(sorted((one.seed, text) for one in seen for text in one_of_each_kind(one.remarks))),
         tuple(failed_metrics(results)),
         tracebacks={kind_of(one.failure): one.traceback for one in seen if one.traceback}
         | tracebacks_of(results),
