@@ -107,6 +107,8 @@ def _band(
 ) -> None:
     values = np.array(list(series)).reshape(-1, len(time))
     known = np.isfinite(values).any(axis=0)
+    if not known.any():
+        return
     low, middle, high = np.nanpercentile(values[:, known], (25, 50, 75), axis=0)
     axes.plot(time[known], middle, color=colour, label=label)
     axes.fill_between(time[known], low, high, color=colour, alpha=0.15, lw=0)
