@@ -8,7 +8,7 @@ PEERS := .venv-peers
 STEP := $(PYTHON) .ci/step.py
 PIP := $(BIN)/python -m pip install --no-compile -c constraints.txt
 
-.PHONY: setup run test test-all soak wheels check lint types layers docs bench clean
+.PHONY: setup run test test-all soak wheels check lint types layers docs bench bench-check clean
 
 setup: $(READY)  ## .venv with everything, at the versions of constraints.txt
 
@@ -57,6 +57,9 @@ $(VENV)/.docs-ready: $(READY)
 
 bench: $(READY) $(PEERS)/.ready  ## speed against peers and limits; writes docs/benchmarks.md
 	$(BIN)/python -m benchmarks --peers $(PEERS)/bin/python --out docs/benchmarks.md
+
+bench-check: $(READY) $(PEERS)/.ready  ## speed against the kept ratios; fails if one fell by 10 %
+	$(BIN)/python -m benchmarks --peers $(PEERS)/bin/python --check
 
 $(PEERS)/.ready: benchmarks/constraints.txt
 	@$(STEP) 'Making the environment $(PEERS)' $(PYTHON) -m venv $(PEERS)

@@ -1,55 +1,79 @@
-"""The command line as users run it: episodes per second, and the time to start.
+"""The command line as users run it: episodes per second, the time to start, and to compile.
 
-Whole processes are timed from outside. Episodes per second include the start. The time of the
-first compilation is the difference of a first and a second short run.
+Whole processes are timed from outside, start included. Every episode is measured by all metrics and
+stored, by one worker for each core. ``compiling`` is a run of two episodes without compiled kernels.
 """
 
 import os
 import subprocess
 import sys
 import tempfile
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
-SEEDS = 1000
+from benchmarks.pair import Pair
+
 COMMAND = [str(Path(sys.executable).with_name("benchnav"))]
+LONG, SHORT = 20_000, 2_000  # seeds
+WANTED = {"orca": (450.0, 650.0), "straight-line": (500.0, 800.0)}  # episodes per second
 
 
-def measure() -> list[dict[str, object]]:
-    """Return rows: episodes per second with `orca`, time of `--help`, and first compilation."""
-    with tempfile.TemporaryDirectory() as folder:
-        fresh = {**os.environ, "XDG_CACHE_HOME": str(Path(folder) / "cache")}
-        first = seconds(run(2, Path(folder) / "first"), fresh)
-        again = seconds(run(2, Path(folder) / "again"), fresh)
-        long = min(seconds(run(SEEDS, Path(folder) / f"long{k}"), fresh) for k in range(2))
-    help_ = min(seconds(["--help"], dict(os.environ)) for _ in range(5))
+def pairs() -> list[Pair]:
+    """Return rates of episodes, and times of whole commands."""
+    rates = [
+        Pair(
+            name=f"{navigator}, leaders/dynamic, {seeds:,} seeds, start included",
+            ours=partial(rate, navigator, seeds), wanted=wanted, unit="episodes/s",
+            blocks=1 if seeds == LONG else 2, warm=seeds == SHORT,
+        )
+        for navigator, both in WANTED.items()
+        for seeds, wanted in zip((SHORT, LONG), both, strict=True)
+    ]  # fmt: skip
     return [
-        row("orca, leaders/dynamic, benchnav run, start included", SEEDS / long, "episodes/s", 100),
-        row("benchnav --help", help_, "s", 0.4, less=True),
-        row("first run of a fresh install: compiling", first - again, "s", 30, less=True),
+        *rates,
+        Pair(name="run quick, warm", ours=quick, wanted=12.0, unit="s", blocks=2),
+        Pair(name="two episodes of orca, warm", ours=start, wanted=1.0, unit="s"),
+        Pair(name="benchnav --help", ours=partial(whole, "--help"), wanted=0.4, unit="s"),
+        Pair(name="first run: compiling", ours=first, wanted=15.0, unit="s", blocks=1, warm=False),
     ]
 
 
-def run(seeds: int, out: Path) -> list[str]:
-    """Return the arguments of a run of `orca` in `leaders/dynamic`."""
+def rate(navigator: str, seeds: int) -> float:
+    """Return episodes per second of a whole run in `leaders/dynamic`."""
+    with tempfile.TemporaryDirectory() as folder:
+        return seeds * whole(*arguments(navigator, seeds, folder))
+
+
+def start() -> float:
+    """Return how often a second a run of two episodes can be done."""
+    with tempfile.TemporaryDirectory() as folder:
+        return whole(*arguments("orca", 2, folder), "--workers", "1")
+
+
+def quick() -> float:
+    """Return how often a second the suite `quick` can be run."""
+    with tempfile.TemporaryDirectory() as folder:
+        return whole("run", "quick", "--out", f"{folder}/run", "--quiet")
+
+
+def first() -> float:
+    """Return how often a second a first run, which compiles, can be done."""
+    with tempfile.TemporaryDirectory() as folder:
+        return whole(*arguments("orca", 2, folder), cache=f"{folder}/cache")
+
+
+def arguments(navigator: str, seeds: int, folder: str) -> list[str]:
+    """Return the arguments of a run in `leaders/dynamic`."""
     return [
-        "run", "quick", "--scenario", "leaders/dynamic", "--navigator", "orca",
-        "--seeds", str(seeds), "--out", str(out), "--quiet",
+        "run", "leaders/dynamic", "--navigator", navigator, "--seeds", str(seeds),
+        "--out", f"{folder}/run", "--quiet",
     ]  # fmt: skip
 
 
-def seconds(arguments: list[str], environment: dict[str, str]) -> float:
-    """Return the wall-clock time [s] of one process."""
+def whole(*words: str, cache: str = "") -> float:
+    """Return how often a second a command can be done, from one whole process."""
+    environment = {**os.environ, **({"XDG_CACHE_HOME": cache} if cache else {})}
     began = perf_counter()
-    subprocess.run([*COMMAND, *arguments], env=environment, check=True, capture_output=True)
-    return perf_counter() - began
-
-
-def row(name: str, value: float, unit: str, wanted: float, less: bool = False) -> dict[str, object]:
-    """Return one row; its ratio is at least 1 if ``wanted`` is reached."""
-    ratio = wanted / value if less else value / wanted
-    return {"name": name, "value": value, "unit": unit, "wanted": wanted, "ratio": ratio}
-
-
-if __name__ == "__main__":
-    print(measure())
+    subprocess.run([*COMMAND, *words], env=environment, check=True, capture_output=True)
+    return 1.0 / (perf_counter() - began)

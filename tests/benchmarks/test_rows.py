@@ -1,88 +1,106 @@
-"""`make bench` keeps a table only of rows that were all measured."""
+"""`make bench` keeps a table only of rows that were all measured; ratios are of one run."""
 
 import sys
 
 import pytest
 
 from benchmarks import __main__ as bench
-from benchmarks import orca_peers
+from benchmarks import table
+from benchmarks.check import failures
+from benchmarks.pair import NotMeasuredError, Pair, Row, measured
 
-PEER = {
-    "name": "ORCA crowd of 1,000, 1 thread against pyrvo 2", "value": 9e5, "unit": "agent-steps/s",
-    "peer": 3e5, "ratio": 3.0, "wanted": 4,
-}  # fmt: skip
-LIMIT = {"name": "start", "value": 0.2, "unit": "s", "wanted": 0.4, "ratio": 2.0}
+
+def pair(ours, theirs=lambda: 3e5, **keys):
+    keys = {"peer": "pyrvo 2", "wanted": 4.0, "unit": "agent-steps/s"} | keys
+    return Pair(name="crowd", ours=ours, theirs=theirs, **keys)
+
+
+def unable():
+    raise NotMeasuredError("pyrvo is not installed")
 
 
 @pytest.fixture
-def measured(monkeypatch, tmp_path):
-    """Run the command with these rows of the crowd; return the file of its table."""
+def command(monkeypatch, tmp_path):
+    """Run the command with these pairs; return the table that it wrote, or None."""
 
-    def run(*crowd):
+    def run(*pairs, check=False):
         out = tmp_path / "table.md"
-        monkeypatch.setattr(sys, "argv", ["benchmarks", "--peers", "python", "--out", str(out)])
-        monkeypatch.setattr(orca_peers, "measure", lambda peers: list(crowd))
-        for part in (bench.leader_arena, bench.isolation):
-            monkeypatch.setattr(part, "measure", list)
-        monkeypatch.setattr(bench.end_to_end, "measure", lambda: [LIMIT])
+        words = ["--check"] if check else ["--out", str(out)]
+        monkeypatch.setattr(sys, "argv", ["benchmarks", *words])
+        monkeypatch.setattr(bench, "pairs", lambda peers: list(pairs))
+        monkeypatch.setattr(bench, "keep", lambda rows: table.keep(rows, tmp_path / "kept.json"))
+        monkeypatch.setattr(bench, "kept", lambda: table.kept(tmp_path / "kept.json"))
         out.unlink(missing_ok=True)
         try:
             bench.main()
         finally:
             run.kept = out.exists()
-        return out.read_text()
+        return out.read_text() if out.exists() else None
 
     return run
 
 
-def test_what_was_measured_is_kept(measured):
-    text = measured(PEER)
-    name = "ORCA crowd of 1,000, 1 thread against pyrvo 2"
-    assert f"| {name} | 0.90 M agent-steps/s | 0.30 M: 3.0 × | 4 × | no |" in text
-    assert "| start | 0.2 s | – | 0.4 s | yes |" in text
+def test_what_was_measured_is_kept(command):
+    limited = pair(lambda: 5.0, lambda: 1.0, peer="", unit="s", wanted=0.4)
+    text = command(pair(lambda: 9e5, limit="Sorting."), limited)
+    assert "| crowd | 0.90 M agent-steps/s | pyrvo 2 | 3.00 [3.00, 3.00] | 4 × | no |" in text
+    assert "| crowd | 0.2 s | yardstick | 5.00 [5.00, 5.00] | 0.4 s | yes |" in text
+    assert "- *crowd*: Sorting." in text
 
 
-def test_a_row_that_was_not_measured_fails(measured):
+def test_a_row_that_was_not_measured_fails(command):
     with pytest.raises(SystemExit) as failed:
-        measured({"name": "ORCA crowd against pyrvo", "note": "pyrvo is not installed"})
-    assert not measured.kept
-    assert failed.value.code.startswith("Not measured, so no table was kept:\n")
-    assert failed.value.code.endswith("ORCA crowd against pyrvo: pyrvo is not installed")
+        command(pair(lambda: 1.0, unable))
+    assert not command.kept
+    assert failed.value.code == (
+        "Not measured, so no table was kept:\ncrowd: pyrvo is not installed"
+    )
 
 
-def test_ratios_compare_rates_of_one_run(monkeypatch):
-    """A crowd against a peer, and against another crowd of ours."""
+def test_both_sides_are_measured_in_turns():
+    """A machine that slows down by a third at each measurement changes the ratio by nothing."""
+    order, speed = [], [1.0]
 
-    def ask(python, part, crowd):
-        if part == "navground":
-            return {"skipped": "navground is not installed"}
-        seconds = crowd.agents * crowd.steps / 1e6 * (0.5 if part == "pyrvo" else 1.0)
-        return {"version": "1", "seconds": seconds / crowd.threads}
+    def side(name, rate):
+        def measure():
+            order.append(name)
+            speed[0] *= 0.75
+            return rate * speed[0]
 
-    monkeypatch.setattr(orca_peers, "ask", ask)
-    rows = {row["name"]: row for row in orca_peers.measure("python")}
-    assert len(rows) == len(orca_peers.WANTED)
-    assert rows["ORCA crowd of 100, 1 thread against pyrvo 1"]["ratio"] == 0.5
-    two = rows["ORCA crowd of 1,000, 2 threads against ORCA crowd of 1,000, 1 thread"]
-    assert (two["ratio"], two["wanted"]) == (2.0, 1.6)
-    other = rows["ORCA crowd of 1,000, 1 thread against navground"]
-    assert other["note"] == "navground is not installed"
+        return measure
+
+    row = measured(pair(side("A", 6.0), side("B", 2.0), blocks=2))
+    assert "".join(order) == "AB" + "ABBA" * 2
+    assert row.ratio == pytest.approx(3.0)
+    assert (row.low, row.high) == pytest.approx((3.0, 3.0))
 
 
-def test_the_peers_must_be_given(monkeypatch, capsys):
-    monkeypatch.setattr(sys, "argv", ["benchmarks"])
+def test_the_interval_holds_the_ratio_of_noisy_rates():
+    rates = iter([1.0, *[1.0, 1.3, 0.8, 1.1] * 6])
+    row = measured(pair(lambda: next(rates), lambda: 1.0, blocks=6))
+    assert row.low <= row.ratio <= row.high
+    assert row.value == 1.3
+
+
+def test_only_a_row_whose_whole_interval_is_slower_fails():
+    slow = Row(pair=pair(None), value=1.0, ratio=2.6, low=2.5, high=2.69)
+    unsure = Row(pair=pair(None), value=1.0, ratio=2.6, low=2.5, high=2.71)
+    assert failures([unsure], {"crowd": 3.0}) == []
+    assert failures([slow], {}) == []
+    (text,) = failures([slow], {"crowd": 3.0})
+    assert text == "crowd: the ratio is 2.60 [2.50, 2.69], and 3.00 is kept"
+
+
+def test_the_check_fails_when_a_ratio_fell(command):
+    assert command(pair(lambda: 9e5)) is not None
+    with pytest.raises(SystemExit) as passed:
+        command(pair(lambda: 8.5e5), check=True)
+    assert passed.value.code == 0
     with pytest.raises(SystemExit) as failed:
-        bench.main()
-    assert failed.value.code == 2
-    assert "--peers" in capsys.readouterr().err
+        command(pair(lambda: 8e5), check=True)
+    assert failed.value.code == "crowd: the ratio is 2.67 [2.67, 2.67], and 3.00 is kept"
 
 
-def test_a_peer_that_is_not_installed_says_so(monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    assert "is not installed" in orca_peers.ask(sys.executable, "pyrvo")["skipped"]
-
-
-@pytest.mark.slow
-def test_parts_do_not_find_our_files_in_place_of_packages(monkeypatch, tmp_path):
-    monkeypatch.chdir(tmp_path)
-    assert orca_peers.ask(sys.executable, "benchnav")["seconds"] > 0
+def test_names_are_unique_because_ratios_are_kept_by_name():
+    names = [one.name for one in bench.pairs(sys.executable)]
+    assert len(set(names)) == len(names)
