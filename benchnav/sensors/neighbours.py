@@ -10,6 +10,7 @@ from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.geometry.hash_grid import bucket
 from benchnav.kernels import inlined, kernel, kernel_without_allocation
 from benchnav.sensors.sight import in_sight
+from benchnav.world.records import LISTED
 from benchnav.world.touch import BRUTE_FORCE
 
 CANDIDATES = 32  # nearest ones in range that are tested for visibility first
@@ -24,8 +25,8 @@ def find_neighbours(
     low: int, high: int, chosen: IntArray, limit: float, occlusion: bool, side: float,
     sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
-    near: FloatArray, position: FloatArray, velocity: FloatArray, radius: FloatArray,
-    kind: ByteArray, count: IntArray,
+    near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray,
 ) -> None:  # fmt: skip
     """Find neighbours for rows low:high of the flattened (B, chosen agents).
 
@@ -35,6 +36,9 @@ def find_neighbours(
 
     The search starts within ``near`` (B, A) [m], a guess from the last call, and is repeated within
     a larger radius if it finds too few. The guess changes the time that it takes, not the result.
+
+    The nearest agents of a crowd are ``listed`` (B, A, …) for the step, which reads the list up to
+    the distance ``beyond`` (B, A) [m].
     """
     best = np.empty(agents.shape[1] + bodies.shape[1] + 1)  # squared distances
     keys = np.empty(CHAIN + SLOTS)
@@ -42,8 +46,8 @@ def find_neighbours(
     ranked = np.empty(len(best), np.int64)  # places, nearest first
     _find_in_rows(
         low, high, chosen, limit, occlusion, side, sees, worlds, agents, bodies, shapes, capsules,
-        start, item, hashed, spots, near, position, velocity, radius, kind, count, best,
-        best.view(np.int64), keys, keys.view(np.int64), place, ranked,
+        start, item, hashed, spots, near, listed, beyond, position, velocity, radius, kind, count,
+        best, best.view(np.int64), keys, keys.view(np.int64), place, ranked,
     )  # fmt: skip
 
 
@@ -52,9 +56,9 @@ def _find_in_rows(
     low: int, high: int, chosen: IntArray, limit: float, occlusion: bool, side: float,
     sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
-    near: FloatArray, position: FloatArray, velocity: FloatArray, radius: FloatArray,
-    kind: ByteArray, count: IntArray, best: FloatArray, exact: IntArray, keys: FloatArray,
-    bits: IntArray, place: IntArray, ranked: IntArray,
+    near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, best: FloatArray,
+    exact: IntArray, keys: FloatArray, bits: IntArray, place: IntArray, ranked: IntArray,
 ) -> None:  # fmt: skip
     width, most, total = position.shape[1], position.shape[2], agents.shape[1]
     for b in range(low // width, (high + width - 1) // width):
@@ -82,6 +86,8 @@ def _find_in_rows(
                 farthest = _sort(n, room, total, crowd, best, exact, keys, bits, place, ranked)
                 kept = n = min(n, room)
                 near[b, i] = AHEAD * math.sqrt(farthest) if n == room > 0 else limit
+                if everyone and total > BRUTE_FORCE:
+                    beyond[b, i] = _list(a, n, n < room, limit, crowd, ranked, listed[b, i])
                 if hidden:
                     kept = _keep_visible(
                         a, n, most, crowd, world, capsules, start, item, things, shapes, ranked
@@ -115,6 +121,28 @@ def _all_seen(sees: BoolArray) -> bool:
             if not sees[team, other]:
                 return False
     return True
+
+
+@kernel_without_allocation
+def _list(
+    a: Any, n: int, complete: bool, limit: float, spots: AnyArray, ranked: IntArray,
+    listed: IntArray,
+) -> float:  # fmt: skip
+    """List the nearest agents of n candidates; return the distance [m] beyond which others are."""
+    kept = 0
+    for s in range(n):
+        if ranked[s] < 0:
+            continue
+        if kept == LISTED:
+            complete = False
+            break
+        kept += 1
+        listed[kept] = ranked[s]
+    listed[0] = kept
+    if complete or kept == 0:
+        return limit if complete else -1.0
+    last = spots[listed[kept]]
+    return math.sqrt((last.x - a.x) * (last.x - a.x) + (last.y - a.y) * (last.y - a.y))
 
 
 @kernel_without_allocation

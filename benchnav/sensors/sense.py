@@ -39,8 +39,8 @@ def sense(
         side = _cell_side(simulation, sensing, needs)
     if NEIGHBOURS in needs or (crowd and RAYS in needs):
         run_rows(
-            _sort_agents, simulation.B, simulation.agents, simulation.hashed, simulation.spots,
-            side,
+            _sort_agents, simulation.B, simulation.records, simulation.agents, simulation.hashed,
+            simulation.spots, simulation.beyond, side,
         )  # fmt: skip
     rays = neighbours = edges = None
     if RAYS in needs and sensing.rays is not None:
@@ -63,11 +63,14 @@ def _cell_side(simulation: Simulation, sensing: Sensing, needs: frozenset[str]) 
 
 @kernel_without_allocation
 def _sort_agents(
-    low: int, high: int, agents: AnyArray, hashed: IntArray, spots: AnyArray, side: float
-) -> None:
+    low: int, high: int, worlds: AnyArray, agents: AnyArray, hashed: IntArray, spots: AnyArray,
+    beyond: FloatArray, side: float,
+) -> None:  # fmt: skip
     for b in range(low, high):
         if agents.shape[1] > BRUTE_FORCE:
             fill(agents[b], hashed[b], spots[b], side)
+            worlds[b].cells = side
+            beyond[b] = -1.0
         else:
             collect(agents[b], hashed[b], spots[b])
 
@@ -111,7 +114,7 @@ def _neighbours(
     run_rows(
         find_neighbours, chosen.size, chosen, float(sensor.range), occlusion, side, s.sees,
         s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
-        s.near, out.position, out.velocity, out.radius, out.kind, out.count, least=LEAST,
+        s.near, s.listed, s.beyond, out.position, out.velocity, out.radius, out.kind, out.count, least=LEAST,
     )  # fmt: skip
     return out
 

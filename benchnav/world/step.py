@@ -14,7 +14,7 @@ import numpy as np
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
-from benchnav.geometry.hash_grid import fill
+from benchnav.geometry.hash_grid import fill, follow
 from benchnav.geometry.rotation import angle_of, wrap
 from benchnav.kernels import inlined, kernel, kernel_without_allocation
 from benchnav.world.bodies import body_at
@@ -32,13 +32,13 @@ def step_worlds(
     low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
     worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, spots: AnyArray,
+    hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray,
 ) -> None:  # fmt: skip
     """Advance the running worlds of rows low:high; ``executed`` gets the commands within limits."""
-    direction, near = np.empty(agents.shape[1]), np.empty(2 * agents.shape[1] + 1, np.int64)
+    driven, near = np.empty((3, agents.shape[1])), np.empty(agents.shape[1] + 1, np.int64)
     _step_rows(
         low, high, command, twist, executed, worlds, agents, bodies, shapes, knots, capsules,
-        start, item, opened, closed, hashed, spots, direction, near,
+        start, item, opened, closed, hashed, spots, listed, beyond, driven, near,
     )  # fmt: skip
 
 
@@ -47,13 +47,15 @@ def _step_rows(
     low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
     worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, spots: AnyArray, direction: FloatArray, near: IntArray,
+    hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray, driven: FloatArray,
+    near: IntArray,
 ) -> None:  # fmt: skip
     for b in range(low, high):
         if worlds[b].running:
             step_world(
                 command[b], twist[b], executed[b], worlds[b], agents[b], bodies[b], shapes, knots,
-                capsules, start, item, opened[b], closed[b], hashed[b], spots[b], direction, near,
+                capsules, start, item, opened[b], closed[b], hashed[b], spots[b], listed[b],
+                beyond[b], driven, near,
             )  # fmt: skip
 
 
@@ -62,26 +64,29 @@ def step_world(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
     bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
     item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray, spots: AnyArray,
-    direction: FloatArray, near: IntArray,
+    listed: IntArray, beyond: FloatArray, driven: FloatArray, near: IntArray,
 ) -> None:  # fmt: skip
     """Advance one world: arrays over its agents (A,), bodies (M,) and contacts (A, 8).
 
-    ``direction`` (A,) and ``near`` (2 A + 1,) are scratch.
+    ``driven`` (3, A) and ``near`` (A + 1,) are scratch.
     """
     relocate(world.steps_done * world.dt, world, agents, bodies, knots)
-    if obey(command, twist, executed, world, agents):
-        find_directions(executed, direction)
+    if obey(command, twist, executed, world, agents, driven):
+        find_directions(driven[0], driven[1], driven[2])
     for s in range(world.substeps):
         tick = world.steps_done * world.substeps + s
         begin, end = tick * world.h, (tick + 1) * world.h
         aim_bodies(end, world, bodies, knots)
         top = aim_agents(world, agents)
-        find_all(top, world, agents, bodies, shapes, capsules, start, item, hashed, spots, near)
+        find_all(
+            top, world, agents, bodies, shapes, capsules, start, item, hashed, spots, listed,
+            beyond, near,
+        )  # fmt: skip
         left = advance(
             begin, world, agents, bodies, shapes, capsules, start, item, opened, closed,
             hashed, spots,
         )  # fmt: skip
-        land_agents(left, world, agents, direction)
+        land_agents(left, world, agents, driven[2])
         land_bodies(world, bodies)
         follow_up(end, world, agents, bodies, shapes, capsules, start, item, opened, closed)
     world.steps_done += 1
@@ -124,9 +129,13 @@ def _within(dx: float, dy: float, reach: float) -> bool:
 
 @inlined
 def obey(
-    command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray
-) -> bool:
-    """Store commands within limits; return whether any is a planar velocity."""
+    command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
+    driven: FloatArray,
+) -> bool:  # fmt: skip
+    """Store commands within limits; return whether any is a planar velocity.
+
+    They are copied to the first two rows of ``driven`` too.
+    """
     planar = False
     for i in range(world.agents):
         a = agents[i]
@@ -139,15 +148,16 @@ def obey(
                 a.max_turn_rate, world.dt,
             )  # fmt: skip
         executed[i, 0], executed[i, 1] = a.drive_0, a.drive_1
+        driven[0, i], driven[1, i] = a.drive_0, a.drive_1
         planar = planar or not a.turning
     return planar
 
 
 @kernel_without_allocation
-def find_directions(velocity: FloatArray, direction: FloatArray) -> None:
-    """Write the direction [rad] of each velocity (A, 2). The loop is compiled to vector code."""
+def find_directions(vx: FloatArray, vy: FloatArray, direction: FloatArray) -> None:
+    """Write the direction [rad] of each velocity (A,). The loop is compiled to vector code."""
     for i in range(len(direction)):
-        direction[i] = wrap(angle_of(velocity[i, 0], velocity[i, 1]))
+        direction[i] = wrap(angle_of(vx[i], vy[i]))
 
 
 @inlined
@@ -177,25 +187,40 @@ def aim_agents(world: Any, agents: AnyArray) -> float:
 def find_all(
     top: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
-    near: IntArray,
+    listed: IntArray, beyond: FloatArray, near: IntArray,
 ) -> None:  # fmt: skip
-    """Find the next touch of every agent; none is faster than ``top`` [m/s]."""
+    """Find the next touch of every agent; none is faster than ``top`` [m/s].
+
+    The spots that sensing sorted serve here too, unless agents have moved since.
+    """
     crowd = len(agents) > BRUTE_FORCE
-    if crowd:
-        fill(agents, hashed, spots, world.reach)
+    if crowd and not follow(agents, hashed, spots):
+        world.cells = world.reach
+        fill(agents, hashed, spots, world.cells)
+        beyond[:] = -1.0
+    around = cells_around(world)
     for i in range(world.agents):
         a = agents[i]
         a.tau = math.inf
         if a.status == _ACTIVE and a.present:
             a.home = cell_at(world, a.x, a.y)
             if crowd:
-                meeting, partner = first_agent(i, world.h, top, agents, hashed, spots, near)
+                meeting, partner = first_agent(
+                    i, world.h, top, around, world.widest, agents, hashed, spots, listed, beyond,
+                    near,
+                )  # fmt: skip
             else:
-                meeting, partner = next_agent(i, world.h, agents, hashed, spots)
+                meeting, partner = next_agent(i, world.h, around, agents, hashed, spots)
             find_next(
                 i, meeting, partner, world.h, world.tolerance, agents, bodies, shapes, capsules,
                 start, item, world.bodies,
             )  # fmt: skip
+
+
+@kernel_without_allocation
+def cells_around(world: Any) -> int:
+    """Return how many rows and columns of cells around an agent hold all that it can touch."""
+    return math.ceil(world.reach / world.cells) if world.cells > 0.0 else 0
 
 
 @inlined
@@ -206,6 +231,7 @@ def advance(
 ) -> float:  # fmt: skip
     """Advance from touch to touch; return the time [s] from the last one to the substep's end."""
     left: float = world.h
+    around = cells_around(world)
     i = earliest(world, agents)
     while i >= 0 and agents[i].tau <= left:
         elapsed = agents[i].tau
@@ -220,7 +246,7 @@ def advance(
                 a.tau = math.inf
                 # a wedged agent is left alone until the next substep
                 if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
-                    meeting, partner = next_agent(k, left, agents, hashed, spots)
+                    meeting, partner = next_agent(k, left, around, agents, hashed, spots)
                     find_next(
                         k, meeting, partner, left, world.tolerance, agents, bodies, shapes,
                         capsules, start, item, world.bodies,

@@ -7,7 +7,7 @@ its solid), 4k + 3 body k.
 import math
 from typing import Any
 
-from benchnav.arrays import AnyArray, IntArray
+from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
 from benchnav.geometry.hash_grid import bucket
 from benchnav.kernels import inlined, kernel_without_allocation
@@ -61,12 +61,12 @@ def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
 
 @inlined
 def next_agent(
-    i: int, left: float, agents: AnyArray, hashed: IntArray, spots: AnyArray
+    i: int, left: float, around: int, agents: AnyArray, hashed: IntArray, spots: AnyArray
 ) -> tuple[float, int]:
     """Return (time, index) of the agent that i touches first within ``left`` [s], or (inf, -1).
 
-    Crowds are searched in the 3 × 3 cells around i. Their side is so large that agents farther
-    apart cannot meet within a substep.
+    Crowds are searched in the cells of ``around`` rows and columns on each side of i. Agents
+    farther apart cannot meet within a substep.
     """
     a, best, partner = agents[i], math.inf, -1
     if len(agents) <= BRUTE_FORCE:
@@ -77,14 +77,21 @@ def next_agent(
                     best, partner = t, j
         return best, partner
     size = len(hashed) - 1
-    for row in range(a.cj - 1, a.cj + 2):
-        low = bucket(a.ci - 1, row, size)
-        for part in range(2 if low + 3 > size else 1):  # the row may continue at the table's start
-            begin, end = (low, min(low + 3, size)) if part == 0 else (0, low + 3 - size)
+    width = min(2 * around + 1, size)
+    for row in range(a.cj - around, a.cj + around + 1):
+        low = bucket(a.ci - around, row, size)
+        high = low + width
+        for part in range(2 if high > size else 1):  # the row may continue at the table's start
+            begin, end = (low, min(high, size)) if part == 0 else (0, high - size)
             for at in range(hashed[begin], hashed[end]):
                 spot = spots[at]
                 j = spot.index
-                if spot.cj != row or abs(spot.ci - a.ci) > 1 or j == i or not agents[j].present:
+                if (
+                    spot.cj != row
+                    or abs(spot.ci - a.ci) > around
+                    or j == i
+                    or not agents[j].present
+                ):
                     continue
                 t = pair_time(a, agents[j])
                 if t <= left and (t < best or (t == best and j < partner)):
@@ -94,27 +101,61 @@ def next_agent(
 
 @kernel_without_allocation
 def first_agent(
-    i: int, left: float, top: float, agents: AnyArray, hashed: IntArray, spots: AnyArray,
-    near: IntArray,
+    i: int, left: float, top: float, around: int, widest: float, agents: AnyArray,
+    hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray, near: IntArray,
 ) -> tuple[float, int]:  # fmt: skip
     """Return the same as `next_agent` at the start of a substep, when the spots are up to date.
 
-    ``top`` is the highest speed of any agent [m/s]. Spots that approach and are near enough to
-    meet are listed first, without branches that cannot be predicted. ``near`` is scratch.
+    ``top`` is the highest speed of any agent [m/s], and ``widest`` the largest radius [m]. The
+    agents that sensing listed are enough if all others are too far away to meet.
     """
-    a, n = agents[i], 0
-    size = len(hashed) - 1
-    nearest = a.radius + WIDER * 2.0 * top * left
-    for row in range(a.cj - 1, a.cj + 2):
-        low = bucket(a.ci - 1, row, size)
-        for part in range(2 if low + 3 > size else 1):  # the row may continue at the table's start
-            begin, end = (low, min(low + 3, size)) if part == 0 else (0, low + 3 - size)
+    a = agents[i]
+    way = WIDER * (math.sqrt(a.vx * a.vx + a.vy * a.vy) + top) * left
+    far = a.radius + widest + way
+    if WIDER * far < beyond[i]:
+        return _first_listed(a, left, far, spots, listed[i])
+    return _first_in_cells(a, left, way, around, hashed, spots, near)
+
+
+@kernel_without_allocation
+def _first_listed(
+    a: Any, left: float, far: float, spots: AnyArray, listed: IntArray
+) -> tuple[float, int]:
+    """Search the listed spots, nearest first, until one is beyond ``far`` [m]."""
+    best, partner = math.inf, -1
+    for k in range(1, listed[0] + 1):
+        spot = spots[listed[k]]
+        fx, fy = a.x - spot.x, a.y - spot.y
+        if fx * fx + fy * fy > WIDER * far * far:
+            break
+        t, j = pair_time(a, spot), spot.index
+        if t <= left and (t < best or (t == best and j < partner)):
+            best, partner = t, j
+    return best, partner
+
+
+@kernel_without_allocation
+def _first_in_cells(
+    a: Any, left: float, way: float, around: int, hashed: IntArray, spots: AnyArray, near: IntArray
+) -> tuple[float, int]:
+    """List spots that approach and are near enough, without branches that cannot be predicted.
+
+    ``near`` is scratch.
+    """
+    n, size = 0, len(hashed) - 1
+    width, nearest = min(2 * around + 1, size), a.radius + way
+    for row in range(a.cj - around, a.cj + around + 1):
+        low = bucket(a.ci - around, row, size)
+        high = low + width
+        for part in range(2 if high > size else 1):  # the row may continue at the table's start
+            begin, end = (low, min(high, size)) if part == 0 else (0, high - size)
             for at in range(hashed[begin], hashed[end]):
                 spot = spots[at]
                 fx, fy, wx, wy = a.x - spot.x, a.y - spot.y, a.vx - spot.vx, a.vy - spot.vy
                 far = nearest + spot.radius
                 near[n] = at
-                n += (fx * fx + fy * fy <= WIDER * far * far) & (fx * wx + fy * wy < 0.0)
+                within = (fx * fx + fy * fy <= WIDER * far * far) & (fx * wx + fy * wy < 0.0)
+                n += within & (spot.cj == row)
     best, partner = math.inf, -1
     for k in range(n):
         spot = spots[near[k]]
