@@ -114,7 +114,8 @@ def _neighbours(
     run_rows(
         find_neighbours, chosen.size, chosen, float(sensor.range), occlusion, side, s.sees,
         s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
-        s.near, s.listed, s.beyond, out.position, out.velocity, out.radius, out.kind, out.count, least=LEAST,
+        s.near, s.listed, s.beyond, out.position, out.velocity, out.radius, out.kind, out.count,
+        least=LEAST,
     )  # fmt: skip
     return out
 
