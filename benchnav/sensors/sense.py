@@ -10,7 +10,7 @@ from benchnav.geometry.hash_grid import collect, fill
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel_without_allocation
 from benchnav.sensors.edges import find_edges
-from benchnav.sensors.neighbours import find_neighbours
+from benchnav.sensors.neighbours import find_neighbours, number_rows
 from benchnav.sensors.rays import cast_rays
 from benchnav.sensors.readings import Edges, Neighbours, Rays
 from benchnav.threads import run_rows
@@ -58,7 +58,7 @@ def _cell_side(simulation: Simulation, sensing: Sensing, needs: frozenset[str]) 
         limit = sensing.neighbours.range if sensing.neighbours is not None else 0.0
         return max(0.25 * max(limit, sensing.rays.range), 4.0 * simulation.widest)
     near = float(np.add.reduce(simulation.near, None)) / simulation.near.size
-    return max(near, 0.5 * simulation.widest, LEAST_SIDE)
+    return max(1.1 * near, 0.5 * simulation.widest, LEAST_SIDE)
 
 
 @kernel_without_allocation
@@ -111,11 +111,13 @@ def _neighbours(
         np.empty(chosen.shape, np.int64),
     )  # fmt: skip
     s = simulation
+    row = np.empty((s.B, s.A), np.int64)
+    readings = (out.position, out.velocity, out.radius, out.kind, out.count)
+    number_rows(0, s.B, chosen, s.agents, row, *readings)
     run_rows(
-        find_neighbours, chosen.size, chosen, float(sensor.range), occlusion, side, s.sees,
+        find_neighbours, row.size, row, float(sensor.range), occlusion, side, s.sees,
         s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
-        s.near, s.listed, s.beyond, out.position, out.velocity, out.radius, out.kind, out.count,
-        least=LEAST,
+        s.near, s.listed, s.beyond, *readings, least=LEAST,
     )  # fmt: skip
     return out
 
