@@ -114,9 +114,7 @@ def _gather_spots(
 
 
 @kernel_without_allocation
-def _keep_seen(
-    n: int, seen: BoolArray, spots: AnyArray, best: FloatArray, place: IntArray
-) -> int:
+def _keep_seen(n: int, seen: BoolArray, spots: AnyArray, best: FloatArray, place: IntArray) -> int:
     """Drop agents of ignored teams from n candidates; return the number of the others."""
     kept = 0
     for k in range(n):

@@ -33,7 +33,8 @@ WORLD = _record(
 # (B, A), padding has present = False; fields that others read come first, in one cache line
 AGENT = _record(
     x="f8", y="f8", vx="f8", vy="f8", radius="f8", ci="i4", cj="i4", team="i4",
-    status="i1", present="?", unicycle="?", evaluated="?", turning="?", halted="?", open="?",
+    spot="i4", status="i1", present="?", unicycle="?", evaluated="?", turning="?", halted="?",
+    open="?",
     heading="f8", goal_x="f8", goal_y="f8", arrival="f8", max_speed="f8", max_turn_rate="f8",
     preferred_speed="f8", drive_0="f8", drive_1="f8", tau="f8", code="i8", home="i8", hits="i8",
 )  # fmt: skip

@@ -14,14 +14,14 @@ import numpy as np
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
-from benchnav.geometry.hash_grid import fill, follow
 from benchnav.geometry.rotation import angle_of, wrap
 from benchnav.kernels import inlined, kernel, kernel_without_allocation
 from benchnav.world.bodies import body_at
 from benchnav.world.contacts import MAX_HITS, follow_up, touch
+from benchnav.world.crowd import ROWS, advance_crowd, find_all_in_crowd, sort_spots
 from benchnav.world.dynamics import limited, planar_velocity
 from benchnav.world.fixed import cell_at
-from benchnav.world.touch import BRUTE_FORCE, find_next, first_agent, next_agent
+from benchnav.world.touch import BRUTE_FORCE, find_next, next_agent
 
 _ACTIVE = int(Status.ACTIVE)
 _STATIC = int(Kind.STATIC)
@@ -35,10 +35,12 @@ def step_worlds(
     hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray,
 ) -> None:  # fmt: skip
     """Advance the running worlds of rows low:high; ``executed`` gets the commands within limits."""
-    driven, near = np.empty((3, agents.shape[1])), np.empty(agents.shape[1] + 1, np.int64)
+    count = agents.shape[1]
+    driven, motion = np.empty((3, count)), np.empty((ROWS, count))
+    near = np.empty(2 * count + 1, np.int64)
     _step_rows(
         low, high, command, twist, executed, worlds, agents, bodies, shapes, knots, capsules,
-        start, item, opened, closed, hashed, spots, listed, beyond, driven, near,
+        start, item, opened, closed, hashed, spots, listed, beyond, driven, motion, near,
     )  # fmt: skip
 
 
@@ -48,14 +50,14 @@ def _step_rows(
     worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
     hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray, driven: FloatArray,
-    near: IntArray,
+    motion: FloatArray, near: IntArray,
 ) -> None:  # fmt: skip
     for b in range(low, high):
         if worlds[b].running:
             step_world(
                 command[b], twist[b], executed[b], worlds[b], agents[b], bodies[b], shapes, knots,
                 capsules, start, item, opened[b], closed[b], hashed[b], spots[b], listed[b],
-                beyond[b], driven, near,
+                beyond[b], driven, motion, near,
             )  # fmt: skip
 
 
@@ -64,11 +66,11 @@ def step_world(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
     bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
     item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray, spots: AnyArray,
-    listed: IntArray, beyond: FloatArray, driven: FloatArray, near: IntArray,
+    listed: IntArray, beyond: FloatArray, driven: FloatArray, motion: FloatArray, near: IntArray,
 ) -> None:  # fmt: skip
     """Advance one world: arrays over its agents (A,), bodies (M,) and contacts (A, 8).
 
-    ``driven`` (3, A) and ``near`` (A + 1,) are scratch.
+    ``driven`` (3, A), ``motion`` (6, A) and ``near`` (2 A + 1,) are scratch.
     """
     relocate(world.steps_done * world.dt, world, agents, bodies, knots)
     if obey(command, twist, executed, world, agents, driven):
@@ -78,14 +80,21 @@ def step_world(
         begin, end = tick * world.h, (tick + 1) * world.h
         aim_bodies(end, world, bodies, knots)
         top = aim_agents(world, agents)
-        find_all(
-            top, world, agents, bodies, shapes, capsules, start, item, hashed, spots, listed,
-            beyond, near,
-        )  # fmt: skip
-        left = advance(
-            begin, world, agents, bodies, shapes, capsules, start, item, opened, closed,
-            hashed, spots,
-        )  # fmt: skip
+        if len(agents) > BRUTE_FORCE:
+            sort_spots(world, agents, hashed, spots, beyond, motion)
+            find_all_in_crowd(
+                top, world, agents, bodies, shapes, capsules, start, item, hashed, spots, listed,
+                beyond, motion, near,
+            )  # fmt: skip
+            left = advance_crowd(
+                begin, top, world, agents, bodies, shapes, capsules, start, item, opened, closed,
+                hashed, spots, motion, near,
+            )  # fmt: skip
+        else:
+            find_all(world, agents, bodies, shapes, capsules, start, item)
+            left = advance(
+                begin, world, agents, bodies, shapes, capsules, start, item, opened, closed
+            )
         land_agents(left, world, agents, driven[2])
         land_bodies(world, bodies)
         follow_up(end, world, agents, bodies, shapes, capsules, start, item, opened, closed)
@@ -185,53 +194,29 @@ def aim_agents(world: Any, agents: AnyArray) -> float:
 
 @inlined
 def find_all(
-    top: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
-    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
-    listed: IntArray, beyond: FloatArray, near: IntArray,
+    world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
+    start: IntArray, item: IntArray,
 ) -> None:  # fmt: skip
-    """Find the next touch of every agent; none is faster than ``top`` [m/s].
-
-    The spots that sensing sorted serve here too, unless agents have moved since.
-    """
-    crowd = len(agents) > BRUTE_FORCE
-    if crowd and not follow(agents, hashed, spots):
-        world.cells = world.reach
-        fill(agents, hashed, spots, world.cells)
-        beyond[:] = -1.0
-    around = cells_around(world)
+    """Find the next touch of every agent."""
     for i in range(world.agents):
         a = agents[i]
         a.tau = math.inf
         if a.status == _ACTIVE and a.present:
             a.home = cell_at(world, a.x, a.y)
-            if crowd:
-                meeting, partner = first_agent(
-                    i, world.h, top, around, world.widest, agents, hashed, spots, listed, beyond,
-                    near,
-                )  # fmt: skip
-            else:
-                meeting, partner = next_agent(i, world.h, around, agents, hashed, spots)
+            meeting, partner = next_agent(i, world.h, agents)
             find_next(
                 i, meeting, partner, world.h, world.tolerance, agents, bodies, shapes, capsules,
                 start, item, world.bodies,
             )  # fmt: skip
 
 
-@kernel_without_allocation
-def cells_around(world: Any) -> int:
-    """Return how many rows and columns of cells around an agent hold all that it can touch."""
-    return math.ceil(world.reach / world.cells) if world.cells > 0.0 else 0
-
-
 @inlined
 def advance(
     begin: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, spots: AnyArray,
 ) -> float:  # fmt: skip
     """Advance from touch to touch; return the time [s] from the last one to the substep's end."""
     left: float = world.h
-    around = cells_around(world)
     i = earliest(world, agents)
     while i >= 0 and agents[i].tau <= left:
         elapsed = agents[i].tau
@@ -246,7 +231,7 @@ def advance(
                 a.tau = math.inf
                 # a wedged agent is left alone until the next substep
                 if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
-                    meeting, partner = next_agent(k, left, around, agents, hashed, spots)
+                    meeting, partner = next_agent(k, left, agents)
                     find_next(
                         k, meeting, partner, left, world.tolerance, agents, bodies, shapes,
                         capsules, start, item, world.bodies,

@@ -7,13 +7,12 @@ its solid), 4k + 3 body k.
 import math
 from typing import Any
 
-from benchnav.arrays import AnyArray, FloatArray, IntArray
+from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
-from benchnav.geometry.hash_grid import bucket
 from benchnav.kernels import inlined, kernel_without_allocation
 
 GOAL, AGENT, FIXED, BODY = 0, 1, 2, 3
-BRUTE_FORCE = 24  # up to this many agents, testing all pairs is cheaper than a grid
+BRUTE_FORCE = 24  # up to this many agents, testing all pairs is cheaper than cells
 WIDER = 1.000001  # factor of a distance, so that rounding never excludes a touch
 
 
@@ -60,108 +59,14 @@ def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
 
 
 @inlined
-def next_agent(
-    i: int, left: float, around: int, agents: AnyArray, hashed: IntArray, spots: AnyArray
-) -> tuple[float, int]:
-    """Return (time, index) of the agent that i touches first within ``left`` [s], or (inf, -1).
-
-    Crowds are searched in the cells of ``around`` rows and columns on each side of i. Agents
-    farther apart cannot meet within a substep.
-    """
+def next_agent(i: int, left: float, agents: AnyArray) -> tuple[float, int]:
+    """Return (time, index) of the agent that i touches first within ``left`` [s], or (inf, -1)."""
     a, best, partner = agents[i], math.inf, -1
-    if len(agents) <= BRUTE_FORCE:
-        for j in range(len(agents)):
-            if j != i and agents[j].present:
-                t = pair_time(a, agents[j])
-                if t <= left and t < best:
-                    best, partner = t, j
-        return best, partner
-    size = len(hashed) - 1
-    width = min(2 * around + 1, size)
-    for row in range(a.cj - around, a.cj + around + 1):
-        low = bucket(a.ci - around, row, size)
-        high = low + width
-        for part in range(2 if high > size else 1):  # the row may continue at the table's start
-            begin, end = (low, min(high, size)) if part == 0 else (0, high - size)
-            for at in range(hashed[begin], hashed[end]):
-                spot = spots[at]
-                j = spot.index
-                if (
-                    spot.cj != row
-                    or abs(spot.ci - a.ci) > around
-                    or j == i
-                    or not agents[j].present
-                ):
-                    continue
-                t = pair_time(a, agents[j])
-                if t <= left and (t < best or (t == best and j < partner)):
-                    best, partner = t, j
-    return best, partner
-
-
-@kernel_without_allocation
-def first_agent(
-    i: int, left: float, top: float, around: int, widest: float, agents: AnyArray,
-    hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray, near: IntArray,
-) -> tuple[float, int]:  # fmt: skip
-    """Return the same as `next_agent` at the start of a substep, when the spots are up to date.
-
-    ``top`` is the highest speed of any agent [m/s], and ``widest`` the largest radius [m]. The
-    agents that sensing listed are enough if all others are too far away to meet.
-    """
-    a = agents[i]
-    way = WIDER * (math.sqrt(a.vx * a.vx + a.vy * a.vy) + top) * left
-    far = a.radius + widest + way
-    if WIDER * far < beyond[i]:
-        return _first_listed(a, left, far, spots, listed[i])
-    return _first_in_cells(a, left, way, around, hashed, spots, near)
-
-
-@kernel_without_allocation
-def _first_listed(
-    a: Any, left: float, far: float, spots: AnyArray, listed: IntArray
-) -> tuple[float, int]:
-    """Search the listed spots, nearest first, until one is beyond ``far`` [m]."""
-    best, partner = math.inf, -1
-    for k in range(1, listed[0] + 1):
-        spot = spots[listed[k]]
-        fx, fy = a.x - spot.x, a.y - spot.y
-        if fx * fx + fy * fy > WIDER * far * far:
-            break
-        t, j = pair_time(a, spot), spot.index
-        if t <= left and (t < best or (t == best and j < partner)):
-            best, partner = t, j
-    return best, partner
-
-
-@kernel_without_allocation
-def _first_in_cells(
-    a: Any, left: float, way: float, around: int, hashed: IntArray, spots: AnyArray, near: IntArray
-) -> tuple[float, int]:
-    """List spots that approach and are near enough, without branches that cannot be predicted.
-
-    ``near`` is scratch.
-    """
-    n, size = 0, len(hashed) - 1
-    width, nearest = min(2 * around + 1, size), a.radius + way
-    for row in range(a.cj - around, a.cj + around + 1):
-        low = bucket(a.ci - around, row, size)
-        high = low + width
-        for part in range(2 if high > size else 1):  # the row may continue at the table's start
-            begin, end = (low, min(high, size)) if part == 0 else (0, high - size)
-            for at in range(hashed[begin], hashed[end]):
-                spot = spots[at]
-                fx, fy, wx, wy = a.x - spot.x, a.y - spot.y, a.vx - spot.vx, a.vy - spot.vy
-                far = nearest + spot.radius
-                near[n] = at
-                within = (fx * fx + fy * fy <= WIDER * far * far) & (fx * wx + fy * wy < 0.0)
-                n += within & (spot.cj == row)
-    best, partner = math.inf, -1
-    for k in range(n):
-        spot = spots[near[k]]
-        t, j = pair_time(a, spot), spot.index
-        if t <= left and (t < best or (t == best and j < partner)):
-            best, partner = t, j
+    for j in range(len(agents)):
+        if j != i and agents[j].present:
+            t = pair_time(a, agents[j])
+            if t <= left and t < best:
+                best, partner = t, j
     return best, partner
 
 
