@@ -8,15 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.arena.body import Body, Law, LawKind
-from benchnav.arena.sensing import NeighbourSensor, Sensing
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards, Charge, ContactRule
 from benchnav.episode.episode import Status
-from benchnav.geometry.hash_grid import fill, hash_table
-from benchnav.sensors.sense import sense
-from benchnav.world.records import AGENT, LISTED, SPOT
 from benchnav.world.simulation import Simulation
-from benchnav.world.touch import first_agent, next_agent, pair_time
 from tests.reference.step import SlowWorld
 from tests.worlds import agents, back_and_forth, box, disc, random_world, walls, world
 
@@ -363,73 +358,3 @@ def test_a_holonomic_body_turns_at_the_rate_it_is_told():
     for _ in range(5):
         simulation.step(np.array([[[1.0, 1.0], [0.0, 1.0]]]), np.ones((1, 2), bool))
     np.testing.assert_allclose(simulation.heading[0], [1.0, 1.0])
-
-
-def test_a_crowd_finds_its_first_touch_in_every_way():
-    """From cells of any size and from lists of the nearest, at the start of a substep or later."""
-    rng = np.random.default_rng(3)
-    count, h = 300, 0.5
-    crowd = np.zeros(count, AGENT)
-    crowd["x"], crowd["y"] = rng.uniform(-12.0, 12.0, (2, count))
-    crowd["vx"], crowd["vy"] = rng.normal(0.0, 0.5, (2, count))
-    crowd["radius"] = rng.uniform(0.1, 0.3, count)
-    crowd["x"][1:9], crowd["y"][1:9] = crowd["x"][0], crowd["y"][0]  # at one place
-    crowd["present"] = rng.random(count) < 0.9
-    top = float(np.hypot(crowd["vx"], crowd["vy"]).max())
-    reach = 2.0 * 0.3 + 2.0 * top * h
-    near, touches, used = np.empty(count + 1, np.int64), 0, 0
-    others = np.flatnonzero(crowd["present"])
-    for side in (reach, 0.3 * reach, 2.5 * reach):
-        hashed, spots = hash_table(1, count)[0], np.zeros(count, SPOT)
-        fill(crowd, hashed, spots, side)
-        around = math.ceil(reach / side)
-        for beyond, length in ((-1.0, 0), (math.inf, LISTED)):
-            for i in others:
-                spot = spots[: hashed[-1]]
-                distance = np.hypot(spot["x"] - crowd["x"][i], spot["y"] - crowd["y"][i])
-                order = np.argsort(distance)
-                order = order[spot["index"][order] != i]
-                listed = np.zeros((count, 1 + LISTED), np.int32)
-                listed[i, 0], listed[i, 1:] = length, order[:LISTED]
-                limits = np.full(count, min(beyond, distance[order[LISTED - 1]]))
-                found = first_agent(
-                    i, h, top, around, 0.3, crowd, hashed, spots, listed, limits, near
-                )
-                assert found == next_agent(i, h, around, crowd, hashed, spots)
-                assert found == nearest_in_time(crowd, i, h)
-                touches += found[1] >= 0
-                used += limits[i] > reach
-    assert 300 < touches < 1800
-    assert 100 < used < 900
-
-
-def nearest_in_time(crowd, i, left):
-    """Return (time, index) of the first agent that i touches, from all pairs."""
-    times = [
-        (pair_time(crowd[i], crowd[j]), j)
-        for j in range(len(crowd))
-        if j != i and crowd["present"][j]
-    ]
-    return min([(t, j) for t, j in times if t <= left], default=(math.inf, -1))
-
-
-def test_lists_of_the_nearest_change_no_step():
-    """Sensing before a step leaves its table to it, also if agents are moved in between."""
-    rng = np.random.default_rng(5)
-    start = rng.uniform(1.0, 19.0, (200, 2))
-    sensing = Sensing(None, NeighbourSensor(10, 6.0), None)
-    crew = agents(start, start[::-1])
-    blind, seeing = (Simulation([world(crew, [], sensing=sensing)]) for _ in range(2))
-    everybody = np.arange(200)[None]
-    for k in range(30):
-        command = rng.normal(size=(1, 200, 2))
-        sense(seeing, np.where(seeing.present, everybody, -1), frozenset({"neighbours"}))
-        if k % 5 == 4:
-            for simulation in (blind, seeing):
-                simulation.position[0, k] = simulation.position[0, k + 1] + 0.7
-        for simulation in (blind, seeing):
-            simulation.step(command, np.zeros((1, 200), bool))
-        assert blind.position.tobytes() == seeing.position.tobytes()
-        assert blind.velocity.tobytes() == seeing.velocity.tobytes()
-    assert len(seeing.contacts(0)) > 50
-    assert blind.contacts(0).start.tobytes() == seeing.contacts(0).start.tobytes()
