@@ -51,7 +51,7 @@ def number_rows(
 @kernel
 def find_neighbours(
     low: int, high: int, row: IntArray, limit: float, occlusion: bool, side: float,
-    sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    sees: BoolArray, worlds: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
     velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray,
@@ -67,11 +67,11 @@ def find_neighbours(
     The nearest agents of a crowd are ``listed`` (B, A, …) for the step, which reads the list up to
     the distance ``beyond`` (B, A) [m].
     """
-    most = agents.shape[1] + bodies.shape[1] + 1
+    most = spots.shape[1] + bodies.shape[1] + 1
     best, given = np.empty(most), np.empty(SLOTS * LANES)  # squared distances
     smallest = np.empty((CHAIN + 1) * LANES)
     _find_in_rows(
-        low, high, row, limit, occlusion, side, sees, worlds, agents, bodies, shapes, capsules,
+        low, high, row, limit, occlusion, side, sees, worlds, bodies, shapes, capsules,
         start, item, hashed, spots, near, listed, beyond, position, velocity, radius, kind, count,
         np.empty((2, most)), np.empty(most, np.int64), np.empty(4, np.int64), best,
         best.view(np.int64), np.empty((LANES, most), np.int64), np.empty(most, np.int64), given,
@@ -82,7 +82,7 @@ def find_neighbours(
 @kernel_without_allocation
 def _find_in_rows(
     low: int, high: int, row: IntArray, limit: float, occlusion: bool, side: float,
-    sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    sees: BoolArray, worlds: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
     velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray,
@@ -94,7 +94,7 @@ def _find_in_rows(
 
     Insertion is for many candidates, equal distances, and worlds where obstacles hide neighbours.
     """
-    total, most = agents.shape[1], position.shape[2]
+    total, most = spots.shape[1], position.shape[2]
     few, x, y = total <= BRUTE_FORCE, around[0], around[1]
     for b in range(low // total, (high + total - 1) // total):
         world, things, table, crowd = worlds[b], bodies[b], hashed[b], spots[b]
@@ -115,7 +115,7 @@ def _find_in_rows(
                 n = SLOTS + 1
                 if not hidden and most < CHAIN:
                     n = gather(
-                        own, most, far, limit, side, few, everyone, sees[b], agents[b, i],
+                        own, most, far, limit, side, few, everyone, sees[b], crowd[own],
                         world.bodies, things, table, crowd, window, x, y, at, best, place[lane],
                     )  # fmt: skip
                 sizes[lane] = n
@@ -127,7 +127,7 @@ def _find_in_rows(
             for lane in range(min(LANES, end - first)):
                 own, n = first + lane, sizes[lane]
                 i = crowd[own].index
-                k, a = row[b, i], agents[b, i]
+                k, a = row[b, i], crowd[own]
                 if k < 0:
                     continue
                 kept = min(n, most)

@@ -116,7 +116,7 @@ def _neighbours(
     number_rows(0, s.B, chosen, s.agents, row, *readings)
     run_rows(
         find_neighbours, row.size, row, float(sensor.range), occlusion, side, s.sees,
-        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
+        s.records, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
         s.near, s.listed, s.beyond, *readings, least=LEAST,
     )  # fmt: skip
     return out
