@@ -1,17 +1,24 @@
-"""ORCA crowds: sensing + ORCA + step of benchnav against the ORCA of its peers, side by side.
+"""ORCA crowds: sensing + ORCA + step of benchnav against its peers, side by side.
 
 Agents on a circle exchange places; 0.63 m lie between neighbours on it. Each avoids the nearest
-ten others within 10 m; the time step is 0.25 s. In a gridlock, agents stand in a square, in
-contact or nearly so, and all go to its middle. The timed part, after a warm-up:
+ten others within 10 m; the time step is 0.25 s. In a gridlock, agents stand in a square, go to its
+middle and keep no margin, so that nearly all of them are in contact all the time. The timed part,
+after a warm-up:
 
-- benchnav: observation (sensing), decision (`orca` with its defaults) and simulator step,
-  with contacts and all work of the runner between them;
+- benchnav: observation (sensing), decision (`orca`) and simulator step, with contacts and all work
+  of the runner between them;
 - pyrvo: only `do_step`, without the Python loop that sets preferred velocities;
-- navground: the update of a world of ORCA agents.
+- navground: the update of a world of ORCA agents;
+- jupedsim: 25 iterations of 0.01 s of its social force model on the same circle, because these
+  forces are not stable at longer steps;
+- camar: 25 steps of 0.01 s of a compiled environment (JAX on the processor), with contact forces
+  and observations, but without decisions, of agents in a square without obstacles. Its area for an
+  agent is that of its default map.
 
-Every measurement runs in a separate interpreter; the parts run in turns, and the
-best of three rounds counts. ``python -m benchmarks.orca_peers PEERS_PYTHON`` prints
-the rows; PEERS_PYTHON is an interpreter that has pyrvo and navground.
+So a step is 0.25 s of simulated time for all of them. Every measurement runs in a separate
+interpreter; the parts run in turns, and the best of three rounds counts.
+``python -m benchmarks.orca_peers PEERS_PYTHON`` prints the rows; PEERS_PYTHON is an interpreter
+that has the peers.
 """
 
 import json
@@ -29,7 +36,8 @@ ROOT = Path(__file__).resolve().parents[1]
 GAP, RADIUS = 0.2 * math.pi, 0.2  # [m]
 NEIGHBOURS, RANGE, HORIZON = 10, 10.0, 5.0  # [m], [s]
 SPEED, LIMIT, DT = 1.0, 1.5, 0.25  # [m/s], [m/s], [s]
-PACKED = 0.42  # [m] between agents in a gridlock
+PACKED = 0.401  # [m] between agents in a gridlock
+SHORT = 0.01  # [s] step of peers with forces
 ROUNDS = 3
 
 Places = list[tuple[float, float]]
@@ -50,7 +58,7 @@ class Crowd:
     @property
     def steps(self) -> int:
         """The number of timed steps."""
-        return max(10, min(100, 1_000_000 // self.agents))
+        return 20 if self.gridlock else max(10, min(100, 1_000_000 // self.agents))
 
     @property
     def warm(self) -> int:
@@ -70,12 +78,15 @@ class Crowd:
         return [(circle * math.cos(a), circle * math.sin(a)) for a in angles]
 
 
-LARGE, TWO, JAM = Crowd(100_000), Crowd(threads=2), Crowd(gridlock=True)
+LARGE, JAM = Crowd(100_000), Crowd(gridlock=True)
 # (ours, a peer on the same crowd or another crowd of ours, the ratio of rates to reach)
 WANTED: tuple[tuple[Crowd, str | Crowd, float], ...] = (
     (Crowd(100), "pyrvo", 3.0), (Crowd(), "pyrvo", 4.5), (Crowd(10_000), "pyrvo", 4.0),
-    (LARGE, "pyrvo", 3.5), (TWO, "pyrvo", 7.5), (Crowd(), "navground", 20.0),
-    (LARGE, Crowd(), 1.0 / 1.3), (TWO, Crowd(), 1.6), (JAM, Crowd(), 0.5),
+    (LARGE, "pyrvo", 3.5), (Crowd(100, 2), "pyrvo", 3.0), (Crowd(1000, 2), "pyrvo", 7.5),
+    (Crowd(10_000, 2), "pyrvo", 6.4), (Crowd(100_000, 2), "pyrvo", 5.6),
+    (Crowd(), "navground", 20.0), (Crowd(), "jupedsim", 1.0), (Crowd(100), "camar", 1.0),
+    (Crowd(1000, 2), Crowd(), 1.6), (Crowd(10_000, 2), Crowd(10_000), 1.6),
+    (Crowd(100_000, 2), LARGE, 1.6), (LARGE, Crowd(), 1.0 / 1.3), (JAM, Crowd(), 0.5),
 )  # fmt: skip
 
 
@@ -89,7 +100,8 @@ def benchnav(crowd: Crowd) -> float:
     from benchnav.world.simulation import Simulation
 
     simulation = Simulation([crowd_world(crowd)])
-    driver = Driver(make(NAVIGATORS, "orca"), simulation, 0, "unknown")
+    navigator = {"type": "orca", "margin": 0.0} if crowd.gridlock else "orca"
+    driver = Driver(make(NAVIGATORS, navigator), simulation, 0, "unknown")
     driver.reset([np.random.default_rng(0)])
     command, twist = np.zeros((1, crowd.agents, 2)), np.zeros((1, crowd.agents), np.bool_)
     began = 0.0
@@ -176,7 +188,58 @@ def navground(crowd: Crowd) -> float:
     return perf_counter() - began
 
 
-PARTS = {"benchnav": benchnav, "pyrvo": pyrvo, "navground": navground}
+def jupedsim(crowd: Crowd) -> float:
+    """Return the time of the steps [s]."""
+    import jupedsim as jps
+    import shapely
+
+    reach = 1.2 * max(x for x, _ in crowd.starts)
+    area = shapely.box(-reach, -reach, reach, reach)
+    simulation = jps.Simulation(model=jps.SocialForceModel(), geometry=area, dt=SHORT)
+    for x, y in crowd.starts:
+        stage = simulation.add_waypoint_stage((-x, -y), 0.1)
+        journey = simulation.add_journey(jps.JourneyDescription([stage]))
+        simulation.add_agent(
+            jps.SocialForceModelAgentParameters(
+                position=(x, y), journey_id=journey, stage_id=stage, desired_speed=SPEED,
+                radius=RADIUS,
+            )
+        )  # fmt: skip
+    each = round(DT / SHORT)
+    simulation.iterate(crowd.warm * each)
+    began = perf_counter()
+    simulation.iterate(crowd.steps * each)
+    return perf_counter() - began
+
+
+def camar(crowd: Crowd) -> float:
+    """Return the time of the steps [s]."""
+    import jax
+    from camar.environment import Camar
+    from camar.maps import random_grid
+
+    jax.config.update("jax_platforms", "cpu")
+    side = math.ceil(math.sqrt(12.5 * crowd.agents))  # 400 cells for 32 agents by default
+    place = random_grid(num_rows=side, num_cols=side, obstacle_density=0.0, num_agents=crowd.agents)
+    environment = Camar(place, frameskip=round(DT / SHORT) - 1)
+    key = jax.random.key(0)
+    _, state = jax.jit(environment.reset)(key)
+    action = jax.random.uniform(key, (crowd.agents, 2), minval=-1.0, maxval=1.0)
+    step = jax.jit(environment.step)
+    began = 0.0
+    for k in range(crowd.warm + crowd.steps):
+        if k == crowd.warm:
+            jax.block_until_ready(state)
+            began = perf_counter()
+        _, state, *_ = step(key, state, action)
+    jax.block_until_ready(state)
+    return perf_counter() - began
+
+
+PARTS = {
+    "benchnav": benchnav, "pyrvo": pyrvo, "navground": navground, "jupedsim": jupedsim,
+    "camar": camar,
+}  # fmt: skip
 
 
 def answer(part: str, crowd: Crowd) -> dict[str, Any]:

@@ -56,7 +56,9 @@ def _work(jobs: SimpleQueue[Job]) -> None:
 
 def run_rows(kernel: Callable[..., None], rows: int, *args: Any, least: int = 16) -> None:
     """Run ``kernel(low, high, *args)`` over range(rows), in threads of ``least`` rows or more."""
-    parts = min(thread_count(), rows // least)
+    parts = rows // least
+    if parts > 1:
+        parts = min(thread_count(), parts)
     if parts <= 1:
         kernel(0, rows, *args)
         return

@@ -30,6 +30,7 @@ class AutoresetSimulation(Simulation):
         self._kept = [[] for _ in first]
         self.hashed, self.spots = self.hashed[first], self.spots[first]
         self.near = self.near[first]
+        self.listed, self.beyond = self.listed[first], self.beyond[first]
         self._views()
 
     def restart(self, rows: IntArray, worlds: IntArray) -> None:

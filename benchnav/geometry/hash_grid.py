@@ -59,6 +59,24 @@ def fill(points: AnyArray, hashed: IntArray, spots: AnyArray, side: float) -> No
 
 
 @kernel_without_allocation
+def follow(points: AnyArray, hashed: IntArray, spots: AnyArray) -> bool:
+    """Copy the velocities of the points (A,) to their spots.
+
+    Return False if the points have changed in another way since the spots were sorted.
+    """
+    same = True
+    for at in range(hashed[-1]):
+        spot = spots[at]
+        p = points[spot.index]
+        same &= p.present & (p.x == spot.x) & (p.y == spot.y) & (p.radius == spot.radius)
+        spot.vx, spot.vy = p.vx, p.vy
+    count = 0
+    for i in range(len(points)):
+        count += points[i].present
+    return bool(same & (count == hashed[-1]))
+
+
+@kernel_without_allocation
 def collect(points: AnyArray, hashed: IntArray, spots: AnyArray) -> None:
     """List the present points (A,) by index, without cells: they are spots[: hashed[-1]]."""
     n = 0

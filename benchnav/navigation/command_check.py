@@ -44,8 +44,11 @@ def checked(answer: Any, active: BoolArray) -> FloatArray:
         raise CallFailed(
             f"act must return an array of shape {expected}. Got shape {command.shape} instead"
         )
-    with np.errstate(over="ignore"):  # a number that float64 cannot hold is not finite
-        command = np.array(command, np.float64, order="C")
+    if command.dtype == np.float64:
+        command = command.copy(order="C")
+    else:
+        with np.errstate(over="ignore"):  # a number that float64 cannot hold is not finite
+            command = np.array(command, np.float64, order="C")
     if not active.all():
         command[~active] = 0.0
     if not np.isfinite(command).all():

@@ -10,7 +10,7 @@ from benchnav.geometry.hash_grid import collect, fill
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel_without_allocation
 from benchnav.sensors.edges import find_edges
-from benchnav.sensors.neighbours import find_neighbours
+from benchnav.sensors.neighbours import find_neighbours, number_rows
 from benchnav.sensors.rays import cast_rays
 from benchnav.sensors.readings import Edges, Neighbours, Rays
 from benchnav.threads import run_rows
@@ -39,8 +39,8 @@ def sense(
         side = _cell_side(simulation, sensing, needs)
     if NEIGHBOURS in needs or (crowd and RAYS in needs):
         run_rows(
-            _sort_agents, simulation.B, simulation.agents, simulation.hashed, simulation.spots,
-            side,
+            _sort_agents, simulation.B, simulation.records, simulation.agents, simulation.hashed,
+            simulation.spots, simulation.beyond, side,
         )  # fmt: skip
     rays = neighbours = edges = None
     if RAYS in needs and sensing.rays is not None:
@@ -58,16 +58,19 @@ def _cell_side(simulation: Simulation, sensing: Sensing, needs: frozenset[str]) 
         limit = sensing.neighbours.range if sensing.neighbours is not None else 0.0
         return max(0.25 * max(limit, sensing.rays.range), 4.0 * simulation.widest)
     near = float(np.add.reduce(simulation.near, None)) / simulation.near.size
-    return max(near, 0.5 * simulation.widest, LEAST_SIDE)
+    return max(1.1 * near, 0.5 * simulation.widest, LEAST_SIDE)
 
 
 @kernel_without_allocation
 def _sort_agents(
-    low: int, high: int, agents: AnyArray, hashed: IntArray, spots: AnyArray, side: float
-) -> None:
+    low: int, high: int, worlds: AnyArray, agents: AnyArray, hashed: IntArray, spots: AnyArray,
+    beyond: FloatArray, side: float,
+) -> None:  # fmt: skip
     for b in range(low, high):
         if agents.shape[1] > BRUTE_FORCE:
             fill(agents[b], hashed[b], spots[b], side)
+            worlds[b].cells = side
+            beyond[b] = -1.0
         else:
             collect(agents[b], hashed[b], spots[b])
 
@@ -108,10 +111,13 @@ def _neighbours(
         np.empty(chosen.shape, np.int64),
     )  # fmt: skip
     s = simulation
+    row = np.empty((s.B, s.A), np.int64)
+    readings = (out.position, out.velocity, out.radius, out.kind, out.count)
+    number_rows(0, s.B, chosen, s.agents, row, *readings)
     run_rows(
-        find_neighbours, chosen.size, chosen, float(sensor.range), occlusion, side, s.sees,
-        s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
-        s.near, out.position, out.velocity, out.radius, out.kind, out.count, least=LEAST,
+        find_neighbours, row.size, row, float(sensor.range), occlusion, side, s.sees,
+        s.records, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
+        s.near, s.listed, s.beyond, *readings, least=LEAST,
     )  # fmt: skip
     return out
 

@@ -13,6 +13,7 @@ from benchnav.arena.solid import Solid
 from benchnav.arrays import AnyArray, IntArray
 
 OPEN_CONTACTS = 8  # of an agent at one time; one more closes the oldest
+LISTED = 10  # of the nearest others of an agent that sensing found
 
 
 def _record(**fields: str) -> np.dtype[np.void]:
@@ -22,7 +23,8 @@ def _record(**fields: str) -> np.dtype[np.void]:
 
 # one world: its clock, rules, and the location of its part in the flat arrays
 WORLD = _record(
-    dt="f8", h="f8", tolerance="f8", reach="f8", origin_x="f8", origin_y="f8", side="f8",
+    dt="f8", h="f8", tolerance="f8", reach="f8", widest="f8", cells="f8",
+    origin_x="f8", origin_y="f8", side="f8",
     substeps="i8", steps="i8", steps_done="i8", revision="i8", contact="i8", nx="i8", ny="i8",
     grid="i8", first="i8", last="i8", agents="i8", bodies="i8", closed="i8",
     vanish_on_arrival="?", vanish_on_end="?", charge_both="?", running="?",
@@ -31,7 +33,8 @@ WORLD = _record(
 # (B, A), padding has present = False; fields that others read come first, in one cache line
 AGENT = _record(
     x="f8", y="f8", vx="f8", vy="f8", radius="f8", ci="i4", cj="i4", team="i4",
-    status="i1", present="?", unicycle="?", evaluated="?", turning="?", halted="?", open="?",
+    spot="i4", status="i1", present="?", unicycle="?", evaluated="?", turning="?", halted="?",
+    open="?",
     heading="f8", goal_x="f8", goal_y="f8", arrival="f8", max_speed="f8", max_turn_rate="f8",
     preferred_speed="f8", drive_0="f8", drive_1="f8", tau="f8", code="i8", home="i8", hits="i8",
 )  # fmt: skip

@@ -15,9 +15,9 @@ from benchnav.world.bodies import body_at, stack_bodies, top_speed
 from benchnav.world.contacts import RELEASE
 from benchnav.world.fixed import stack_fixed
 from benchnav.world.records import AGENT as AGENT_RECORD
-from benchnav.world.records import CONTACT, OPEN_CONTACTS, SPOT, WORLD, field
+from benchnav.world.records import CONTACT, LISTED, OPEN_CONTACTS, SPOT, WORLD, field
 from benchnav.world.step import step_worlds
-from benchnav.world.touch import AGENT, BODY
+from benchnav.world.touch import AGENT, BODY, BRUTE_FORCE
 
 
 class Simulation:
@@ -46,6 +46,10 @@ class Simulation:
         self._kept: list[list[AnyArray]] = [[] for _ in self.worlds]
         self.hashed = hash_table(self.B, self.A)
         self.spots = np.zeros((self.B, self.A), SPOT)
+        crowd = self.A if self.A > BRUTE_FORCE else 0
+        # of each agent: a number, and as many spots, nearest first; all others are beyond `beyond`
+        self.listed = np.zeros((self.B, crowd, 1 + LISTED), np.int32)
+        self.beyond = np.full((self.B, crowd), -1.0)  # [m]; negative: there is no list
         self.sees = _sees(self.worlds)
         self.widest = float(self.agents["radius"].max())  # [m]
         # [m] from each agent to the farthest neighbour last found: a hint for the next search
@@ -113,7 +117,7 @@ class Simulation:
             step_worlds, self.B, np.ascontiguousarray(command, np.float64),
             np.ascontiguousarray(twist), executed, self.records, self.agents, self.bodies,
             self.shapes, self.knots, self.capsules, self.start, self.item, self._opened,
-            self._closed, self.hashed, self.spots,
+            self._closed, self.hashed, self.spots, self.listed, self.beyond,
         )  # fmt: skip
         return executed
 
@@ -209,6 +213,7 @@ def _world_records(worlds: Sequence[World], agents: AnyArray) -> AnyArray:
         row["running"] = bool(world.agents.evaluated.any())
         # no pair farther apart than this can touch within a substep
         speed = max(float(members["max_speed"].max()), top_speed(world))
-        reach = 2.0 * float(members["radius"].max()) + 2.0 * speed * float(row["h"])
+        row["widest"] = members["radius"].max()
+        reach = 2.0 * float(row["widest"]) + 2.0 * speed * float(row["h"])
         row["reach"] = 1.001 * reach + 1e-6
     return records

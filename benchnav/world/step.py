@@ -14,14 +14,14 @@ import numpy as np
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
-from benchnav.geometry.hash_grid import fill
 from benchnav.geometry.rotation import angle_of, wrap
 from benchnav.kernels import inlined, kernel, kernel_without_allocation
 from benchnav.world.bodies import body_at
 from benchnav.world.contacts import MAX_HITS, follow_up, touch
+from benchnav.world.crowd import ROWS, advance_crowd, find_all_in_crowd, sort_spots
 from benchnav.world.dynamics import limited, planar_velocity
 from benchnav.world.fixed import cell_at
-from benchnav.world.touch import BRUTE_FORCE, find_next, first_agent, next_agent
+from benchnav.world.touch import BRUTE_FORCE, find_next, next_agent
 
 _ACTIVE = int(Status.ACTIVE)
 _STATIC = int(Kind.STATIC)
@@ -32,13 +32,15 @@ def step_worlds(
     low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
     worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, spots: AnyArray,
+    hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray,
 ) -> None:  # fmt: skip
     """Advance the running worlds of rows low:high; ``executed`` gets the commands within limits."""
-    direction, near = np.empty(agents.shape[1]), np.empty(2 * agents.shape[1] + 1, np.int64)
+    count = agents.shape[1]
+    driven, motion = np.empty((3, count)), np.empty((ROWS, count))
+    near = np.empty(2 * count + 1, np.int64)
     _step_rows(
         low, high, command, twist, executed, worlds, agents, bodies, shapes, knots, capsules,
-        start, item, opened, closed, hashed, spots, direction, near,
+        start, item, opened, closed, hashed, spots, listed, beyond, driven, motion, near,
     )  # fmt: skip
 
 
@@ -47,13 +49,15 @@ def _step_rows(
     low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
     worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, spots: AnyArray, direction: FloatArray, near: IntArray,
+    hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray, driven: FloatArray,
+    motion: FloatArray, near: IntArray,
 ) -> None:  # fmt: skip
     for b in range(low, high):
         if worlds[b].running:
             step_world(
                 command[b], twist[b], executed[b], worlds[b], agents[b], bodies[b], shapes, knots,
-                capsules, start, item, opened[b], closed[b], hashed[b], spots[b], direction, near,
+                capsules, start, item, opened[b], closed[b], hashed[b], spots[b], listed[b],
+                beyond[b], driven, motion, near,
             )  # fmt: skip
 
 
@@ -62,26 +66,36 @@ def step_world(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
     bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
     item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray, spots: AnyArray,
-    direction: FloatArray, near: IntArray,
+    listed: IntArray, beyond: FloatArray, driven: FloatArray, motion: FloatArray, near: IntArray,
 ) -> None:  # fmt: skip
     """Advance one world: arrays over its agents (A,), bodies (M,) and contacts (A, 8).
 
-    ``direction`` (A,) and ``near`` (2 A + 1,) are scratch.
+    ``driven`` (3, A), ``motion`` (6, A) and ``near`` (2 A + 1,) are scratch.
     """
     relocate(world.steps_done * world.dt, world, agents, bodies, knots)
-    if obey(command, twist, executed, world, agents):
-        find_directions(executed, direction)
+    if obey(command, twist, executed, world, agents, driven):
+        find_directions(driven[0], driven[1], driven[2])
     for s in range(world.substeps):
         tick = world.steps_done * world.substeps + s
         begin, end = tick * world.h, (tick + 1) * world.h
         aim_bodies(end, world, bodies, knots)
         top = aim_agents(world, agents)
-        find_all(top, world, agents, bodies, shapes, capsules, start, item, hashed, spots, near)
-        left = advance(
-            begin, world, agents, bodies, shapes, capsules, start, item, opened, closed,
-            hashed, spots,
-        )  # fmt: skip
-        land_agents(left, world, agents, direction)
+        if len(agents) > BRUTE_FORCE:
+            sort_spots(world, agents, hashed, spots, beyond, motion)
+            find_all_in_crowd(
+                top, world, agents, bodies, shapes, capsules, start, item, hashed, spots, listed,
+                beyond, motion, near,
+            )  # fmt: skip
+            left = advance_crowd(
+                begin, top, world, agents, bodies, shapes, capsules, start, item, opened, closed,
+                hashed, spots, motion, near,
+            )  # fmt: skip
+        else:
+            find_all(world, agents, bodies, shapes, capsules, start, item)
+            left = advance(
+                begin, world, agents, bodies, shapes, capsules, start, item, opened, closed
+            )
+        land_agents(left, world, agents, driven[2])
         land_bodies(world, bodies)
         follow_up(end, world, agents, bodies, shapes, capsules, start, item, opened, closed)
     world.steps_done += 1
@@ -124,9 +138,13 @@ def _within(dx: float, dy: float, reach: float) -> bool:
 
 @inlined
 def obey(
-    command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray
-) -> bool:
-    """Store commands within limits; return whether any is a planar velocity."""
+    command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
+    driven: FloatArray,
+) -> bool:  # fmt: skip
+    """Store commands within limits; return whether any is a planar velocity.
+
+    They are copied to the first two rows of ``driven`` too.
+    """
     planar = False
     for i in range(world.agents):
         a = agents[i]
@@ -139,15 +157,16 @@ def obey(
                 a.max_turn_rate, world.dt,
             )  # fmt: skip
         executed[i, 0], executed[i, 1] = a.drive_0, a.drive_1
+        driven[0, i], driven[1, i] = a.drive_0, a.drive_1
         planar = planar or not a.turning
     return planar
 
 
 @kernel_without_allocation
-def find_directions(velocity: FloatArray, direction: FloatArray) -> None:
-    """Write the direction [rad] of each velocity (A, 2). The loop is compiled to vector code."""
+def find_directions(vx: FloatArray, vy: FloatArray, direction: FloatArray) -> None:
+    """Write the direction [rad] of each velocity (A,). The loop is compiled to vector code."""
     for i in range(len(direction)):
-        direction[i] = wrap(angle_of(velocity[i, 0], velocity[i, 1]))
+        direction[i] = wrap(angle_of(vx[i], vy[i]))
 
 
 @inlined
@@ -175,23 +194,16 @@ def aim_agents(world: Any, agents: AnyArray) -> float:
 
 @inlined
 def find_all(
-    top: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
-    capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
-    near: IntArray,
+    world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
+    start: IntArray, item: IntArray,
 ) -> None:  # fmt: skip
-    """Find the next touch of every agent; none is faster than ``top`` [m/s]."""
-    crowd = len(agents) > BRUTE_FORCE
-    if crowd:
-        fill(agents, hashed, spots, world.reach)
+    """Find the next touch of every agent."""
     for i in range(world.agents):
         a = agents[i]
         a.tau = math.inf
         if a.status == _ACTIVE and a.present:
             a.home = cell_at(world, a.x, a.y)
-            if crowd:
-                meeting, partner = first_agent(i, world.h, top, agents, hashed, spots, near)
-            else:
-                meeting, partner = next_agent(i, world.h, agents, hashed, spots)
+            meeting, partner = next_agent(i, world.h, agents)
             find_next(
                 i, meeting, partner, world.h, world.tolerance, agents, bodies, shapes, capsules,
                 start, item, world.bodies,
@@ -202,7 +214,6 @@ def find_all(
 def advance(
     begin: float, world: Any, agents: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, spots: AnyArray,
 ) -> float:  # fmt: skip
     """Advance from touch to touch; return the time [s] from the last one to the substep's end."""
     left: float = world.h
@@ -220,7 +231,7 @@ def advance(
                 a.tau = math.inf
                 # a wedged agent is left alone until the next substep
                 if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
-                    meeting, partner = next_agent(k, left, agents, hashed, spots)
+                    meeting, partner = next_agent(k, left, agents)
                     find_next(
                         k, meeting, partner, left, world.tolerance, agents, bodies, shapes,
                         capsules, start, item, world.bodies,

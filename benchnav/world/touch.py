@@ -9,11 +9,10 @@ from typing import Any
 
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
-from benchnav.geometry.hash_grid import bucket
 from benchnav.kernels import inlined, kernel_without_allocation
 
 GOAL, AGENT, FIXED, BODY = 0, 1, 2, 3
-BRUTE_FORCE = 24  # up to this many agents, testing all pairs is cheaper than a grid
+BRUTE_FORCE = 24  # up to this many agents, testing all pairs is cheaper than cells
 WIDER = 1.000001  # factor of a distance, so that rounding never excludes a touch
 
 
@@ -60,67 +59,14 @@ def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
 
 
 @inlined
-def next_agent(
-    i: int, left: float, agents: AnyArray, hashed: IntArray, spots: AnyArray
-) -> tuple[float, int]:
-    """Return (time, index) of the agent that i touches first within ``left`` [s], or (inf, -1).
-
-    Crowds are searched in the 3 × 3 cells around i. Their side is so large that agents farther
-    apart cannot meet within a substep.
-    """
+def next_agent(i: int, left: float, agents: AnyArray) -> tuple[float, int]:
+    """Return (time, index) of the agent that i touches first within ``left`` [s], or (inf, -1)."""
     a, best, partner = agents[i], math.inf, -1
-    if len(agents) <= BRUTE_FORCE:
-        for j in range(len(agents)):
-            if j != i and agents[j].present:
-                t = pair_time(a, agents[j])
-                if t <= left and t < best:
-                    best, partner = t, j
-        return best, partner
-    size = len(hashed) - 1
-    for row in range(a.cj - 1, a.cj + 2):
-        low = bucket(a.ci - 1, row, size)
-        for part in range(2 if low + 3 > size else 1):  # the row may continue at the table's start
-            begin, end = (low, min(low + 3, size)) if part == 0 else (0, low + 3 - size)
-            for at in range(hashed[begin], hashed[end]):
-                spot = spots[at]
-                j = spot.index
-                if spot.cj != row or abs(spot.ci - a.ci) > 1 or j == i or not agents[j].present:
-                    continue
-                t = pair_time(a, agents[j])
-                if t <= left and (t < best or (t == best and j < partner)):
-                    best, partner = t, j
-    return best, partner
-
-
-@kernel_without_allocation
-def first_agent(
-    i: int, left: float, top: float, agents: AnyArray, hashed: IntArray, spots: AnyArray,
-    near: IntArray,
-) -> tuple[float, int]:  # fmt: skip
-    """Return the same as `next_agent` at the start of a substep, when the spots are up to date.
-
-    ``top`` is the highest speed of any agent [m/s]. Spots that approach and are near enough to
-    meet are listed first, without branches that cannot be predicted. ``near`` is scratch.
-    """
-    a, n = agents[i], 0
-    size = len(hashed) - 1
-    nearest = a.radius + WIDER * 2.0 * top * left
-    for row in range(a.cj - 1, a.cj + 2):
-        low = bucket(a.ci - 1, row, size)
-        for part in range(2 if low + 3 > size else 1):  # the row may continue at the table's start
-            begin, end = (low, min(low + 3, size)) if part == 0 else (0, low + 3 - size)
-            for at in range(hashed[begin], hashed[end]):
-                spot = spots[at]
-                fx, fy, wx, wy = a.x - spot.x, a.y - spot.y, a.vx - spot.vx, a.vy - spot.vy
-                far = nearest + spot.radius
-                near[n] = at
-                n += (fx * fx + fy * fy <= WIDER * far * far) & (fx * wx + fy * wy < 0.0)
-    best, partner = math.inf, -1
-    for k in range(n):
-        spot = spots[near[k]]
-        t, j = pair_time(a, spot), spot.index
-        if t <= left and (t < best or (t == best and j < partner)):
-            best, partner = t, j
+    for j in range(len(agents)):
+        if j != i and agents[j].present:
+            t = pair_time(a, agents[j])
+            if t <= left and t < best:
+                best, partner = t, j
     return best, partner
 
 

@@ -11,6 +11,14 @@ from benchnav.arena.body import Body, still
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arena.solid import Kind
 from benchnav.navigation.navigator import Need
+from benchnav.sensors.nearest import (
+    CHAIN,
+    LANES,
+    SLOTS,
+    put_into_lane,
+    sort_lanes,
+    take_from_lane,
+)
 from benchnav.sensors.sense import ray_angles, sense
 from benchnav.world.simulation import Simulation
 from tests.worlds import agents, back_and_forth, box, disc, random_world, walls, world
@@ -357,3 +365,45 @@ def test_ray_angles():
     np.testing.assert_allclose(ray_angles(RaySensor(1, 2.0, 1.0, True)), [0.0])
     whole = ray_angles(RaySensor(4, 2 * math.pi, 1.0, True))
     np.testing.assert_allclose(np.diff(whole), math.pi / 2)
+
+
+def test_lanes_are_sorted_as_by_numpy():
+    """Each lane of the chain gives its smallest numbers in order; nearly equal ones are noticed."""
+    rng = np.random.default_rng(6)
+    for n in (0, 1, 9, 11, 40, SLOTS):
+        distance = rng.random((LANES, n))
+        if n > 9:
+            distance[3, 1] = distance[3, 0]
+        given = np.full(SLOTS * LANES, math.inf)
+        smallest = np.empty((CHAIN + 1) * LANES)
+        place, ranked = 7 * np.arange(SLOTS), np.empty(CHAIN, np.int64)
+        for lane in range(LANES):
+            put_into_lane(n, lane, distance[lane].view(np.int64), given.view(np.int64))
+        sort_lanes(n, given, smallest)
+        for lane in range(LANES):
+            order = np.argsort(distance[lane])
+            distinct = take_from_lane(n, 10, lane, smallest.view(np.int64), place, ranked)
+            near_ends = n > 9 and lane == 3 and min(np.flatnonzero(order < 2)) < 10
+            assert distinct != near_ends
+            if distinct:
+                assert ranked[: min(n, 10)].tolist() == (7 * order[:10]).tolist()
+
+
+def test_rows_of_agents_and_readings_of_padding():
+    """Agents that are not chosen have row -1; padding and absent agents read nothing."""
+    rng = np.random.default_rng(7)
+    start = rng.uniform(1, 19, (60, 2))
+    simulation = Simulation([world(agents(start, start), [])] * 2)
+    simulation.present[0, 5] = False
+    chosen = np.array([[3, -1, 5, 40], [59, 5, -1, 0]])
+    seen = sense(simulation, chosen, ALL)[1]
+    everyone = sense(simulation, everybody(simulation), ALL)[1]
+    for b, k in np.ndindex(chosen.shape):
+        i = chosen[b, k]
+        if i < 0 or not simulation.present[b, i]:
+            assert seen.count[b, k] == 0
+            assert not seen.position[b, k].any()
+            assert not seen.radius[b, k].any()
+        else:
+            assert seen.count[b, k] == everyone.count[b, i]
+            assert seen.position[b, k].tolist() == everyone.position[b, i].tolist()

@@ -11,10 +11,7 @@ from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards, Charge, ContactRule
 from benchnav.episode.episode import Status
-from benchnav.geometry.hash_grid import fill, hash_table
-from benchnav.world.records import AGENT, SPOT
 from benchnav.world.simulation import Simulation
-from benchnav.world.touch import first_agent, next_agent
 from tests.reference.step import SlowWorld
 from tests.worlds import agents, back_and_forth, box, disc, random_world, walls, world
 
@@ -361,24 +358,3 @@ def test_a_holonomic_body_turns_at_the_rate_it_is_told():
     for _ in range(5):
         simulation.step(np.array([[[1.0, 1.0], [0.0, 1.0]]]), np.ones((1, 2), bool))
     np.testing.assert_allclose(simulation.heading[0], [1.0, 1.0])
-
-
-def test_a_crowd_finds_its_first_touch_in_both_ways():
-    """The search for the start of a substep gives the same as the one that works at any time."""
-    rng = np.random.default_rng(3)
-    count, h = 300, 0.5
-    crowd = np.zeros(count, AGENT)
-    crowd["x"], crowd["y"] = rng.uniform(-12.0, 12.0, (2, count))
-    crowd["vx"], crowd["vy"] = rng.normal(0.0, 0.5, (2, count))
-    crowd["radius"] = rng.uniform(0.1, 0.3, count)
-    crowd["x"][1:9], crowd["y"][1:9] = crowd["x"][0], crowd["y"][0]  # at one place
-    crowd["present"] = rng.random(count) < 0.9
-    top = float(np.hypot(crowd["vx"], crowd["vy"]).max())
-    hashed, spots = hash_table(1, count)[0], np.zeros(count, SPOT)
-    fill(crowd, hashed, spots, 2.0 * 0.3 + 2.0 * top * h)
-    near, touches = np.empty(2 * count + 1, np.int64), 0
-    for i in np.flatnonzero(crowd["present"]):
-        found = first_agent(i, h, top, crowd, hashed, spots, near)
-        assert found == next_agent(i, h, crowd, hashed, spots)
-        touches += found[1] >= 0
-    assert 50 < touches < 300

@@ -93,7 +93,7 @@ class Avoidance:
         if clearance is not None:
             edge_margin = np.minimum(edge_margin, np.maximum(clearance.ravel(), LEAST_MARGIN))
         run_rows(
-            avoid, rows, own, *_flat(rows, (observation.active, *_sensed(observation))),
+            avoid, rows, own, observation.active.ravel(), *_sensed(observation),
             config.neighbours, config.margin, edge_margin, 1.0 / config.time_horizon,
             1.0 / config.time_horizon_obstacle, answer, least=LEAST,
         )  # fmt: skip
@@ -106,16 +106,23 @@ def _flat(rows: int, arrays: Iterable[AnyArray]) -> Iterator[AnyArray]:
         yield np.ascontiguousarray(array).reshape(rows, *array.shape[2:])
 
 
-def _sensed(observation: Observation) -> tuple[AnyArray, ...]:
-    """Return neighbours and edges as kernel arguments."""
+def _sensed(observation: Observation) -> Iterator[AnyArray]:
+    """Yield neighbours and edges as kernel arguments (rows, …)."""
     shape = observation.active.shape
-    near = observation.neighbours or no_neighbours(*shape)
-    sides = observation.edges or no_edges(*shape)
-    return (
-        near.position, near.velocity, near.radius, near.kind, near.count,
-        sides.start, sides.end, sides.before, sides.after,
-        sides.start_convex, sides.end_convex, sides.count,
-    )  # fmt: skip
+    rows = shape[0] * shape[1]
+    near, sides = observation.neighbours or no_neighbours(*shape), observation.edges
+    yield from _flat(rows, (near.position, near.velocity, near.radius, near.kind, near.count))
+    yield from _no_sides(rows) if sides is None else _sides(rows, sides)
+
+
+def _sides(rows: int, edges: Edges) -> tuple[AnyArray, ...]:
+    ends = (edges.start, edges.end, edges.before, edges.after)
+    return tuple(_flat(rows, (*ends, edges.start_convex, edges.end_convex, edges.count)))
+
+
+@lru_cache(maxsize=8)  # kernels only read them
+def _no_sides(rows: int) -> tuple[AnyArray, ...]:
+    return _sides(rows, no_edges(1, rows))
 
 
 @lru_cache(maxsize=8)
