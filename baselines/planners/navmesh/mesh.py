@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.geometry import inside_solid, solid_index
+from benchnav.geometry.solid_rows import inside_rows, solid_rows
 from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Map
 
@@ -98,8 +98,8 @@ def _parts(corner: FloatArray, doors: IntArray, map: Map) -> IntArray:
     area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
     order = np.lexsort((-area, part))
     largest = order[np.searchsorted(part[order], np.arange(parts))]
-    index = (map.capsules, *solid_index(map.solids))
-    solid = [inside_solid(x, y, *index) for x, y in corner[largest].mean(axis=1).tolist()]
+    rows = solid_rows(map.solids)
+    solid = [inside_rows(rows, x, y) for x, y in corner[largest].mean(axis=1).tolist()]
     free: IntArray = np.where(np.array(solid, np.bool_)[part], -1, part)
     return free
 
