@@ -36,9 +36,8 @@ class Mesh(NamedTuple):
 def mesh_of(tiles: Sequence[FloatArray], tiling: Tiling, map: Map) -> Mesh:
     """Return the mesh of the triangles (T, 3, 2) [m] of each tile."""
     corner = np.concatenate(tiles)
-    vertex, index = np.unique(corner.reshape(-1, 2), axis=0, return_inverse=True)
-    tail = index.ravel()
-    head = np.roll(index.reshape(-1, 3), -1, axis=1).ravel()
+    vertex, tail = _numbered(corner.reshape(-1, 2))
+    head = np.roll(tail.reshape(-1, 3), -1, axis=1).ravel()
     one, other = _shared(tail, head)
     shared = np.stack([one // 3, other // 3, head[one], tail[one]], axis=1)
     alone = np.ones(len(tail), np.bool_)
@@ -54,6 +53,20 @@ def mesh_of(tiles: Sequence[FloatArray], tiling: Tiling, map: Map) -> Mesh:
     edge[tail[alone]] = edge[head[alone]] = True
     turns = edge & (_is_wide(corner, tail, len(vertex)) | on_lines(vertex, tiling).any(axis=1))
     return Mesh(corner, _parts(corner, doors, map), vertex, turns, first, to, left, right)
+
+
+def _numbered(places: FloatArray) -> tuple[FloatArray, IntArray]:
+    """Return the different places (V, 2), and the number (N,) of each place (N, 2).
+
+    np.unique(places, axis=0) gives the same, but takes several times as long.
+    """
+    order = np.lexsort((places[:, 1], places[:, 0]))
+    ordered = places[order]
+    new = np.ones(len(order), np.bool_)
+    new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    number = np.empty(len(order), np.int64)
+    number[order] = np.cumsum(new) - 1
+    return ordered[new], number
 
 
 def _shared(tail: IntArray, head: IntArray) -> tuple[IntArray, IntArray]:
