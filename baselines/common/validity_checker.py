@@ -1,10 +1,13 @@
 """Collision checkers: whether a disc may be at a place, or move straight to another."""
 
-from typing import Literal, Protocol
+from functools import partial
+from typing import Any, Literal, Protocol, cast
+from weakref import WeakKeyDictionary
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.geometry import CapsuleGrid, inside_solid, is_clear, solid_index
+from benchnav.geometry import CapsuleGrid, is_clear
 from benchnav.geometry.capsule_grid import capsule_grid
+from benchnav.geometry.solid_rows import SolidRows, inside_rows, solid_rows
 from benchnav.kernels import kernel
 from benchnav.navigation import Map
 
@@ -27,28 +30,31 @@ class PlanarChecker:
     """The exact swept test against the map's solids."""
 
     def __init__(self, map: Map, radius: float) -> None:
-        grid = capsule_grid(map.capsules, max(radius - SKIN, 0.0))
-        self._grid: _Grid = (*grid,)
-        self._solids = (map.capsules, *solid_index(map.solids))
+        grid = (*capsule_grid(map.capsules, max(radius - SKIN, 0.0)),)
+        # the code for Python itself: a planner calls it a hundred thousand times
+        self.motion_is_free = partial(cast(Any, _motion_is_free).for_python, grid)
+        self.point_is_free = partial(cast(Any, _point_is_free).for_python, grid, _rows_of(map))
 
-    def point_is_free(self, x: float, y: float) -> bool:
-        return _point_is_free(self._grid, self._solids, x, y)
 
-    def motion_is_free(self, px: float, py: float, qx: float, qy: float) -> bool:
-        return _motion_is_free(self._grid, px, py, qx, qy)
+_KNOWN: WeakKeyDictionary[Map, "_Rows"] = WeakKeyDictionary()
+
+
+def _rows_of(map: Map) -> "_Rows":
+    if map not in _KNOWN:
+        _KNOWN[map] = (*solid_rows(map.solids),)
+    return _KNOWN[map]
 
 
 # Passing a plain tuple from Python to a kernel takes a third of the time of a named tuple,
 # and this is most of the cost of a check.
 _Grid = tuple[FloatArray, FloatArray, IntArray, IntArray, float, float, float, int, int]
-_Solids = tuple[FloatArray, IntArray, IntArray]
+_Rows = tuple[FloatArray, IntArray, IntArray, float, float, IntArray, int]
 
 
 @kernel
-def _point_is_free(grid: _Grid, solids: _Solids, x: float, y: float) -> bool:
-    return _motion_is_free(grid, x, y, x, y) and not inside_solid(
-        x, y, solids[0], solids[1], solids[2]
-    )
+def _point_is_free(grid: _Grid, r: _Rows, x: float, y: float) -> bool:
+    rows = SolidRows(r[0], r[1], r[2], r[3], r[4], r[5], r[6])
+    return _motion_is_free(grid, x, y, x, y) and not inside_rows(rows, x, y)
 
 
 @kernel

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arrays import Extent, FloatArray, IntArray
+from benchnav.arrays import AnyArray, BoolArray, Extent, FloatArray, IntArray
 from benchnav.generation.clearance import POINT, Barrier, clear
 
 _QUADRANT = 8  # segments in a quarter of a grown outline
@@ -50,8 +50,7 @@ class PartedSpace(Space):
         x0, y0, x1, y1 = bounds
         margin = reach if walled else -4.0 * reach  # without a wall, agents may pass outside
         arena = shapely.box(x0 + margin, y0 + margin, x1 - margin, y1 - margin)
-        rest = arena.difference(_grown(wall, reach))
-        parts = [p for p in shapely.get_parts(rest) if p.area > 0.0]
+        parts = [p for p in _faces(arena, _grown(wall, reach)) if p.area > 0.0]
         if parts:
             inner = shapely.get_coordinates(shapely.point_on_surface(parts))
             outside = clear(POINT, inner, wall, 0.0)
@@ -90,3 +89,60 @@ def _grown(wall: Barrier, reach: float) -> Any:
         radii.append((run[0, 4] + reach) * _GROWTH)
     grown = shapely.buffer(np.array(lines), np.array(radii), quad_segs=_QUADRANT)
     return shapely.disjoint_subset_union_all(grown)
+
+
+def _faces(arena: Any, blocked: Any) -> AnyArray:
+    """Return the polygons (N,) of ``arena`` without ``blocked``, a union of polygons.
+
+    Shapely's difference takes time that grows with the square of the number of polygons. It is
+    needed only for those that leave the arena, touch others, or are around such a polygon. Outlines
+    of all others are already the boundary of what is left: the outer ones are holes in it, and each
+    hole is a polygon.
+    """
+    import shapely
+
+    parts = shapely.get_parts(blocked)
+    alone = _stand_alone(arena, parts)
+    rest = shapely.get_parts(shapely.difference(arena, shapely.multipolygons(parts[~alone])))
+    rings, owner = shapely.get_rings(parts[alone], return_index=True)
+    outer = np.ones(len(rings), np.bool_)
+    outer[1:] = owner[1:] != owner[:-1]
+    faces = np.concatenate([rest, shapely.polygons(rings[~outer])])
+    ring, face = _within(shapely.get_point(rings[outer], 0), faces)
+    smallest_first = np.lexsort((shapely.area(faces)[face], ring))
+    _, first = np.unique(ring[smallest_first], return_index=True)
+    around = face[smallest_first][first]
+    order = np.argsort(around, kind="stable")
+    owners, first = np.unique(around[order], return_index=True)
+    for k, holes in zip(owners, np.split(rings[outer][order], first[1:]), strict=False):
+        own = shapely.get_rings(faces[k])
+        faces[k] = shapely.polygons(own[0], [*own[1:], *holes])
+    return faces
+
+
+def _stand_alone(arena: Any, parts: AnyArray) -> BoolArray:
+    """Whether each polygon (N,) is within the arena, touches no other, and is around none such."""
+    import shapely
+
+    shapely.prepare(parts)
+    shapely.prepare(arena)
+    alone: BoolArray = shapely.contains_properly(arena, parts)
+    one, other = shapely.STRtree(parts).query(parts)  # by boxes; slower with a predicate
+    one, other = one[one < other], other[one < other]
+    touching = shapely.intersects(parts[one], parts[other])
+    alone[one[touching]] = alone[other[touching]] = False
+    outlines = shapely.get_exterior_ring(parts)
+    _, around = _within(shapely.get_point(outlines[~alone], 0), shapely.polygons(outlines))
+    alone[around] = False
+    return alone
+
+
+def _within(points: AnyArray, polygons: AnyArray) -> tuple[IntArray, IntArray]:
+    """Return (point, polygon) of all pairs in which the point lies in the polygon."""
+    import shapely
+
+    shapely.prepare(polygons)
+    point, polygon = shapely.STRtree(polygons).query(points)
+    x, y = shapely.get_x(points), shapely.get_y(points)
+    held = shapely.contains_xy(polygons[polygon], x[point], y[point])
+    return point[held], polygon[held]

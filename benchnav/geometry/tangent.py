@@ -10,7 +10,7 @@ from benchnav.geometry.capsule_grid import CapsuleGrid, doubled, is_clear
 from benchnav.geometry.free_arc import TWO_PI, Arcs
 from benchnav.kernels import kernel
 
-_FEW = 256  # arcs, so few that all are tested
+FEW = 256  # arcs, so few that all pairs are tested
 _ON_ARC = 1e-12  # tolerance of the cosine in the test whether a tangent point is on an arc
 
 
@@ -32,13 +32,17 @@ def _angle_on(arcs: Arcs, k: int, ux: float, uy: float) -> float:
 
 
 @kernel
-def bitangents(grid: CapsuleGrid, arcs: Arcs) -> FloatArray:
-    """Return all free tangents of two arcs (M, 5): arc i, angle on i, arc j, angle on j, length."""
+def bitangents(grid: CapsuleGrid, arcs: Arcs, few: int = FEW) -> FloatArray:
+    """Return all free tangents of two arcs (M, 5): arc i, angle on i, arc j, angle on j, length.
+
+    The first ``few`` arcs are tested with all before them, the others only with those in sight.
+    """
     rows = np.empty((256, 5))
     count = 0
     cells = arc_cells(grid, arcs)
+    every = np.arange(len(arcs.radius))
     for i in range(len(arcs.radius)):
-        near = arcs_in_sight(grid, cells, arcs, i) if i >= _FEW else np.arange(i)
+        near = arcs_in_sight(grid, cells, arcs, i) if i >= few else every[:i]
         for j in near:
             dx = arcs.center[j, 0] - arcs.center[i, 0]
             dy = arcs.center[j, 1] - arcs.center[i, 1]

@@ -27,7 +27,6 @@ from tests.baselines.planning import (
     plan,
 )
 
-pytest.importorskip("networkx")
 NAMES = ["navmesh", "grid.astar", "grid.theta-star", "visibility"]
 # how much longer than the shortest path they may be with corners that lie where they like
 WORST = {"navmesh": 0.06, "grid.astar": 0.2, "grid.theta-star": 0.1, "visibility": 0.001}

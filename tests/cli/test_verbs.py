@@ -213,7 +213,6 @@ def test_doctor_counts_what_can_be_used_and_says_what_is_missing(call, monkeypat
     assert "- extra [plan] without ompl, networkx: pip install 'benchnav[plan]'" in lines
     for registry, names, cause in (
         (PLANNERS, [n for n in PLANNERS.names() if n.startswith("ompl.")], "An OMPL planner"),
-        (PLANNERS, ["navmesh"], "The planner navmesh"),
         (NAVIGATORS, ["ompl-orca", "ompl-pure"], "An OMPL planner"),
     ):
         assert (

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.arena.solid import Kind, Solid
+from benchnav.geometry.solid_rows import inside_rows, solid_rows
 from benchnav.geometry.sweep import (
     clearance,
     inside_solid,
@@ -141,3 +142,23 @@ def test_inside_is_what_the_slow_twin_says():
         solid = Solid(Kind.STATIC, (loop[:: rng.choice([1, -1])],))
         for p in rng.uniform(-6, 6, (10, 2)):
             assert inside(tuple(p), solid) == slow.inside_solid(p, solid)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_rows_tell_what_is_inside_like_a_walk_over_all_edges(seed):
+    rng = np.random.default_rng(seed)
+    square = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
+    solids = [
+        Solid(Kind.STATIC, (square * rng.uniform(0.2, 4.0, 2) + rng.uniform(-6, 6, 2),))
+        for _ in range(rng.integers(0, 12))
+    ]
+    solids += [Solid(Kind.STATIC, center=(1.0, 2.0), radius=0.5)] * int(rng.integers(2))
+    solids += [Solid(Kind.WALL, (np.array([(-3.0, -1.0), (2.0, 2.0)]),))] * int(rng.integers(2))
+    if seed % 2:
+        solids.append(Solid(Kind.WALL, ((16.0 * (square - 0.5))[::-1],)))  # endless
+    capsules = np.vstack([np.zeros((0, 5)), *(solid.capsules for solid in solids)])
+    index, rows = (capsules, *solid_index(solids)), solid_rows(solids)
+    corners = capsules[:, :2] if len(capsules) else np.zeros((1, 2))
+    places = [*rng.uniform(-10, 10, (300, 2)), *corners, *(corners + (0.01, 0.0))]
+    for x, y in places:
+        assert inside_rows(rows, x, y) == inside_solid(x, y, *index)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from benchnav.arena.solid import Kind, Solid
+from benchnav.generation import free_space
 from benchnav.generation.build import build
 from benchnav.generation.clearance import barrier
 from benchnav.generation.free_space import JoinedSpace, PartedSpace
@@ -55,3 +56,40 @@ def test_both_forms_agree_among_convex_solids_that_are_far_apart(seed):
     sure = np.abs(true - 0.5) > 0.005
     np.testing.assert_array_equal(one[sure], other[sure])
     np.testing.assert_array_equal(one[sure] >= 0, true[sure] > 0.5)
+
+
+def _blocked(rng):
+    """Squares, some in rings around others, some beyond the border, some that touch."""
+    import shapely
+
+    solids = []
+    for x, y in 10.0 * rng.integers(0, 8, (30, 2)) + rng.choice([0.0, 1.0], (30, 2)):
+        square = shapely.box(x, y, x + 8.0, y + 8.0)
+        if rng.random() < 0.5:
+            square = square.difference(shapely.box(x + 1.0, y + 1.0, x + 7.0, y + 7.0))
+            square = square.union(shapely.box(x + 3.0, y + 3.0, x + 4.0, y + 4.0))
+        if rng.random() < 0.2:
+            square = square.union(shapely.box(x + 8.0, y + 8.0, x + 9.0, y + 9.0))  # at a corner
+        solids.append(square)
+    return shapely.disjoint_subset_union_all(solids)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_faces_are_those_of_the_difference(seed):
+    import shapely
+
+    arena, blocked = shapely.box(3.0, 3.0, 75.0, 75.0), _blocked(np.random.default_rng(seed))
+    expected = shapely.get_parts(arena.difference(blocked))
+    faces = [face for face in free_space._faces(arena, blocked) if face.area > 0.0]
+    assert all(shapely.is_valid(face) for face in faces)
+    assert len(faces) == len(expected)
+    for face in faces:
+        assert any(face.equals(other) for other in expected)
+
+
+def test_nothing_blocked_leaves_the_arena():
+    import shapely
+
+    arena = shapely.box(0.0, 0.0, 1.0, 2.0)
+    (face,) = free_space._faces(arena, shapely.Polygon())
+    assert face.equals(arena)

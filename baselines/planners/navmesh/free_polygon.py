@@ -1,54 +1,28 @@
-"""The free space of a disc's centre, as polygons that lie completely within it."""
+"""Polygons around grown capsules: every side touches the capsule, so that nothing is cut."""
 
 import math
-from typing import Any
 
 import numpy as np
-import shapely
 
-from benchnav.arrays import Extent, FloatArray
-from benchnav.geometry import inside_solid, solid_index
-from benchnav.navigation import Map
-
-_GRID = 1e-9  # [m] to which corners are rounded: no side is so short that triangles have no area
-
-
-def free_polygons(map: Map, inflation: float, frame: Extent, segments: int) -> list[Any]:
-    """Return shapely polygons of the disc's free space in a frame; they touch at points at most.
-
-    Args:
-        map: the obstacles.
-        inflation: [m] growth of the obstacles.
-        frame: xmin, ymin, xmax, ymax [m].
-        segments: sides of a polygon for a quarter of a circle; every side touches it.
-    """
-    grown = shapely.polygons(capsule_polygons(map.capsules, inflation, segments))
-    blocked = shapely.union_all(grown, grid_size=_GRID)
-    free = shapely.difference(shapely.box(*frame), blocked, grid_size=_GRID)
-    parts = [part for part in shapely.get_parts(free) if part.geom_type == "Polygon"]
-    # an area that no edge reaches lies either within a solid or outside all of them
-    index = (map.capsules, *solid_index(map.solids))
-    places = [part.representative_point() for part in parts]
-    return [
-        part
-        for part, place in zip(parts, places, strict=True)
-        if not inside_solid(place.x, place.y, *index)
-    ]
+from benchnav.arrays import FloatArray
 
 
 def capsule_polygons(capsules: FloatArray, inflation: float, segments: int) -> FloatArray:
     """Return corners (P, 4 segments, 2) [m] of polygons around grown capsules (P, 5).
 
     Every side touches the capsule: straight flanks keep their place, arcs are
-    approximated from outside, by at most radius (1 / cos(π / (4 segments)) - 1).
+    approximated from outside, by at most radius (1 / cos(π / (4 segments)) - 1). A polygon depends
+    on its own capsule only, to the last bit.
     """
     ends = capsules[:, :4].reshape(-1, 2, 2)
     along = ends[:, 1] - ends[:, 0]
-    heading = np.arctan2(along[:, 1], along[:, 0])
+    length = np.sqrt(along[:, 0] * along[:, 0] + along[:, 1] * along[:, 1])[:, None]
+    ahead = np.divide(along, length, out=np.tile([1.0, 0.0], (len(along), 1)), where=length > 0.0)
     step = 0.5 * math.pi / segments
     turn = (np.arange(4 * segments) + 0.5) * step - 0.5 * math.pi  # around the head, then the tail
-    angle = heading[:, None] + turn
+    c, s = np.cos(turn), np.sin(turn)
+    x, y = ahead[:, :1], ahead[:, 1:]
     reach = (capsules[:, 4:] + inflation) / math.cos(0.5 * step)
     centre = np.repeat(ends[:, ::-1], 2 * segments, axis=1)
-    out = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    out = np.stack([c * x - s * y, s * x + c * y], axis=-1)
     return np.asarray(centre + reach[..., None] * out)

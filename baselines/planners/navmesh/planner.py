@@ -1,71 +1,83 @@
 """The planner on a navigation mesh."""
 
+from collections import OrderedDict
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from pydantic import Field
 
-from benchnav.arrays import Extent, FloatArray
+from benchnav.arrays import FloatArray
 from benchnav.navigation import UNSOLVED, Map, PluginConfig
 
 from ...common.clearance_planner import ClearanceConfig
 from ...common.disc_planner import DiscPlanner, Query, frame_of
-from .free_polygon import free_polygons
-from .mesh import Mesh, load_networkx, mesh_of
+from .mesh import Mesh, mesh_of, nearest
+from .taut_search import shortest_path
+from .tile import Tile, Tiling, tiles_of, tiling, triangulated
 
 _AROUND = 1.0  # [m] of space around all obstacles
+_KEPT = 50_000  # tiles in memory
 
 
 class NavMesh(DiscPlanner):
-    """A* over the sides of triangles of free space, then the funnel algorithm.
+    """The shortest path through triangles of free space, by search over intervals of their sides.
 
-    The triangles are a constrained Delaunay triangulation, computed once for a map and a radius.
-    The funnel algorithm (Mononen 2010) finds the shortest path through a sequence of triangles. The
-    path is clear of obstacles: polygons outside the arcs around corners replace these arcs. The
-    sequence of triangles is not always the best one.
+    The search is Polyanya (Cui, Harabor & Grastien 2017). Polygons around obstacles replace the
+    arcs around their corners, from outside, so the path is clear of obstacles; among these polygons
+    it is the shortest. The triangles are a constrained Delaunay triangulation of square tiles of
+    8 m. On a map that changes, for instance one that an agent learns, only tiles near the changes
+    are triangulated again. The path is the same as from scratch.
     """
 
     class Config(ClearanceConfig):
         """Parameters."""
 
         segments: int = Field(8, ge=1, le=90, description="line segments per quarter of a circle")
-        spacing: float = Field(
-            1.0, gt=0, description="[m] largest distance between the points of a side at which"
-            " the search can cross it; a shorter side has one point, its middle"
-        )  # fmt: skip
 
     def __init__(self, config: PluginConfig | None = None) -> None:
-        """Raise MissingExtraError if networkx is not installed."""
         super().__init__(config)
-        load_networkx()
-        self._meshes: WeakKeyDictionary[Map, dict[tuple[float, Extent], Mesh]]
+        self._meshes: WeakKeyDictionary[Map, dict[tuple[float, Tiling], Mesh]]
         self._meshes = WeakKeyDictionary()
+        self._triangles: OrderedDict[tuple[float, Tile], FloatArray] = OrderedDict()
 
     def search(self, query: Query) -> tuple[FloatArray, int]:
         """Search; ends beside the mesh are connected to its nearest point if the motion is free."""
         mesh = self._mesh(query)
         x, y = query.start.tolist()
-        begin, px, py, off = mesh.nearest(x, y)
+        begin, px, py, off = nearest(mesh, -1, x, y)
         if begin < 0 or not _may_go(query, x, y, px, py, off):
             return UNSOLVED, 1
         x, y = query.goal.tolist()
-        end, qx, qy, off = mesh.nearest(x, y, int(mesh.part[begin]))
+        end, qx, qy, off = nearest(mesh, int(mesh.part[begin]), x, y)
         reached = _may_go(query, x, y, qx, qy, off)
         if not reached and off > query.slack:
             return UNSOLVED, 2
-        path = mesh.path(np.array([px, py]), begin, np.array([qx, qy]), end)
+        path = shortest_path(mesh, px, py, begin, qx, qy, end, len(mesh.to) + 1024)
         path = np.vstack([query.start, path, query.goal] if reached else [query.start, path])
         moved = np.any(path[1:] != path[:-1], axis=1)
         return np.asarray(path[np.concatenate([[True], moved])]), 2
 
     def _mesh(self, query: Query) -> Mesh:
         known = self._meshes.setdefault(query.map, {})
-        frame = frame_of(query, _AROUND)
-        key = (query.inflation, frame)
+        tiles = tiling(frame_of(query, _AROUND))
+        key = (query.inflation, tiles)
         if key not in known:
-            free = free_polygons(query.map, query.inflation, frame, self.config.segments)
-            known[key] = mesh_of(free, self.config.spacing)
+            known[key] = mesh_of(self._tiles(query, tiles), tiles, query.map)
         return known[key]
+
+    def _tiles(self, query: Query, tiles: Tiling) -> list[FloatArray]:
+        """Return the triangles (T, 3, 2) of each tile; only unknown tiles are triangulated."""
+        inflation, segments = query.inflation, self.config.segments
+        needed = tiles_of(query.map.capsules, inflation, segments, tiles)
+        new = [tile for tile in needed if (inflation, tile) not in self._triangles]
+        for tile, triangles in zip(new, triangulated(new, inflation, segments), strict=True):
+            self._triangles[inflation, tile] = triangles
+        for tile in needed:
+            self._triangles.move_to_end((inflation, tile))
+        found = [self._triangles[inflation, tile] for tile in needed]
+        while len(self._triangles) > _KEPT:
+            self._triangles.popitem(last=False)
+        return found
 
 
 def _may_go(query: Query, x: float, y: float, px: float, py: float, off: float) -> bool:

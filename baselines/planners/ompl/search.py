@@ -52,7 +52,7 @@ def space_information(base: Any, bounds: Extent, checker: Checker) -> Any:
         limits.setHigh(axis, bounds[axis + 2])
     space.setBounds(limits)
     information = base.SpaceInformation(space)
-    information.setStateValidityChecker(lambda state: checker.point_is_free(*state[0:2]))
+    information.setStateValidityChecker(lambda state: checker.point_is_free(state[0], state[1]))
     information.setMotionValidator(_validator_class()(information, checker))
     information.setup()
     return information
@@ -94,6 +94,6 @@ def _validator_class() -> Any:
             self._free = checker.motion_is_free
 
         def checkMotion(self, start: Any, end: Any) -> bool:
-            return self._free(*start[0:2], *end[0:2])
+            return self._free(start[0], start[1], end[0], end[1])
 
     return SweptValidator
