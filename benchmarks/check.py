@@ -16,15 +16,12 @@ def _faults(row: Row, kept: float | None) -> Iterator[str]:
     if row.note:
         yield f"{row.pair.name} was not measured: {row.note}"
     elif kept is not None and row.high < SLOWER * kept:
-        yield (
-            f"{row.pair.name}: the ratio is {row.ratio:.2f} [{row.low:.2f}, {row.high:.2f}], and"
-            f" {kept:.2f} is kept"
-        )
+        yield (f"{row.pair.name}: the ratio is {row.text}, and {kept:.3g} is kept")
 
 
 def report(row: Row, kept: float | None) -> str:
     """Return a line about one row and its kept ratio."""
     if row.note:
         return f"{row.pair.name}: not measured, {row.note}"
-    before = "none is kept" if kept is None else f"kept {kept:.2f}"
-    return f"{row.pair.name}: {row.ratio:.2f} [{row.low:.2f}, {row.high:.2f}], {before}"
+    before = "none is kept" if kept is None else f"kept {kept:.3g}"
+    return f"{row.pair.name}: {row.text}, {before}"

@@ -1,7 +1,8 @@
 """The command line as users run it: episodes per second, the time to start, and to compile.
 
-Whole processes are timed from outside, start included. Every episode is measured by all metrics and
-stored, by one worker for each core. ``compiling`` is a run of two episodes without compiled kernels.
+Whole processes are timed from outside, start included. Every episode is measured by all metrics
+and stored, by one worker for each core. ``compiling`` is a run of two episodes without compiled
+kernels.
 """
 
 import os

@@ -4,8 +4,7 @@ The same worlds are run in-process and isolated, in turns, with warm processes a
 include the simulation.
 """
 
-from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 from time import perf_counter
 
 from benchmarks.pair import Pair
@@ -28,22 +27,27 @@ def pairs() -> list[Pair]:
 
 def case(navigator: str, name: str, count: int, wanted: float) -> Pair:
     """Return the pair of one case."""
-    scenario = find(name)
-    worlds = [(seed, build(scenario, "test", seed)) for seed in range(count)]
-    here = Assignment(
-        scenario.identity, scenario.hash, "test", "unknown", navigator, navigator,
-        scenario.driver_specs, salt="00",
-    )  # fmt: skip
-    worlds_ = f"{count} worlds" if count > 1 else "one world"
+    worlds = f"{count} worlds" if count > 1 else "one world"
     return Pair(
-        name=f"{navigator} isolated, {name}, {worlds_} at once", unit="decisions/s",
-        ours=partial(rate, replace(here, isolated=True), worlds), peer="in-process",
-        theirs=partial(rate, here, worlds), wanted=wanted,
+        name=f"{navigator} isolated, {name}, {worlds} at once", unit="decisions/s",
+        ours=partial(rate, navigator, name, count, True), peer="in-process",
+        theirs=partial(rate, navigator, name, count, False), wanted=wanted,
     )  # fmt: skip
 
 
-def rate(assignment: Assignment, worlds: list[Seeded]) -> float:
+@cache
+def drawn(name: str, count: int) -> list[Seeded]:
+    """Return worlds of a scenario, with their seeds."""
+    return [(seed, build(find(name), "test", seed)) for seed in range(count)]
+
+
+def rate(navigator: str, name: str, count: int, isolated: bool) -> float:
     """Return agents' decisions per second."""
+    scenario, worlds = find(name), drawn(name, count)
+    assignment = Assignment(
+        scenario.identity, scenario.hash, "test", "unknown", navigator, navigator,
+        scenario.driver_specs, salt="00", isolated=isolated,
+    )  # fmt: skip
     began = perf_counter()
     episodes = [e for batch in rollout(assignment, worlds) for e in batch]
     seconds = perf_counter() - began

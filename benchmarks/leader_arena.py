@@ -6,34 +6,43 @@ Sensing and stepping are timed.
 """
 
 from dataclasses import replace
+from functools import cache, partial
 from time import perf_counter
 
 import numpy as np
 
+from benchmarks.pair import Pair
 from benchnav.arena.world import ContactRule, World
 from benchnav.generation.build import build
 from benchnav.scenario.catalogue import find
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
 
-WORLDS, DRAWN, STEPS, ROUNDS = 1024, 128, 25, 7
-WANTED = 2e6  # agent-steps per second
+WORLDS, DRAWN, STEPS = 1024, 128, 25
+RATE = 2e6  # agent-steps per second to reach
+ONE = 1e6 / 60.0  # steps per second of one world to reach: 60 µs for each
 RAYS = frozenset({"rays"})
 
 
-def measure() -> list[dict[str, object]]:
-    """Return one row: agent-steps per second, the best of `ROUNDS`."""
-    scenario = find("leaders/dynamic")
-    drawn = [sliding(build(scenario, "train", seed)) for seed in range(DRAWN)]
-    worlds = [drawn[k % DRAWN] for k in range(WORLDS)]
-    rates = [rate(Simulation(worlds), np.random.default_rng(k)) for k in range(ROUNDS + 1)]
-    best = max(rates[1:])  # the first one compiles
+def pairs() -> list[Pair]:
+    """Return the pair of many worlds, and that of one."""
     return [
-        {
-            "name": "leader arena, 1,024 × 4 agents, 7 rays, contacts",
-            "value": best, "unit": "agent-steps/s", "wanted": WANTED, "ratio": best / WANTED,
-        }
+        Pair(
+            name="leader arena, 1,024 × 4 agents, 7 rays, contacts", unit="agent-steps/s",
+            ours=partial(rate, WORLDS, STEPS), wanted=RATE,
+        ),
+        Pair(
+            name="leader arena, one world of 4 agents", unit="agent-steps/s",
+            ours=partial(rate, 1, 8 * STEPS), wanted=4 * ONE,
+        ),
     ]  # fmt: skip
+
+
+@cache
+def drawn() -> list[World]:
+    """Return `DRAWN` worlds."""
+    scenario = find("leaders/dynamic")
+    return [sliding(build(scenario, "train", seed)) for seed in range(DRAWN)]
 
 
 def sliding(world: World) -> World:
@@ -41,12 +50,14 @@ def sliding(world: World) -> World:
     return replace(world, rules=replace(world.rules, contact=ContactRule.SLIDE))
 
 
-def rate(simulation: Simulation, rng: np.random.Generator) -> float:
-    """Return agent-steps per second over STEPS steps of random driving."""
+def rate(worlds: int, count: int) -> float:
+    """Return agent-steps per second of ``worlds`` over ``count`` steps of random driving."""
+    simulation = Simulation([drawn()[k % DRAWN] for k in range(worlds)])
+    rng = np.random.default_rng(0)
     chosen = np.tile(np.arange(simulation.A), (simulation.B, 1))
     twist = np.ones(chosen.shape, np.bool_)
     seconds, steps = 0.0, 0
-    for _ in range(STEPS):
+    for _ in range(count):
         command = np.stack(
             [rng.uniform(0.0, 2.0, chosen.shape), rng.normal(0.0, 1.0, chosen.shape)], axis=-1
         )
@@ -57,7 +68,3 @@ def rate(simulation: Simulation, rng: np.random.Generator) -> float:
         simulation.step(command, twist)
         seconds += perf_counter() - began
     return steps / seconds
-
-
-if __name__ == "__main__":
-    print(measure())

@@ -16,9 +16,7 @@ after a warm-up:
   agent is that of its default map.
 
 So a step is 0.25 s of simulated time for all of them. Every measurement runs in a separate
-interpreter; the parts run in turns, and the best of three rounds counts.
-``python -m benchmarks.orca_peers PEERS_PYTHON`` prints the rows; PEERS_PYTHON is an interpreter
-that has the peers.
+interpreter, benchnav in this one's environment and the peers in theirs.
 """
 
 import json
@@ -27,10 +25,12 @@ import os
 import subprocess
 import sys
 from dataclasses import astuple, dataclass
-from importlib.metadata import PackageNotFoundError, version
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 from typing import Any
+
+from benchmarks.pair import NotMeasuredError, Pair
 
 ROOT = Path(__file__).resolve().parents[1]
 GAP, RADIUS = 0.2 * math.pi, 0.2  # [m]
@@ -38,7 +38,6 @@ NEIGHBOURS, RANGE, HORIZON = 10, 10.0, 5.0  # [m], [s]
 SPEED, LIMIT, DT = 1.0, 1.5, 0.25  # [m/s], [m/s], [s]
 PACKED = 0.401  # [m] between agents in a gridlock
 SHORT = 0.01  # [s] step of peers with forces
-ROUNDS = 3
 
 Places = list[tuple[float, float]]
 
@@ -243,78 +242,47 @@ PARTS = {
 
 
 def answer(part: str, crowd: Crowd) -> dict[str, Any]:
-    """Return the output of a subprocess: seconds, or the reason why there are none."""
+    """Return the output of a subprocess: agent-steps a second, or why there are none."""
     try:
-        return {"version": version(part), "seconds": PARTS[part](crowd)}
-    except (ImportError, PackageNotFoundError) as error:
+        return {"rate": crowd.agents * crowd.steps / PARTS[part](crowd)}
+    except ImportError as error:
         return {"skipped": f"{part} is not installed ({error})"}
 
 
-def ask(python: str, part: str, crowd: Crowd = Crowd()) -> dict[str, Any]:
-    """Run one part in a separate interpreter.
+def rate(python: str, part: str, crowd: Crowd) -> float:
+    """Return agent-steps a second of one part, measured in a separate interpreter.
 
     It runs as a module: the folder of a script would be first on the path, and one of our files
     may have the name of a package that a library imports.
+
+    Raises NotMeasuredError if the part is not installed or fails.
     """
-    command = [python, "-m", "benchmarks.orca_peers", "--part", part, json.dumps(astuple(crowd))]
+    command = [python, "-m", "benchmarks.orca_peers", part, json.dumps(astuple(crowd))]
     threads = {"BENCHNAV_THREADS": str(crowd.threads)}
     done = subprocess.run(
         command, capture_output=True, text=True, check=False, cwd=ROOT, env=os.environ | threads
     )
     if done.returncode != 0 or not done.stdout:
         last = done.stderr.strip().splitlines()[-1:] or ["no output"]
-        return {"skipped": f"{part} failed: {last[0]}"}
-    times: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    return times
+        raise NotMeasuredError(f"{part} failed: {last[0]}")
+    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    if "skipped" in found:
+        raise NotMeasuredError(found["skipped"])
+    return float(found["rate"])
 
 
-def measure(peers_python: str) -> list[dict[str, Any]]:
-    """Return a row for each entry of `WANTED`.
-
-    Rows have ``name``, ``value`` (agent-steps per second), ``unit``, ``peer`` (the rate that it is
-    compared with), ``ratio`` and ``wanted``, or ``name`` and ``note`` (the reason).
-    """
-    times = _times(peers_python)
-    rows = []
-    for crowd, other, wanted in WANTED:
-        against = times["benchnav", other] if isinstance(other, Crowd) else times[other, crowd]
-        name = f"{crowd} against {other} {against.get('version', '')}".strip()
-        if isinstance(other, Crowd):
-            name = f"{crowd} against {other}"
-        row: dict[str, Any] = {"name": name}
-        missing = [
-            one["skipped"] for one in (times["benchnav", crowd], against) if "skipped" in one
-        ]
-        if missing:
-            rows.append(row | {"note": missing[0]})
-            continue
-        value, peer = times["benchnav", crowd]["rate"], against["rate"]
-        row |= {"value": value, "unit": "agent-steps/s", "peer": peer, "ratio": value / peer}
-        rows.append(row | {"wanted": wanted})
-    return rows
-
-
-def _times(peers_python: str) -> dict[tuple[str, Crowd], dict[str, Any]]:
-    """Return the best round of each part and crowd: its ``rate``, or why it was ``skipped``."""
-    best: dict[tuple[str, Crowd], dict[str, Any]] = {}
-    for _ in range(ROUNDS):
-        for crowd, other, _wanted in WANTED:
-            pair = (("benchnav", other) if isinstance(other, Crowd) else (other, crowd),)
-            for part, measured in (("benchnav", crowd), *pair):
-                known = best.get((part, measured))
-                if known is not None and "skipped" in known:
-                    continue
-                one = ask(sys.executable if part == "benchnav" else peers_python, part, measured)
-                if "seconds" in one:
-                    one["rate"] = measured.agents * measured.steps / one["seconds"]
-                if known is None or "skipped" in one or one["rate"] > known["rate"]:
-                    best[part, measured] = one
-    return best
+def pairs(peers: str) -> list[Pair]:
+    """Return the pair of each entry of `WANTED`; ``peers`` is an interpreter that has the peers."""
+    return [
+        Pair(
+            name=f"{crowd} against {other}", unit="agent-steps/s", wanted=wanted, peer=f"{other}",
+            ours=partial(rate, sys.executable, "benchnav", crowd), warm=False,
+            theirs=partial(rate, sys.executable, "benchnav", other) if isinstance(other, Crowd)
+            else partial(rate, peers, other, crowd),
+        )
+        for crowd, other, wanted in WANTED
+    ]  # fmt: skip
 
 
 if __name__ == "__main__":
-    if sys.argv[1:2] == ["--part"]:
-        print(json.dumps(answer(sys.argv[2], Crowd(*json.loads(sys.argv[3])))))
-    else:
-        for row in measure(sys.argv[1]):
-            print(row)
+    print(json.dumps(answer(sys.argv[1], Crowd(*json.loads(sys.argv[2])))))

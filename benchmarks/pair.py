@@ -24,7 +24,7 @@ class NotMeasuredError(Exception):
 
 @dataclass(frozen=True, kw_only=True)
 class Pair:
-    """What is measured, and what it is compared with.
+    """A benchmark and its other side.
 
     ``wanted`` is the ratio of the rates to reach. Where the other side is the yardstick, it is the
     rate itself, or the time [s] where the unit is s.
@@ -47,10 +47,15 @@ class Row:
 
     pair: Pair
     value: float = math.nan  # the best rate, or time [s]
-    ratio: float = math.nan  # of the rates, the geometric mean over blocks
+    ratio: float = math.nan  # of the rates, the geometric mean
     low: float = math.nan  # the ends of its 95 % interval
     high: float = math.nan
     note: str = ""
+
+    @property
+    def text(self) -> str:
+        """The ratio and its interval."""
+        return f"{self.ratio:.3g} [{self.low:.3g}, {self.high:.3g}]"
 
     @property
     def reached(self) -> bool:
@@ -69,12 +74,12 @@ def measured(pair: Pair) -> Row:
         if pair.warm:
             pair.ours(), pair.theirs()
         for _ in range(pair.blocks):
-            first, between = pair.ours(), (pair.theirs(), pair.theirs())
-            ours.append((first, pair.ours()))
-            theirs.append(between)
+            ours.append(pair.ours())
+            theirs += [pair.theirs(), pair.theirs()]
+            ours.append(pair.ours())
     except NotMeasuredError as error:
         return Row(pair=pair, note=str(error))
-    logs = np.log(ours).mean(axis=1) - np.log(theirs).mean(axis=1)
+    logs = np.log(ours) - np.log(theirs)
     low, high = interval(logs)
     best = float(np.max(ours))
     return Row(

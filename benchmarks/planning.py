@@ -12,7 +12,7 @@ All times are processor time; searches are in one thread.
 
 import os
 from collections.abc import Callable, Iterator
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -22,6 +22,7 @@ from benchnav_baselines.common.validity_checker import CountingChecker, PlanarCh
 from benchnav_baselines.planners.ompl.budget import Budget
 from benchnav_baselines.planners.ompl.search import Query, load, search, space_information
 
+from benchmarks.pair import Pair
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arrays import FloatArray
 from benchnav.geometry import FreeSpace
@@ -33,38 +34,61 @@ from benchnav.scenario.importers import movingai
 from benchnav.scenario.importers.grid import Occupancy
 
 RADIUS, TOLERANCE = 0.3, 0.3  # [m]
-PLANS, GROWN, GEODESICS, MOTIONS = 200, 20, 1000, 20_000
+PLANS, GROWN, GEODESICS, MOTIONS = 200, 20, 1000, 10_000
 _STEP = 0.1  # [m] between the states that the plain callback checks
 _RANGE = 8.0  # [m] of a motion of RRT-Connect
 _SIZE, _SEED = 256, 0
 _DATA = Path(os.environ.get("BENCHNAV_DATA", Path(__file__).parents[2] / "shared" / "data"))
-
-_PILLAR = Map((-9.0, -9.0, 9.0, 9.0), (Solid(Kind.STATIC, center=(-2.0, 2.0), radius=3.0),))
-_AROUND_IT = np.array([[-6.0, 2.0], [2.0, 2.5]])  # start and goal; a first search loads the kernels
+NAME = "Berlin_1_256"
+CITY = _DATA / "movingai" / f"{NAME}.map"
 
 Ends = tuple[FloatArray, FloatArray]  # start and goal (2,) [m]
+Check = Callable[[Map, Ends, PlanarChecker], tuple[int, float]]
+"""A search → the number of motions that it checked, and its time [s]."""
 
 
-def measure() -> list[dict[str, object]]:
-    """Return the rows."""
-    name, map, queries = city()
-    return [ompl_row(name, map, queries), *navmesh_rows(name, map, queries),
-            geodesic_row(name, map, queries)]  # fmt: skip
+def pairs() -> list[Pair]:
+    """Return the pairs of all planners."""
+    name = NAME if CITY.exists() else f"streets of {_SIZE} × {_SIZE} m"
+    return [
+        Pair(
+            name=f"OMPL's RRT-Connect, {name}", unit="motions/s",
+            peer=f"callback every {_STEP} m", wanted=10.0, blocks=2,
+            ours=partial(motions, _swept_motions),
+            theirs=partial(motions, _state_motions),
+        ),
+        Pair(
+            name=f"navmesh, {name}: the first plan", unit="s", wanted=2.0,
+            ours=first_plan,
+        ),
+        Pair(
+            name=f"navmesh, {name}: a later plan", unit="plans/s", wanted=200.0,
+            ours=later_plans,
+        ),
+        Pair(
+            name=f"navmesh, {name}: a plan after one more obstacle", unit="plans/s",
+            peer="from scratch", wanted=3.0, blocks=1,
+            ours=partial(growing_map, True),
+            theirs=partial(growing_map, False),
+        ),
+        Pair(
+            name=f"{GEODESICS:,} geodesics, {name}", unit="s", wanted=30.0, blocks=1,
+            ours=geodesics,
+        ),
+    ]  # fmt: skip
 
 
-def city() -> tuple[str, Map, list[Ends]]:
-    """Return the name of the map, the map, and queries between free places."""
-    path = _DATA / "movingai" / "Berlin_1_256.map"
-    if path.exists():
-        occupancy = movingai.read_map(path)
-        scen = movingai.read_scen(path.with_name("Berlin_1_256-even-1.scen"), path, occupancy)
+@cache
+def city() -> tuple[Map, list[Ends]]:
+    """Return the map, and queries between free places."""
+    if CITY.exists():
+        occupancy = movingai.read_map(CITY)
+        scen = movingai.read_scen(CITY.with_name(f"{NAME}-even-1.scen"), CITY, occupancy)
         ends = [(scen.start[k], scen.goal[k]) for k in range(len(scen.length))]
-        name = "Berlin_1_256"
     else:
         occupancy, ends = streets(np.random.default_rng(_SEED))
-        name = f"streets of {_SIZE} × {_SIZE} m"
     queries = [(occupancy.centres(*a), occupancy.centres(*b)) for a, b in ends]
-    return name, Map(occupancy.bounds, trace(occupancy)), queries
+    return Map(occupancy.bounds, trace(occupancy)), queries
 
 
 def streets(rng: np.random.Generator) -> tuple[Occupancy, list[tuple[Any, Any]]]:
@@ -93,22 +117,15 @@ def _lines(rng: np.random.Generator) -> Iterator[tuple[int, int]]:
         at = end + int(rng.integers(3, 7))
 
 
-def ompl_row(name: str, map: Map, queries: list[Ends]) -> dict[str, object]:
-    """Return a row: motions a second, those of the plain callback as its peer."""
+def motions(check: Check) -> float:
+    """Return motions checked a second."""
+    map, queries = city()
     checker = PlanarChecker(map, RADIUS)
-    rates: dict[Callable[..., tuple[int, float]], float] = {}
-    for motions in (_swept_motions, _state_motions):
-        motions(map, queries[0], checker)  # loads the kernels
-        count, seconds, k = 0, 0.0, 0
-        while count < MOTIONS:
-            more, time = motions(map, queries[k % len(queries)], checker)
-            count, seconds, k = count + more, seconds + time, k + 1
-        rates[motions] = count / seconds
-    swept, plain = rates[_swept_motions], rates[_state_motions]
-    return {
-        "name": f"OMPL's RRT-Connect, {name}; peer: callback every {_STEP} m",
-        "value": swept, "unit": "motions/s", "peer": plain, "ratio": swept / plain, "wanted": 10.0,
-    }  # fmt: skip
+    count, seconds, k = 0, 0.0, 0
+    while count < MOTIONS:
+        more, time = check(map, queries[k % len(queries)], checker)
+        count, seconds, k = count + more, seconds + time, k + 1
+    return count / seconds
 
 
 def _rrt_connect(geometric: Any, information: Any) -> Any:
@@ -148,58 +165,55 @@ def _state_motions(map: Map, ends: Ends, checker: PlanarChecker) -> tuple[int, f
     return plain.getMotionValidator().getCheckedMotionCount(), process_time() - began
 
 
-def navmesh_rows(name: str, map: Map, queries: list[Ends]) -> list[dict[str, object]]:
-    """Return rows: the first plan, later plans, and plans on a map that grows."""
-    rng = np.random.default_rng(_SEED)
-    make(PLANNERS, "navmesh").plan(_PILLAR, *_AROUND_IT, RADIUS, TOLERANCE, rng)
-    planner = make(PLANNERS, "navmesh")
-    ask = partial(planner.plan, radius=RADIUS, tolerance=TOLERANCE, rng=rng)
-    first = _seconds(ask, map, *queries[0])
-    later = [_seconds(ask, map, *ends) for ends in queries[:PLANS]]
-    kept, scratch = [], []
-    solids = map.solids
+def first_plan() -> float:
+    """Return how often a second the map can be meshed and asked once."""
+    map, queries = city()
+    return 1.0 / _seconds(_asked(), map, *queries[0])
+
+
+def later_plans() -> float:
+    """Return plans a second on a map that is meshed already."""
+    map, queries = city()
+    ask = _asked()
+    ask(map, *queries[0])
+    return PLANS / sum(_seconds(ask, map, *ends) for ends in queries[:PLANS])
+
+
+def growing_map(keep: bool) -> float:
+    """Return plans a second on a map that gets one more obstacle before each.
+
+    The first plan, on the map before, is not timed. With ``keep``, one planner makes all plans;
+    else each is made by a new one.
+    """
+    map, queries = city()
+    ask, solids, seconds = _asked(), map.solids, 0.0
+    ask(map, *queries[0])
     for k in range(GROWN):
         x, y = queries[-1 - k][0].tolist()
         solids = (*solids, Solid(Kind.STATIC, center=(x, y), radius=0.3))
         grown = Map(map.bounds, solids)
-        kept.append(_seconds(ask, grown, *queries[k]))
-        new = make(PLANNERS, "navmesh")
-        scratch.append(_seconds(new.plan, grown, *queries[k], RADIUS, TOLERANCE, rng))
-    whole, part = float(np.mean(scratch)), float(np.mean(kept))
-    mean = 1e3 * float(np.mean(later))
-    return [
-        _lower(f"navmesh, {name}: the first plan", first, "s", 2.0),
-        _lower(f"navmesh, {name}: a later plan, mean of {PLANS}", mean, "ms", 5.0),
-        {
-            "name": f"navmesh, {name}: a plan after one more obstacle; peer: from scratch",
-            "value": 1.0 / part, "unit": "plans/s", "peer": 1.0 / whole, "ratio": whole / part,
-            "wanted": 3.0,
-        },
-    ]  # fmt: skip
+        seconds += _seconds(ask if keep else _asked(), grown, *queries[k])
+    return GROWN / seconds
 
 
-def geodesic_row(name: str, map: Map, queries: list[Ends]) -> dict[str, object]:
-    """Return a row: exact shortest paths, with the graph that they share."""
-    FreeSpace(_PILLAR.capsules, RADIUS).length(*_AROUND_IT, TOLERANCE)
+def geodesics() -> float:
+    """Return how often a second all exact shortest paths can be computed, with their graph."""
+    map, queries = city()
     began = process_time()
     space = FreeSpace(map.capsules, RADIUS)
     for k in range(GEODESICS):
         space.length(*queries[k % len(queries)], TOLERANCE)
-    return _lower(f"{GEODESICS:,} geodesics, {name}", process_time() - began, "s", 30.0)
+    return 1.0 / (process_time() - began)
+
+
+def _asked() -> Callable[..., object]:
+    """Return the plan call of a new planner."""
+    rng = np.random.default_rng(_SEED)
+    planner = make(PLANNERS, "navmesh")
+    return partial(planner.plan, radius=RADIUS, tolerance=TOLERANCE, rng=rng)
 
 
 def _seconds(call: Callable[..., object], *arguments: object) -> float:
     began = process_time()
     call(*arguments)
     return process_time() - began
-
-
-def _lower(name: str, value: float, unit: str, wanted: float) -> dict[str, object]:
-    """Return a row whose value is to be at most ``wanted``."""
-    return {
-        "name": name, "value": value, "unit": unit, "wanted": wanted, "ratio": wanted / value,
-    }  # fmt: skip
-
-
-if __name__ == "__main__":
-    print(*measure(), sep="\n")

@@ -45,19 +45,18 @@ def line(row: Row) -> str:
     if row.note:
         return f"| {pair.name} | – | – | – | – | {row.note} |"
     goal = f"{pair.wanted:.2g} ×" if pair.peer else f"{number(pair.wanted)} {pair.unit}"
-    ratio = f"{row.ratio:.2f} [{row.low:.2f}, {row.high:.2f}]"
     cells = (
-        pair.name, f"{number(row.value)} {pair.unit}", pair.peer or YARDSTICK, ratio, goal,
+        pair.name, f"{number(row.value)} {pair.unit}", pair.peer or YARDSTICK, row.text, goal,
         "yes" if row.reached else "no",
     )  # fmt: skip
     return f"| {' | '.join(cells)} |"
 
 
 def limits(rows: Sequence[Row]) -> Iterator[str]:
-    """Yield what limits the rows that fall short."""
+    """Yield the limits of the rows that fall short."""
     short = [row.pair for row in rows if not row.note and not row.reached and row.pair.limit]
     if short:
-        yield "What limits the rows that fall short:"
+        yield "Limits of the rows that fall short:"
         yield ""
         yield from (f"- *{pair.name}*: {pair.limit}" for pair in short)
         yield ""
@@ -80,7 +79,7 @@ def processor() -> str:
 
 def keep(rows: Sequence[Row], path: Path = KEPT) -> None:
     """Write the ratios to a file."""
-    ratios = {row.pair.name: round(row.ratio, 4) for row in rows}
+    ratios = {row.pair.name: float(f"{row.ratio:.4g}") for row in rows}
     path.write_text(json.dumps(ratios, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
 
 

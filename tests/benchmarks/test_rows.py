@@ -43,8 +43,8 @@ def command(monkeypatch, tmp_path):
 def test_what_was_measured_is_kept(command):
     limited = pair(lambda: 5.0, lambda: 1.0, peer="", unit="s", wanted=0.4)
     text = command(pair(lambda: 9e5, limit="Sorting."), limited)
-    assert "| crowd | 0.90 M agent-steps/s | pyrvo 2 | 3.00 [3.00, 3.00] | 4 × | no |" in text
-    assert "| crowd | 0.2 s | yardstick | 5.00 [5.00, 5.00] | 0.4 s | yes |" in text
+    assert "| crowd | 0.90 M agent-steps/s | pyrvo 2 | 3 [3, 3] | 4 × | no |" in text
+    assert "| crowd | 0.2 s | yardstick | 5 [5, 5] | 0.4 s | yes |" in text
     assert "- *crowd*: Sorting." in text
 
 
@@ -72,7 +72,7 @@ def test_both_sides_are_measured_in_turns():
     row = measured(pair(side("A", 6.0), side("B", 2.0), blocks=2))
     assert "".join(order) == "AB" + "ABBA" * 2
     assert row.ratio == pytest.approx(3.0)
-    assert (row.low, row.high) == pytest.approx((3.0, 3.0))
+    assert row.low < 3.0 < row.high
 
 
 def test_the_interval_holds_the_ratio_of_noisy_rates():
@@ -88,7 +88,7 @@ def test_only_a_row_whose_whole_interval_is_slower_fails():
     assert failures([unsure], {"crowd": 3.0}) == []
     assert failures([slow], {}) == []
     (text,) = failures([slow], {"crowd": 3.0})
-    assert text == "crowd: the ratio is 2.60 [2.50, 2.69], and 3.00 is kept"
+    assert text == "crowd: the ratio is 2.6 [2.5, 2.69], and 3 is kept"
 
 
 def test_the_check_fails_when_a_ratio_fell(command):
@@ -98,7 +98,7 @@ def test_the_check_fails_when_a_ratio_fell(command):
     assert passed.value.code == 0
     with pytest.raises(SystemExit) as failed:
         command(pair(lambda: 8e5), check=True)
-    assert failed.value.code == "crowd: the ratio is 2.67 [2.67, 2.67], and 3.00 is kept"
+    assert failed.value.code == "crowd: the ratio is 2.67 [2.67, 2.67], and 3 is kept"
 
 
 def test_names_are_unique_because_ratios_are_kept_by_name():
