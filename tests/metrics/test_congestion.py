@@ -261,7 +261,7 @@ def test_parts_are_those_of_scipy():
     rng = np.random.default_rng(0)
     place, radius = rng.uniform(-3, 3, (12, 5, 2)), rng.uniform(0.1, 0.3, 12)
     active = rng.random((12, 5)) < 0.8
-    found = groups._parts(place, place, active, radius)
+    found = groups.part_counts(place, place, active, radius)
     for k in range(5):
         p, r = place[active[:, k], k], radius[active[:, k]]
         linked = np.hypot(*(p[:, None] - p[None]).transpose(2, 0, 1)) <= 3 * (r[:, None] + r)
