@@ -21,7 +21,7 @@ from benchnav.metrics.quantities.trajectory import positions_at, present_at
 SLOW = 0.2  # of the preferred speed
 CELL = 0.5  # [m] of the velocity field of the congestion level
 WINDOW = 10.0  # [s] over which that field is averaged
-_STEFFEN = "Steffen & Seyfried 2010, computed with PedPy"
+_STEFFEN = "Steffen & Seyfried 2010, as PedPy computes it"
 
 
 @metric(

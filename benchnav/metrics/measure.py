@@ -77,12 +77,12 @@ def measure_roles(
     The means over agents of all metrics are taken together.
     """
     _no_metrics_twice(tuple(metric.name for metric in metrics))
-    values = np.full((len(metrics), len(episode.world.agents)), math.nan)
-    alone = [n for n, metric in enumerate(metrics) if not _agents_values(metric, episode, values[n])]
+    rows = np.full((len(metrics), len(episode.world.agents)), math.nan)
+    alone = [n for n, metric in enumerate(metrics) if not _agents_values(metric, episode, rows[n])]
     found = []
     for common, members in subjects(episode):
         means, defined = np.empty(len(metrics)), np.empty(len(metrics), np.int64)
-        write_means(values, np.array(members), means, defined)
+        write_means(rows, np.array(members), means, defined)
         cells = list(map(Cell, means.tolist(), defined.tolist()))
         for n in (*alone, *np.flatnonzero(np.abs(means) > LARGEST).tolist()):
             cells[n] = measure_alone(metrics[n], episode, members)

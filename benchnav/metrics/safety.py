@@ -31,7 +31,7 @@ _HALL = "Hall 1966, The Hidden Dimension"
 )
 def collided(episode: Episode) -> FloatArray:
     """(A,) 1 for agents that are charged with at least one collision event."""
-    return (analyse(episode).charged.sum(axis=0) > 0.0).astype(np.float64)
+    return np.asarray(analyse(episode).charged.any(axis=0), np.float64)
 
 
 @metric(title="Collision events with walls", unit="", better=None, low=0.0)
@@ -151,7 +151,7 @@ def personal_space_personal(episode: Episode) -> FloatArray:
 
 
 def _of_kind(episode: Episode, kind: Kind) -> FloatArray:
-    return analyse(episode).charged[kind].copy()
+    return np.array(analyse(episode).charged[kind])
 
 
 def _share_within(episode: Episode, distance: float) -> FloatArray:

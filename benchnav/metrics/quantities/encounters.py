@@ -119,21 +119,24 @@ def _circles(capsules: FloatArray, body: IntArray) -> tuple[IntArray, FloatArray
             and capsules[end, 1] == capsules[end - 1, 3]
         ):  # fmt: skip
             end += 1
-        x0, y0, x1, y1 = math.inf, math.inf, -math.inf, -math.inf
-        for e in range(c, end):
-            x0, x1 = min(x0, capsules[e, 0], capsules[e, 2]), max(x1, capsules[e, 0], capsules[e, 2])
-            y0, y1 = min(y0, capsules[e, 1], capsules[e, 3]), max(y1, capsules[e, 1], capsules[e, 3])
-        wide, tall = x1 - x0, y1 - y0
-        circle[groups, 0], circle[groups, 1] = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
-        circle[groups, 2] = 0.5 * math.sqrt(wide * wide + tall * tall)
-        most = 0.0
-        for e in range(c, end):
-            most = max(most, capsules[e, 4])
-        circle[groups, 2] += most
+        _write_circle(capsules, c, end, circle[groups])
         groups += 1
         first[groups] = end
         c = end
     return first[: groups + 1], circle[:groups]
+
+
+@kernel_without_allocation
+def _write_circle(capsules: FloatArray, first: int, end: int, circle: FloatArray) -> None:
+    """Write a circle (3,) around some capsules."""
+    x0, y0, x1, y1, most = math.inf, math.inf, -math.inf, -math.inf, 0.0
+    for c in range(first, end):
+        ax, ay, bx, by = capsules[c, 0], capsules[c, 1], capsules[c, 2], capsules[c, 3]
+        x0, y0 = min(x0, ax, bx), min(y0, ay, by)
+        x1, y1, most = max(x1, ax, bx), max(y1, ay, by), max(most, capsules[c, 4])
+    wide, tall = x1 - x0, y1 - y0
+    circle[0], circle[1] = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+    circle[2] = 0.5 * math.sqrt(wide * wide + tall * tall) + most
 
 
 @kernel_without_allocation
@@ -269,9 +272,7 @@ def meet_agents(
                     wx = velocity[j, k, 0] - velocity[i, k, 0]
                     wy = velocity[j, k, 1] - velocity[i, k, 1]
                     near_miss = between - fastest * dt <= worst + SLACK
-                    if near_miss or _may_touch(
-                        between, apart, -(dx * wx + dy * wy), latest + dt
-                    ):
+                    if near_miss or _may_touch(between, apart, -(dx * wx + dy * wy), latest + dt):
                         _pair_step(
                             i, j, k, position, velocity, duration, last, leaves, radius,
                             clearance, ttc,

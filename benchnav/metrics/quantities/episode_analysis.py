@@ -126,8 +126,8 @@ class Analysis(Endings):
                 own = np.flatnonzero(members & (agents.team == team))
                 together = active[own].sum(axis=0) > 1
                 if together.any():
-                    motion = (np.compress(together, x[own], axis=1) for x in (place, step, active))
-                    teams.append((*motion, agents.radius[own]))
+                    now = own[:, None], np.flatnonzero(together)
+                    teams.append((place[now], step[now], active[now], agents.radius[own]))
             self._together[key] = teams
         return self._together[key]
 

@@ -56,7 +56,7 @@ def block_sum(values: FloatArray, low: int, n: int) -> float:
     for k in range(low + 8, end, 8):
         a, b, c, d = a + values[k], b + values[k + 1], c + values[k + 2], d + values[k + 3]
         e, f, g, h = e + values[k + 4], f + values[k + 5], g + values[k + 6], h + values[k + 7]
-    total = ((a + b) + (c + d)) + ((e + f) + (g + h))
+    total = float(((a + b) + (c + d)) + ((e + f) + (g + h)))
     for k in range(end, low + n):
         total += values[k]
     return total

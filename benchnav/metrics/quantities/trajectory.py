@@ -45,7 +45,7 @@ class Trajectories:
     @cached_property
     def total_duration(self) -> FloatArray:
         """(A,) [s] sum of the durations of the segments."""
-        return self.duration.sum(axis=1)
+        return np.asarray(self.duration.sum(axis=1))
 
     @property
     def counted(self) -> BoolArray:

@@ -98,9 +98,7 @@ def _values(name: str, episode: Episode) -> list[dict[str, Any]]:
     except BenchnavError as error:
         fault = {"value": math.nan, "defined": 0, "missing": short(error), "traceback": None}
         return [fault for _ in subjects(episode)]
-    return [
-        measure_alone(metric, episode, members)._asdict() for _, members in subjects(episode)
-    ]
+    return [measure_alone(metric, episode, members)._asdict() for _, members in subjects(episode)]
 
 
 def _rows(name: str, episode: Episode, answer: Any) -> Rows:
