@@ -10,6 +10,7 @@ disc: straight towards the goal's centre, or, if an obstacle overlaps the goal d
 where the disc's rim meets the boundary of free space.
 """
 
+import hashlib
 import math
 from functools import cached_property, lru_cache
 from typing import NamedTuple
@@ -177,11 +178,20 @@ def geodesic_lengths(
     Raises:
         ValueError: a radius is not above 1e-8.
     """
-    solid = np.ascontiguousarray(capsules, np.float64).tobytes()
-    lengths = np.empty(len(start))
-    for a in range(len(start)):
-        lengths[a] = _space(solid, float(radius[a])).length(start[a], goal[a], tolerance)
-    return lengths
+    query = [np.ascontiguousarray(x, np.float64).tobytes() for x in (capsules, start, goal, radius)]
+    key = hashlib.blake2b(b"".join(query) + repr((*map(len, query), tolerance)).encode()).digest()
+    if key not in _LENGTHS:
+        if len(_LENGTHS) >= _MOST_LENGTHS:
+            _LENGTHS.clear()
+        spaces = [_space(query[0], float(r)) for r in radius]
+        places = zip(spaces, start, goal, strict=True)
+        _LENGTHS[key] = np.array([space.length(s, g, tolerance) for space, s, g in places])
+    return _LENGTHS[key].copy()
+
+
+# Every navigator of a suite runs in the same worlds. The key is a digest, so that no world is kept.
+_LENGTHS: dict[bytes, FloatArray] = {}
+_MOST_LENGTHS = 10_000
 
 
 @lru_cache(maxsize=16)
