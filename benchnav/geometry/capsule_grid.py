@@ -8,7 +8,7 @@ import numpy as np
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.sweep import segment_distance2
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel, kernel_without_allocation
 
 SLACK = 1e-8  # [m] overlap that counts as touching, so that rounding closes no passage
 _MAX_SIDE = 512  # cells along an axis
@@ -35,15 +35,23 @@ def capsule_grid(capsules: FloatArray, radius: float) -> CapsuleGrid:
     if len(capsules) == 0:
         empty = np.zeros(0, np.int64)
         return CapsuleGrid(capsules, reach, np.zeros(2, np.int64), empty, 0.0, 0.0, 1.0, 1, 1)
-    ends = capsules[:, :4].reshape(-1, 2, 2)
-    low = (ends.min(axis=1) - reach[:, None]).min(axis=0)
-    high = (ends.max(axis=1) + reach[:, None]).max(axis=0)
-    wide, tall = high - low
+    x, y, wide, tall = _extent(capsules, reach)
     side = max(math.sqrt(wide * tall / len(capsules)), max(wide, tall) / (_MAX_SIDE - 1))
     nx, ny = int(wide / side) + 1, int(tall / side) + 1
-    x, y = float(low[0]), float(low[1])
     start, item = _sorted(capsules, reach, x, y, side, nx, ny)
     return CapsuleGrid(capsules, reach, start, item, x, y, side, nx, ny)
+
+
+@kernel_without_allocation
+def _extent(capsules: FloatArray, reach: FloatArray) -> tuple[float, float, float, float]:
+    """Return the lower left corner, width and height [m] of all grown capsules."""
+    x0, y0, x1, y1 = math.inf, math.inf, -math.inf, -math.inf
+    for p in range(len(capsules)):
+        x0 = min(x0, min(capsules[p, 0], capsules[p, 2]) - reach[p])
+        y0 = min(y0, min(capsules[p, 1], capsules[p, 3]) - reach[p])
+        x1 = max(x1, max(capsules[p, 0], capsules[p, 2]) + reach[p])
+        y1 = max(y1, max(capsules[p, 1], capsules[p, 3]) + reach[p])
+    return x0, y0, x1 - x0, y1 - y0
 
 
 @kernel
@@ -82,12 +90,14 @@ def _sorted(
     return start, item
 
 
-@kernel
+@kernel_without_allocation
 def is_clear(grid: CapsuleGrid, ax: float, ay: float, bx: float, by: float) -> bool:
     """Whether the disc can move straight from a to b; touching is allowed."""
     if ax > bx:
         ax, ay, bx, by = bx, by, ax, ay
     side, wide = grid.side, bx - ax
+    dx, dy = bx - ax, by - ay
+    length = math.sqrt(dx * dx + dy * dy)
     i0 = max(0, math.floor((ax - grid.x) / side - 1e-9))
     i1 = min(grid.nx - 1, math.floor((bx - grid.x) / side + 1e-9))
     for i in range(i0, i1 + 1):
@@ -104,8 +114,14 @@ def is_clear(grid: CapsuleGrid, ax: float, ay: float, bx: float, by: float) -> b
             for k in range(grid.start[cell], grid.start[cell + 1]):
                 p = grid.item[k]
                 reach = grid.reach[p] - SLACK
-                c = grid.capsules[p]
-                if segment_distance2(ax, ay, bx, by, c[0], c[1], c[2], c[3]) < reach * reach:
+                x0, y0 = grid.capsules[p, 0], grid.capsules[p, 1]
+                x1, y1 = grid.capsules[p, 2], grid.capsules[p, 3]
+                left = dx * (y0 - ay) - dy * (x0 - ax)
+                if left * (dx * (y1 - ay) - dy * (x1 - ax)) > 0.0:  # both ends on one side
+                    far = length * grid.reach[p]
+                    if abs(left) > far and abs(dx * (y1 - ay) - dy * (x1 - ax)) > far:
+                        continue
+                if segment_distance2(ax, ay, bx, by, x0, y0, x1, y1) < reach * reach:
                     return False
     return True
 

@@ -13,7 +13,7 @@ import numpy as np
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid, doubled, nearby
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel, kernel_without_allocation
 
 TWO_PI = 2.0 * math.pi
 _NARROW = 1e-9  # [rad] narrower arcs are ignored
@@ -33,47 +33,71 @@ class Arcs(NamedTuple):
 
 def free_arcs(grid: CapsuleGrid) -> Arcs:
     """Return the arcs around the ends of the grid's capsules that no capsule covers."""
-    circles = _circles(grid.capsules, grid.reach)
-    rows = _free_parts(grid, circles)
-    low, width = rows[:, 3].copy(), rows[:, 4].copy()
-    at = low + 0.5 * width
-    middle = np.stack([np.cos(at), np.sin(at)], axis=1)
-    spread = np.where(width >= TWO_PI, -2.0, np.cos(0.5 * width))
-    return Arcs(rows[:, :2].copy(), rows[:, 2].copy(), low, width, middle, spread)
+    ends = _ends(grid.capsules, grid.reach)
+    ordered = ends[np.lexsort(ends.T[::-1])]
+    found: Arcs = _free_arcs(grid, ordered)
+    return found
 
 
-def _circles(capsules: FloatArray, reach: FloatArray) -> FloatArray:
+@kernel
+def _ends(capsules: FloatArray, reach: FloatArray) -> FloatArray:
     """Return circles (C, 3) x, y, radius around every capsule end, without inward corners.
 
     Edges are in loop order with the solid on the left, so a path cannot touch a corner
     that turns right.
     """
-    if len(capsules) == 0:
-        return np.zeros((0, 3))
-    begin, end = capsules[:, :2], capsules[:, 2:4]
-    index = np.arange(len(capsules))
-    breaks = np.concatenate([[True], np.any(begin[1:] != end[:-1], axis=1)])
-    first = np.flatnonzero(breaks)
-    last = np.append(first[1:], len(capsules)) - 1
-    before = index - 1
-    before[first] = last
-    closed = np.all(begin == end[before], axis=1)
-    along, into = end - begin, (end - begin)[before]
-    cross = into[:, 0] * along[:, 1] - into[:, 1] * along[:, 0]
-    size = np.sqrt((along**2).sum(axis=1) * (into**2).sum(axis=1))
-    straight = (np.abs(cross) <= 1e-12 * size) & ((into * along).sum(axis=1) > 0.0)
-    edge = size > 0.0
-    inward = closed & edge & ((cross < -1e-12 * size) | straight)
-    open_end = np.ones(len(capsules), bool)
-    open_end[before[closed]] = False
-    ends = np.vstack(
-        [np.column_stack([begin, reach])[~inward], np.column_stack([end, reach])[open_end]]
-    )
-    # np.unique(ends, axis=0), which takes five times as long
-    ordered = ends[np.lexsort(ends.T[::-1])]
-    another = np.ones(len(ordered), np.bool_)
-    another[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
-    return ordered[another]
+    count, c = len(capsules), capsules
+    before, is_open = np.empty(count, np.int64), np.ones(count, np.bool_)
+    first = 0
+    for k in range(count):
+        before[k] = k - 1
+        if k + 1 == count or c[k + 1, 0] != c[k, 2] or c[k + 1, 1] != c[k, 3]:
+            before[first], first = k, k + 1
+    ends, found = np.empty((2 * count, 3)), 0
+    for k in range(count):
+        b = before[k]
+        closed = c[k, 0] == c[b, 2] and c[k, 1] == c[b, 3]
+        ax, ay, ix, iy = c[k, 2] - c[k, 0], c[k, 3] - c[k, 1], c[b, 2] - c[b, 0], c[b, 3] - c[b, 1]
+        cross = ix * ay - iy * ax
+        size = math.sqrt((ax * ax + ay * ay) * (ix * ix + iy * iy))
+        straight = abs(cross) <= 1e-12 * size and ix * ax + iy * ay > 0.0
+        if closed:
+            is_open[b] = False
+        if not (closed and size > 0.0 and (cross < -1e-12 * size or straight)):
+            ends[found, 0], ends[found, 1], ends[found, 2] = c[k, 0], c[k, 1], reach[k]
+            found += 1
+    for k in range(count):
+        if is_open[k]:
+            ends[found, 0], ends[found, 1], ends[found, 2] = c[k, 2], c[k, 3], reach[k]
+            found += 1
+    return ends[:found]
+
+
+@kernel
+def _free_arcs(grid: CapsuleGrid, ends: FloatArray) -> Arcs:
+    """Return the free arcs of circles (C, 3), sorted and perhaps repeated."""
+    rows = _free_parts(grid, _unique(ends))
+    count = len(rows)
+    center, radius, low = rows[:, :2].copy(), rows[:, 2].copy(), rows[:, 3].copy()
+    width, middle, spread = rows[:, 4].copy(), np.empty((count, 2)), np.empty(count)
+    for k in range(count):
+        at = low[k] + 0.5 * width[k]
+        middle[k, 0], middle[k, 1] = math.cos(at), math.sin(at)
+        spread[k] = -2.0 if width[k] >= TWO_PI else math.cos(0.5 * width[k])
+    return Arcs(center, radius, low, width, middle, spread)
+
+
+@kernel
+def _unique(rows: FloatArray) -> FloatArray:
+    """Return sorted rows (C, 3) without repetitions."""
+    kept, count = np.empty(rows.shape), 0
+    for k in range(len(rows)):
+        x, y, radius = rows[k, 0], rows[k, 1], rows[k, 2]
+        at = count - 1
+        if at < 0 or x != kept[at, 0] or y != kept[at, 1] or radius != kept[at, 2]:
+            kept[count, 0], kept[count, 1], kept[count, 2] = x, y, radius
+            count += 1
+    return kept[:count]
 
 
 @kernel
@@ -151,7 +175,7 @@ def _crossings(grid: CapsuleGrid, near: IntArray, x: float, y: float, radius: fl
     return angles[: size + 1]
 
 
-@kernel
+@kernel_without_allocation
 def _add(angles: FloatArray, count: int, facing: float, cosine: float) -> int:
     """Append facing ± arccos(cosine) in [0, 2 pi), if defined; return the new count."""
     if abs(cosine) > 1.0 + _TANGENT:
@@ -164,11 +188,12 @@ def _add(angles: FloatArray, count: int, facing: float, cosine: float) -> int:
     return count + 2
 
 
-@kernel
+@kernel_without_allocation
 def _is_free(grid: CapsuleGrid, near: IntArray, x: float, y: float) -> bool:
-    for p in near:
-        c, reach = grid.capsules[p], grid.reach[p] - SLACK
-        qx, qy = nearest_on_segment(x, y, c[0], c[1], c[2], c[3])
+    for k in range(len(near)):
+        p, c = near[k], grid.capsules
+        reach = grid.reach[p] - SLACK
+        qx, qy = nearest_on_segment(x, y, c[p, 0], c[p, 1], c[p, 2], c[p, 3])
         if (x - qx) * (x - qx) + (y - qy) * (y - qy) < reach * reach:
             return False
     return True

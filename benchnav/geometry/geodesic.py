@@ -10,19 +10,21 @@ disc: straight towards the goal's centre, or, if an obstacle overlaps the goal d
 where the disc's rim meets the boundary of free space.
 """
 
+import hashlib
 import math
 from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from benchnav.arrays import FloatArray, IntArray
+from benchnav.arrays import FloatArray
 from benchnav.geometry.arc_polyline import around_arc
-from benchnav.geometry.capsule_grid import SLACK, capsule_grid, is_clear
+from benchnav.geometry.capsule_grid import SLACK, CapsuleGrid, capsule_grid, is_clear
 from benchnav.geometry.free_arc import Arcs, free_arcs
 from benchnav.geometry.geodesic_search import Found, Tangents, search, tangents
-from benchnav.geometry.rim import rim_points
+from benchnav.geometry.rim import arrivals
 from benchnav.geometry.tangent import bitangents, point_tangents
+from benchnav.kernels import kernel
 
 _BEND = math.radians(10.0)  # largest turn at a waypoint of a polyline around an arc
 
@@ -35,10 +37,10 @@ class _Route(NamedTuple):
     found: Found | None = None
 
 
-class _Arrivals(NamedTuple):
-    links: FloatArray  # (L, 3) to the goal disc
-    rim: FloatArray  # (E, 2) [m] points of the goal disc at the boundary of free space
-    owner: IntArray  # (L,) index of the rim point where a link ends; -1: at the nearest point
+@kernel
+def _is_direct(grid: CapsuleGrid, sx: float, sy: float, ex: float, ey: float) -> tuple[bool, bool]:
+    """Whether the disc is free at s, and whether it can move straight from s to e."""
+    return is_clear(grid, sx, sy, sx, sy), is_clear(grid, sx, sy, ex, ey)
 
 
 class FreeSpace:
@@ -105,19 +107,20 @@ class FreeSpace:
         sx, sy, gx, gy = float(start[0]), float(start[1]), float(goal[0]), float(goal[1])
         distance = math.hypot(gx - sx, gy - sy)
         no_route = _Route(math.nan, np.array([gx, gy]))
-        if not is_clear(self._grid, sx, sy, sx, sy):
+        share = max(distance - tolerance, 0.0) / max(distance, 1e-300)
+        ex, ey = sx + share * (gx - sx), sy + share * (gy - sy)
+        is_free, is_direct = _is_direct(self._grid, sx, sy, ex, ey)
+        if not is_free:
             return no_route
         if distance <= tolerance:
             return _Route(0.0, np.array([sx, sy]))
-        share = (distance - tolerance) / distance
-        ex, ey = sx + share * (gx - sx), sy + share * (gy - sy)
-        if is_clear(self._grid, sx, sy, ex, ey):
+        if is_direct:
             return _Route(distance - tolerance, np.array([ex, ey]))
-        arrive, rim, owner = self._arrivals(gx, gy, tolerance)
+        arrive, rim, owner, direct = arrivals(self._grid, self._arcs, sx, sy, gx, gy, tolerance)
         best = no_route
-        for x, y in rim:
+        for x, y in rim[direct]:
             straight = math.hypot(x - sx, y - sy)
-            if not straight >= best.length and is_clear(self._grid, sx, sy, x, y):
+            if not straight >= best.length:
                 best = _Route(straight, np.array([x, y]))
         leave = point_tangents(self._grid, self._arcs, sx, sy, 0.0)
         if not len(leave) or not len(arrive):
@@ -132,16 +135,6 @@ class FreeSpace:
             share = tolerance / max(arrive[last, 2] + tolerance, 1e-300)
             end = (gx, gy) + share * (self._rim(arrive[last : last + 1])[0] - (gx, gy))
         return _Route(found.length, end, leave[first], arrive[last], found)
-
-    def _arrivals(self, x: float, y: float, tolerance: float) -> _Arrivals:
-        links = point_tangents(self._grid, self._arcs, x, y, tolerance)
-        rim = rim_points(self._grid, x, y, tolerance) if tolerance > 0.0 else np.zeros((0, 2))
-        if not len(rim):
-            return _Arrivals(links, rim, np.full(len(links), -1))
-        more = [point_tangents(self._grid, self._arcs, px, py, 0.0) for px, py in rim]
-        counts = [len(links), *map(len, more)]
-        owner = np.repeat(np.arange(-1, len(rim)), counts)
-        return _Arrivals(np.concatenate([links, *more]), rim, owner)
 
     def _rim(self, links: FloatArray) -> FloatArray:
         """Return the points (L, 2) on arcs of rows (L, ·) that begin with arc, angle."""
@@ -185,11 +178,20 @@ def geodesic_lengths(
     Raises:
         ValueError: a radius is not above 1e-8.
     """
-    solid = np.ascontiguousarray(capsules, np.float64).tobytes()
-    lengths = np.empty(len(start))
-    for a in range(len(start)):
-        lengths[a] = _space(solid, float(radius[a])).length(start[a], goal[a], tolerance)
-    return lengths
+    query = [np.ascontiguousarray(x, np.float64).tobytes() for x in (capsules, start, goal, radius)]
+    key = hashlib.blake2b(b"".join(query) + repr((*map(len, query), tolerance)).encode()).digest()
+    if key not in _LENGTHS:
+        if len(_LENGTHS) >= _MOST_LENGTHS:
+            _LENGTHS.clear()
+        spaces = [_space(query[0], float(r)) for r in radius]
+        places = zip(spaces, start, goal, strict=True)
+        _LENGTHS[key] = np.array([space.length(s, g, tolerance) for space, s, g in places])
+    return _LENGTHS[key].copy()
+
+
+# Every navigator of a suite runs in the same worlds. The key is a digest, so that no world is kept.
+_LENGTHS: dict[bytes, FloatArray] = {}
+_MOST_LENGTHS = 10_000
 
 
 @lru_cache(maxsize=16)

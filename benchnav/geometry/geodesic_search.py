@@ -39,22 +39,53 @@ class Found(NamedTuple):
 
 def tangents(arcs: Arcs, rows: FloatArray) -> Tangents:
     """Return the graph of bitangents (M, 5); a full circle's end is joined to its beginning."""
-    full = np.flatnonzero(arcs.width >= TWO_PI).astype(np.float64)
-    zero = np.zeros(len(full))
-    seams = np.column_stack([full, zero, full, zero + TWO_PI, zero])
-    rows = np.vstack([rows, seams])
-    arc = np.concatenate([rows[:, 0], rows[:, 2]]).astype(np.int64)
-    angle = np.concatenate([rows[:, 1], rows[:, 3]])
-    order = np.lexsort((angle, arc))
-    rank = np.empty(len(order), np.int64)
-    rank[order] = np.arange(len(order))
-    other = rank[(order + len(rows)) % max(len(order), 1)]
-    arc, angle = arc[order], angle[order]
-    turn = arcs.low[arc] + angle
-    rim = np.stack([np.cos(turn), np.sin(turn)], axis=1) * arcs.radius[arc, None]
-    first = np.searchsorted(arc, np.arange(len(arcs.radius) + 1))
-    length = np.tile(rows[:, 4], 2)[order]
-    return Tangents(first, arc, angle, arcs.center[arc] + rim, other, length)
+    arc, angle, length = _nodes(arcs, rows)
+    found: Tangents = _sorted_nodes(arcs, arc, angle, length, np.lexsort((angle, arc)))
+    return found
+
+
+@kernel
+def _nodes(arcs: Arcs, rows: FloatArray) -> tuple[IntArray, FloatArray, FloatArray]:
+    """Return arc, angle and tangent's length (N,) of all first ends, and then of all other ends."""
+    count = len(rows)
+    pairs = count
+    for k in range(len(arcs.width)):
+        pairs += arcs.width[k] >= TWO_PI
+    arc, angle, length = np.empty(2 * pairs, np.int64), np.empty(2 * pairs), np.empty(2 * pairs)
+    for n in range(count):
+        arc[n], angle[n], length[n] = int(rows[n, 0]), rows[n, 1], rows[n, 4]
+        m = n + pairs
+        arc[m], angle[m], length[m] = int(rows[n, 2]), rows[n, 3], rows[n, 4]
+    for k in range(len(arcs.width)):
+        if arcs.width[k] >= TWO_PI:
+            m = count + pairs
+            arc[count], angle[count], length[count] = k, 0.0, 0.0
+            arc[m], angle[m], length[m] = k, TWO_PI, 0.0
+            count += 1
+    return arc, angle, length
+
+
+@kernel
+def _sorted_nodes(
+    arcs: Arcs, arc: IntArray, angle: FloatArray, length: FloatArray, order: IntArray
+) -> Tangents:
+    """Return the graph of nodes (N,) in ``order``; node n and node n ± N / 2 share a tangent."""
+    count = len(order)
+    rank, other, first = np.empty(count, np.int64), np.empty(count, np.int64), 0
+    for n in range(count):
+        rank[order[n]] = n
+    starts, point = np.zeros(len(arcs.radius) + 1, np.int64), np.empty((count, 2))
+    for n in range(count):
+        k = arc[order[n]]
+        while first <= k:
+            starts[first] = n
+            first += 1
+        turn, radius = arcs.low[k] + angle[order[n]], arcs.radius[k]
+        point[n, 0] = arcs.center[k, 0] + math.cos(turn) * radius
+        point[n, 1] = arcs.center[k, 1] + math.sin(turn) * radius
+        other[n] = rank[(order[n] + count // 2) % count]
+    starts[first:] = count
+    return Tangents(starts, arc[order], angle[order], point, other, length[order])
 
 
 @kernel

@@ -1,12 +1,41 @@
-"""The points where the rim of a goal disc meets the boundary of free space."""
+"""The points where the rim of a goal disc meets the boundary of free space; ways to the disc."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
-from benchnav.arrays import FloatArray
+from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule_grid import CapsuleGrid, is_clear, nearby
-from benchnav.kernels import kernel
+from benchnav.geometry.free_arc import Arcs
+from benchnav.geometry.tangent import point_tangents
+from benchnav.kernels import kernel, kernel_without_allocation
+
+
+class Arrivals(NamedTuple):
+    """The ways into a goal disc."""
+
+    links: FloatArray  # (L, 3) tangents to the goal disc, as by `point_tangents`
+    rim: FloatArray  # (E, 2) [m] points of the goal disc at the boundary of free space
+    owner: IntArray  # (L,) index of the rim point where a link ends; -1: at the nearest point
+    direct: BoolArray  # (E,) the straight motion from the start to the rim point is free
+
+
+@kernel
+def arrivals(
+    grid: CapsuleGrid, arcs: Arcs, sx: float, sy: float, x: float, y: float, radius: float
+) -> Arrivals:
+    """Return the ways from s into the disc with centre (x, y)."""
+    links = point_tangents(grid, arcs, x, y, radius)
+    rim = rim_points(grid, x, y, radius) if radius > 0.0 else np.empty((0, 2))
+    owner, direct = np.full(len(links), -1), np.empty(len(rim), np.bool_)
+    for e in range(len(rim)):
+        px, py = rim[e, 0], rim[e, 1]
+        direct[e] = is_clear(grid, sx, sy, px, py)
+        more = point_tangents(grid, arcs, px, py, 0.0)
+        links = np.concatenate((links, more))
+        owner = np.concatenate((owner, np.full(len(more), e)))
+    return Arrivals(links, rim, owner, direct)
 
 
 @kernel
@@ -30,7 +59,7 @@ def rim_points(grid: CapsuleGrid, x: float, y: float, radius: float) -> FloatArr
     return points[:kept]
 
 
-@kernel
+@kernel_without_allocation
 def _on_circle(
     points: FloatArray, count: int,
     x: float, y: float, radius: float, cx: float, cy: float, reach: float,
@@ -51,7 +80,7 @@ def _on_circle(
     return count + 1
 
 
-@kernel
+@kernel_without_allocation
 def _on_edge(
     points: FloatArray, count: int,
     x: float, y: float, radius: float, c: FloatArray, offset: float,

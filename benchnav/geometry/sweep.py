@@ -17,10 +17,10 @@ import numpy as np
 
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel, kernel_without_allocation
 
 
-@kernel
+@kernel_without_allocation
 def point_segment_distance2(
     px: float, py: float, x0: float, y0: float, x1: float, y1: float
 ) -> float:
@@ -29,7 +29,7 @@ def point_segment_distance2(
     return (px - qx) * (px - qx) + (py - qy) * (py - qy)
 
 
-@kernel
+@kernel_without_allocation
 def segment_distance2(
     ax: float, ay: float, bx: float, by: float, x0: float, y0: float, x1: float, y1: float
 ) -> float:

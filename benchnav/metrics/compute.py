@@ -55,7 +55,10 @@ def _quantile(ordered: FloatArray, share: float) -> float:
     """Return the quantile of ascending values (N,), interpolated linearly; NaN without any."""
     if len(ordered) == 0:
         return math.nan
-    return float(np.interp(share * (len(ordered) - 1), np.arange(len(ordered)), ordered))
+    at = share * (len(ordered) - 1)
+    k = int(at)
+    low = float(ordered[k])
+    return low if at == k else (float(ordered[k + 1]) - low) * (at - k) + low
 
 
 decision_time_p50, decision_time_p95, decision_time_p99 = _percentiles(

@@ -11,15 +11,17 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, Extent, FloatArray
 from benchnav.episode.episode import Episode
+from benchnav.kernels import kernel
 from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.density import frame_times
 from benchnav.metrics.quantities.episode_analysis import Analysis, analyse
+from benchnav.metrics.quantities.numpy_sum import numpy_sum
 from benchnav.metrics.quantities.trajectory import positions_at, present_at
 
 SLOW = 0.2  # of the preferred speed
 CELL = 0.5  # [m] of the velocity field of the congestion level
 WINDOW = 10.0  # [s] over which that field is averaged
-_STEFFEN = "Steffen & Seyfried 2010, computed with PedPy"
+_STEFFEN = "Steffen & Seyfried 2010, as PedPy computes it"
 
 
 @metric(
@@ -37,12 +39,23 @@ def jam(episode: Episode) -> FloatArray:
 
     NaN for an agent whose attempt ended at its start.
     """
-    found = analyse(episode)
-    t = found.trajectories
-    slow = t.speed < SLOW * episode.world.agents.preferred_speed[:, None]
-    jammed = (slow & found.encounters.near[:, :-1]) * t.duration
-    total = t.duration.sum(axis=1)
-    return np.where(total > 0.0, jammed.sum(axis=1) / np.where(total > 0.0, total, 1.0), math.nan)
+    found, slow = analyse(episode), SLOW * episode.world.agents.preferred_speed
+    t, share = found.trajectories, np.empty(len(slow))
+    write_jam(t.speed, t.duration, t.total_duration, found.encounters.near, slow, share)
+    return share
+
+
+@kernel
+def write_jam(
+    speed: FloatArray, duration: FloatArray, total: FloatArray, near: BoolArray,
+    slow: FloatArray, share: FloatArray,
+) -> None:  # fmt: skip
+    """Write the shares (A,) of time of `jam`, for agents slower than ``slow`` (A,) [m/s]."""
+    jammed = np.empty(duration.shape[1])
+    for a in range(len(duration)):
+        for k in range(duration.shape[1]):
+            jammed[k] = duration[a, k] if speed[a, k] < slow[a] and near[a, k] else 0.0
+        share[a] = numpy_sum(jammed) / total[a] if total[a] > 0.0 else math.nan
 
 
 @metric(

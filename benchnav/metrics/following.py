@@ -38,8 +38,10 @@ def path_keeping(episode: Episode) -> FloatArray:
     follower that is never beside the path.
     """
     found = analyse(episode)
+    kept = np.full(len(found.arrival), math.nan)
+    if not _has_followers(found):
+        return kept
     place, _, active = found.group_motion
-    kept = np.full(len(active), math.nan)
     for followers, leaders in _teams(found):
         ways = [a for a in leaders if found.trajectories.moved[a]]
         if ways:
@@ -66,9 +68,10 @@ def catch_up_time(episode: Episode) -> FloatArray:
     its length until then. NaN for followers that are never behind.
     """
     found = analyse(episode)
+    agents, times = found.world.agents, np.full(len(found.arrival), math.nan)
+    if not _has_followers(found):
+        return times
     place, _, active = found.group_motion
-    agents = found.world.agents
-    times = np.full(len(active), math.nan)
     for followers, _ in _teams(found):
         if len(followers) > 1:
             away = place[followers] - agents.goal[followers, None]
@@ -76,6 +79,10 @@ def catch_up_time(episode: Episode) -> FloatArray:
             lost = behind(place[followers], left, active[followers], agents.radius[followers])
             times[followers] = _mean_run(lost) / FRAME_RATE
     return times
+
+
+def _has_followers(found: Analysis) -> bool:
+    return bool((found.world.agents.role == int(Role.FOLLOWER)).any())
 
 
 def _teams(found: Analysis) -> Iterator[tuple[IntArray, IntArray]]:

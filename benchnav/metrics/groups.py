@@ -14,6 +14,7 @@ from benchnav.episode.episode import Episode
 from benchnav.kernels import kernel
 from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.metrics.quantities.numpy_sum import numpy_sum
 
 LINK = 3.0  # [diameters] largest distance of centres that are connected
 STILL = 1e-9  # [m] a shorter step has no direction
@@ -32,7 +33,7 @@ def cohesion(episode: Episode, members: BoolArray) -> float:
     n such discs of radius r fill a disc of radius R with n·2√3·r² = π·R², in which the mean
     distance to the centre is ⅔·R = ⅔·r·√(n·√12/π).
     """
-    return _over_teams(episode, members, _spread)
+    return _over_teams(episode, members, spreads)
 
 
 @metric(
@@ -46,13 +47,13 @@ def cohesion(episode: Episode, members: BoolArray) -> float:
 )
 def polarisation(episode: Episode, members: BoolArray) -> float:
     """Length of the mean of the unit vectors of motion of moving agents (Vicsek order)."""
-    return _over_teams(episode, members, _order)
+    return _over_teams(episode, members, orders)
 
 
 @metric(title="Connected parts of a team", unit="", better=None, low=1.0, scope="group")
 def splits(episode: Episode, members: BoolArray) -> float:
     """Number of connected parts of the team; centres within three diameters are connected."""
-    return _over_teams(episode, members, _parts)
+    return _over_teams(episode, members, part_counts)
 
 
 Instants = Callable[[FloatArray, FloatArray, BoolArray, FloatArray], FloatArray]
@@ -68,33 +69,63 @@ def _over_teams(episode: Episode, members: BoolArray, value: Instants) -> float:
     return float(np.mean(defined)) if defined else math.nan
 
 
-def _spread(
+@kernel
+def spreads(
     place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
 ) -> FloatArray:
     """Return the spread (N,) of places (n, N, 2), over the active members (n, N)."""
-    share = active / active.sum(axis=0)
-    away = place - (place * share[..., None]).sum(axis=0)
-    distance = (np.hypot(away[..., 0], away[..., 1]) * share).sum(axis=0)
-    mean_radius = (radius[:, None] * share).sum(axis=0)
-    packed = np.sqrt(active.sum(axis=0) * math.sqrt(12.0) / math.pi)
-    spread: FloatArray = distance / (2.0 / 3.0 * mean_radius * packed)
+    n, instants = active.shape
+    spread, distance, radii = np.empty(instants), np.empty(n), np.empty(n)
+    for k in range(instants):
+        count = 0
+        for a in range(n):
+            count += active[a, k]
+        x, y = 0.0, 0.0
+        for a in range(n):
+            share = active[a, k] / count
+            x, y = x + place[a, k, 0] * share, y + place[a, k, 1] * share
+        for a in range(n):
+            share = active[a, k] / count
+            distance[a] = math.hypot(place[a, k, 0] - x, place[a, k, 1] - y) * share
+            radii[a] = radius[a] * share
+        packed = math.sqrt(count * math.sqrt(12.0) / math.pi)
+        mean_distance, mean_radius = _sum(distance, instants), _sum(radii, instants)
+        spread[k] = mean_distance / (2.0 / 3.0 * mean_radius * packed)
     return spread
 
 
-def _order(
-    place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
-) -> FloatArray:
-    """Return the Vicsek order (N,); NaN if no agent moves."""
-    length = np.hypot(step[..., 0], step[..., 1])
-    moving = active & (length > STILL)
-    unit = np.where(moving, 1.0 / np.where(moving, length, 1.0), 0.0)[..., None] * step
-    count = moving.sum(axis=0)
-    order = np.hypot(*unit.sum(axis=0).T) / np.maximum(count, 1)
-    return np.where(count > 0, order, math.nan)
+@kernel
+def _sum(values: FloatArray, columns: int) -> float:
+    """Return the sum of one of several columns in numpy's order: row by row, except of one."""
+    if columns == 1:
+        return numpy_sum(values)
+    total = 0.0
+    for value in values:
+        total += value
+    return total
 
 
 @kernel
-def _parts(
+def orders(
+    place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
+) -> FloatArray:
+    """Return the Vicsek order (N,); NaN if no agent moves."""
+    n, instants = active.shape
+    order = np.empty(instants)
+    for k in range(instants):
+        x, y, count = 0.0, 0.0, 0
+        for a in range(n):
+            length = math.hypot(step[a, k, 0], step[a, k, 1])
+            moves = active[a, k] and length > STILL
+            scale = 1.0 / length if moves else 0.0
+            x, y = x + scale * step[a, k, 0], y + scale * step[a, k, 1]
+            count += moves
+        order[k] = math.hypot(x, y) / count if count > 0 else math.nan
+    return order
+
+
+@kernel
+def part_counts(
     place: FloatArray, step: FloatArray, active: BoolArray, radius: FloatArray
 ) -> FloatArray:
     """Return the number (N,) of connected parts of the active members."""

@@ -3,13 +3,17 @@
 import math
 from collections.abc import Sequence
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from benchnav.arena.agents import Role
-from benchnav.arrays import BoolArray
+from benchnav.arrays import LARGEST, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import PluginError
+from benchnav.kernels import kernel
 from benchnav.metrics.metric import Metric, evaluate
+from benchnav.metrics.quantities.numpy_sum import numpy_sum
 from benchnav.navigation.command_check import exception_text
 from benchnav.navigation.plugin.trace import trace
 from benchnav.plugins import METRICS
@@ -49,27 +53,98 @@ def measure(episode: Episode, metrics: Sequence[Metric]) -> list[dict[str, Any]]
     Background agents are in the world, but never scored. If a metric raises or returns another
     shape, only its own value is missing (NaN), with the reason.
     """
-    _no_metrics_twice(tuple(metric.name for metric in metrics))
     return [
-        {**common, **valued(metric, episode, members)}
-        for common, members in subjects(episode)
-        for metric in metrics
+        {**common, "metric": metric.name, **cell._asdict()}
+        for common, cells in measure_roles(episode, metrics)
+        for metric, cell in zip(metrics, cells, strict=True)
     ]
+
+
+class Cell(NamedTuple):
+    """The columns of a row that depend on the metric's function."""
+
+    value: float = math.nan
+    defined: int = 0
+    missing: str = ""
+    traceback: str | None = None
+
+
+def measure_roles(
+    episode: Episode, metrics: Sequence[Metric]
+) -> list[tuple[dict[str, Any], list[Cell]]]:
+    """Return (common columns, a cell for each metric) of each evaluated role.
+
+    The means over agents of all metrics are taken together.
+    """
+    _no_metrics_twice(tuple(metric.name for metric in metrics))
+    rows = np.full((len(metrics), len(episode.world.agents)), math.nan)
+    alone = [n for n, metric in enumerate(metrics) if not _agents_values(metric, episode, rows[n])]
+    found = []
+    for common, members in subjects(episode):
+        means, defined = np.empty(len(metrics)), np.empty(len(metrics), np.int64)
+        write_means(rows, np.array(members), means, defined)
+        cells = list(map(Cell, means.tolist(), defined.tolist()))
+        for n in (*alone, *np.flatnonzero(np.abs(means) > LARGEST).tolist()):
+            cells[n] = measure_alone(metrics[n], episode, members)
+        found.append((common, cells))
+    return found
+
+
+def _agents_values(metric: Metric, episode: Episode, values: FloatArray) -> bool:
+    """Write the values (A,) of an agent's metric; False if the metric must be measured alone.
+
+    These are metrics of groups, and metrics that raise or return anything but floats (A,).
+    """
+    if metric.scope == "group":
+        return False
+    try:
+        found = metric.function(episode)
+    except (Exception, SystemExit):
+        return False  # it raises again when it is measured alone
+    if type(found) is not np.ndarray or found.dtype != float or found.shape != values.shape:
+        return False
+    values[:] = found
+    return True
+
+
+@kernel
+def write_means(
+    values: FloatArray, members: BoolArray, mean: FloatArray, defined: IntArray
+) -> None:
+    """Write the mean and the number of the members (A,) with a defined value, of N metrics (N, A).
+
+    The mean is that of `benchnav.metrics.metric.evaluate`, bit for bit.
+    """
+    known = np.empty(values.shape[1])
+    for n in range(values.shape[0]):
+        count = 0
+        for a in range(values.shape[1]):
+            if members[a] and values[n, a] == values[n, a]:
+                known[count] = values[n, a]
+                count += 1
+        mean[n], defined[n] = math.nan, count
+        if count > 0:
+            mean[n] = numpy_sum(known[:count]) / count
+
+
+_ROLES = tuple((int(role), role.name.lower()) for role in Role)
 
 
 def subjects(episode: Episode) -> list[tuple[dict[str, Any], BoolArray]]:
     """Return (common columns, members (A,)) of each evaluated role of an episode."""
     agents, identity, clock = episode.world.agents, episode.identity, episode.world.clock
     found: list[tuple[dict[str, Any], BoolArray]] = []
-    for role in Role:
-        members = agents.evaluated & (agents.role == role)
-        if not members.any():
+    evaluated = agents.evaluated
+    for role, name in _ROLES:
+        members = evaluated & (agents.role == role)
+        count = int(np.count_nonzero(members))
+        if not count:
             continue
         common = {
             "navigator": identity.navigator, "scenario": identity.scenario,
             "scenario_hash": identity.scenario_hash, "track": identity.track,
-            "split": identity.split, "seed": identity.seed, "role": role.name.lower(),
-            "agents": int(members.sum()),
+            "split": identity.split, "seed": identity.seed, "role": name,
+            "agents": count,
             "failure": episode.failure, "horizon": clock.horizon, "dt": clock.dt,
             "navigator_hash": identity.navigator_hash, "rehearsal": episode.rehearsals,
             "source_hash": identity.source_hash,
@@ -80,16 +155,11 @@ def subjects(episode: Episode) -> list[tuple[dict[str, Any], BoolArray]]:
     return found
 
 
-def valued(metric: Metric, episode: Episode, members: BoolArray) -> dict[str, Any]:
-    """Return the columns of a row that depend on the metric."""
-    value, defined, missing, traceback = math.nan, 0, "", None
+def measure_alone(metric: Metric, episode: Episode, members: BoolArray) -> Cell:
+    """Return the cell of one metric for members (A,)."""
     try:
-        value, defined = evaluate(metric, episode, members)
+        return Cell(*evaluate(metric, episode, members))
     except (Exception, SystemExit) as error:
         if type(error).__module__ == "numba.core.errors" and is_own(metric.name):
             raise  # a kernel of ours does not compile: this is no property of the episode
-        missing, traceback = exception_text(error), trace(error)
-    return {
-        "metric": metric.name, "value": value, "defined": defined,
-        "missing": missing, "traceback": traceback,
-    }  # fmt: skip
+        return Cell(missing=exception_text(error), traceback=trace(error))

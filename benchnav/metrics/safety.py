@@ -8,11 +8,13 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import FloatArray, IntArray
 from benchnav.episode.episode import Episode
+from benchnav.kernels import kernel, kernel_without_allocation
 from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.encounters import TTC_CAP
 from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.metrics.quantities.numpy_sum import numpy_sum
 
 INTIMATE = 0.45  # [m] Hall 1966: upper limit of intimate distance
 PERSONAL = 1.2  # [m] Hall 1966: upper limit of personal distance
@@ -29,7 +31,7 @@ _HALL = "Hall 1966, The Hidden Dimension"
 )
 def collided(episode: Episode) -> FloatArray:
     """(A,) 1 for agents that are charged with at least one collision event."""
-    return (_events(episode, episode.contacts.charged) > 0).astype(np.float64)
+    return np.asarray(analyse(episode).charged.any(axis=0), np.float64)
 
 
 @metric(title="Collision events with walls", unit="", better=None, low=0.0)
@@ -62,16 +64,27 @@ def contact_time(episode: Episode) -> FloatArray:
 
     NaN for all agents if the rules end an attempt at its first contact, which then lasts no time.
     """
-    c = episode.contacts
-    total = np.zeros(len(episode.world.agents))
+    c, agents = episode.contacts, len(episode.world.agents)
     if episode.world.rules.contact == ContactRule.END:
-        return np.full_like(total, np.nan)
-    reached = np.zeros(len(total))
-    for n in np.flatnonzero(c.charged)[np.argsort(c.start[c.charged], kind="stable")]:
-        a = c.agent[n]
-        total[a] += max(0.0, c.end[n] - max(c.start[n], reached[a]))
-        reached[a] = max(reached[a], c.end[n])
+        return np.full(agents, np.nan)
+    first = np.flatnonzero(c.charged)[np.argsort(c.start[c.charged], kind="stable")]
+    total = np.zeros(agents)
+    add_contact_time(c.agent[first], c.start[first], c.end[first], np.zeros(agents), total)
     return total
+
+
+@kernel_without_allocation
+def add_contact_time(
+    agent: IntArray, start: FloatArray, end: FloatArray, reached: FloatArray, total: FloatArray
+) -> None:
+    """Add the times [s] of contacts (N,), in order of their starts, to the ``total`` (A,).
+
+    ``reached`` (A,) [s] is the time until which contacts are counted.
+    """
+    for n in range(len(agent)):
+        a = agent[n]
+        total[a] += max(0.0, end[n] - max(start[n], reached[a]))
+        reached[a] = max(reached[a], end[n])
 
 
 @metric(title="Smallest gap to anything that can be hit", unit="m", better="higher")
@@ -137,25 +150,29 @@ def personal_space_personal(episode: Episode) -> FloatArray:
     return _share_within(episode, PERSONAL)
 
 
-def _events(episode: Episode, chosen: BoolArray) -> FloatArray:
-    count = np.bincount(episode.contacts.agent[chosen], minlength=len(episode.world.agents))
-    return count.astype(np.float64)
-
-
 def _of_kind(episode: Episode, kind: Kind) -> FloatArray:
-    return _events(episode, episode.contacts.charged & (episode.contacts.kind == kind))
+    return np.array(analyse(episode).charged[kind])
 
 
 def _share_within(episode: Episode, distance: float) -> FloatArray:
     """Return shares (A,) of time; the gap to the nearest agent is linear between states."""
     found = analyse(episode)
-    gap = found.encounters.gap - distance
-    before, after = gap[:, :-1], gap[:, 1:]
-    inside = np.where((before < 0.0) & (after < 0.0), 1.0, 0.0)
-    crosses = (before < 0.0) != (after < 0.0)
-    deeper = np.minimum(before, after)
-    share = np.where(crosses, deeper / np.where(crosses, -np.abs(after - before), 1.0), inside)
-    duration = found.trajectories.duration
-    total = duration.sum(axis=1)
-    inside_for = (share * duration).sum(axis=1)
-    return np.where(total > 0.0, inside_for / np.where(total > 0.0, total, 1.0), np.nan)
+    t, share = found.trajectories, np.empty(len(found.arrival))
+    write_share_within(found.encounters.gap, distance, t.duration, t.total_duration, share)
+    return share
+
+
+@kernel
+def write_share_within(
+    gap: FloatArray, distance: float, duration: FloatArray, total: FloatArray, share: FloatArray
+) -> None:
+    """Write the shares (A,) of time with a gap (A, T+1) [m] below ``distance``."""
+    within = np.empty(duration.shape[1])
+    for a in range(len(duration)):
+        for k in range(duration.shape[1]):
+            before, after = gap[a, k] - distance, gap[a, k + 1] - distance
+            part = 1.0 if before < 0.0 and after < 0.0 else 0.0
+            if (before < 0.0) != (after < 0.0):
+                part = min(before, after) / -abs(after - before)
+            within[k] = part * duration[a, k]
+        share[a] = numpy_sum(within) / total[a] if total[a] > 0.0 else np.nan

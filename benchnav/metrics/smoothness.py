@@ -11,11 +11,13 @@ from collections.abc import Callable
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
+from benchnav.kernels import kernel, kernel_without_allocation
 from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.quantities.lowpass import CUTOFF, RATE
+from benchnav.metrics.quantities.numpy_sum import numpy_sum
 
 THRESHOLD = 0.05  # SPARC's amplitude threshold, relative to the peak of the spectrum
 EVERY = 2  # use every second sample: 10 Hz are enough for the spectrum of speed
@@ -37,17 +39,32 @@ def turning(episode: Episode) -> FloatArray:
     Standing and turning on the spot have no direction of motion: the angle between the
     directions before and after counts. Angles are at most π.
     """
-    t = analyse(episode).trajectories
-    segment = np.diff(t.position, axis=1)
-    has = np.hypot(segment[..., 0], segment[..., 1]) > STILL
-    latest = np.maximum.accumulate(np.where(has, np.arange(has.shape[1]), -1), axis=1)
-    angle = np.arctan2(segment[..., 1], segment[..., 0])
-    held = np.take_along_axis(angle, np.maximum(latest, 0), axis=1)
-    change = np.diff(held, axis=1)
-    change = np.abs(np.remainder(change + math.pi, 2.0 * math.pi) - math.pi)
-    total = np.where(latest[:, :-1] >= 0, change, 0.0).sum(axis=1)
-    defined = _defined(episode)
+    found = analyse(episode)
+    t, defined = found.trajectories, found.arrived & found.trajectories.moved
+    segment, total = np.diff(t.position, axis=1), np.empty(len(t))
+    # numpy's arctangent, which on some machines differs from that of kernels in the last bit
+    write_turns(segment, np.arctan2(segment[..., 1], segment[..., 0]), total)
     return np.where(defined, total / np.where(defined, t.length, 1.0), math.nan)
+
+
+@kernel
+def write_turns(segment: FloatArray, angle: FloatArray, total: FloatArray) -> None:
+    """Write the sums (A,) [rad] of turns between segments (A, T, 2) with directions (A, T)."""
+    steps = segment.shape[1]
+    change = np.zeros(max(steps - 1, 0))
+    for a in range(len(segment)):
+        held, known = 0.0, False
+        for k in range(steps):
+            turn = 0.0
+            if math.hypot(segment[a, k, 0], segment[a, k, 1]) > STILL:
+                if known:
+                    turn = abs((angle[a, k] - held + math.pi) % (2.0 * math.pi) - math.pi)
+                held, known = angle[a, k], True
+            elif known:
+                turn = abs(math.pi % (2.0 * math.pi) - math.pi)
+            if k > 0:
+                change[k - 1] = turn
+        total[a] = numpy_sum(change)
 
 
 @metric(
@@ -85,9 +102,25 @@ def sparc(episode: Episode) -> FloatArray:
 
 def dimensionless_jerk(velocity: FloatArray, duration: float, rate: float) -> float:
     """Return D³ / v_peak² · ∫ |d²v/dt²|² dt of ``velocity`` (N, 2) [m/s] at ``rate`` [Hz]."""
-    jerk = np.diff(velocity, n=2, axis=0) * rate**2
-    peak2 = float((velocity**2).sum(axis=1).max())
-    return float((jerk**2).sum()) / rate * duration**3 / peak2
+    squares, peak2 = squared_jerk(np.ascontiguousarray(velocity), rate)
+    return squares / rate * duration**3 / peak2
+
+
+@kernel
+def squared_jerk(velocity: FloatArray, rate: float) -> tuple[float, float]:
+    """Return the sum of squared jerks [m²/s⁶] and the largest squared speed [m²/s²]."""
+    count, scale = max(len(velocity) - 2, 0), rate**2
+    squares, peak2 = np.empty(2 * count), 0.0
+    for k in range(len(velocity)):
+        vx, vy = velocity[k, 0], velocity[k, 1]
+        peak2 = max(peak2, vx * vx + vy * vy)
+    for k in range(count):
+        for axis in range(2):
+            before = velocity[k + 1, axis] - velocity[k, axis]
+            after = velocity[k + 2, axis] - velocity[k + 1, axis]
+            jerk = (after - before) * scale
+            squares[2 * k + axis] = jerk * jerk
+    return numpy_sum(squares), peak2
 
 
 def spectral_arc_length(speed: FloatArray, rate: float, top: float = CUTOFF) -> float:
@@ -100,13 +133,40 @@ def spectral_arc_length(speed: FloatArray, rate: float, top: float = CUTOFF) -> 
     size = 2 ** (math.ceil(math.log2(len(speed))) + PADDING)
     count = int(top / (rate / size)) + 1
     spectrum = np.abs(np.fft.rfft(speed, size))
-    spectrum = spectrum[:count] / spectrum.max()
-    band = np.flatnonzero(spectrum >= THRESHOLD)
-    spectrum = spectrum[band[0] : band[-1] + 1] if len(band) else spectrum[:0]
-    if len(spectrum) < 2:
+    peak, low, high = find_band(spectrum, count)
+    if high <= low:
         return math.nan
-    rise = np.diff(spectrum)
-    return -float(np.sqrt((1.0 / len(rise)) ** 2 + rise**2).sum())
+    return -curve_length(spectrum, peak, low, high, (1.0 / (high - low)) ** 2)
+
+
+@kernel_without_allocation
+def find_band(spectrum: FloatArray, count: int) -> tuple[float, int, int]:
+    """Return the peak of a spectrum, and the ends of the band in its first ``count`` values.
+
+    The ends are the first and the last value above the threshold; 0 and 0 if there is none.
+    """
+    peak, low, high = spectrum[0], -1, -1
+    for k in range(len(spectrum)):
+        peak = max(peak, spectrum[k])
+    for k in range(min(count, len(spectrum))):
+        if spectrum[k] / peak >= THRESHOLD:
+            high = k
+            if low < 0:
+                low = k
+    return peak, max(low, 0), max(high, 0)
+
+
+@kernel
+def curve_length(spectrum: FloatArray, peak: float, low: int, high: int, step2: float) -> float:
+    """Return the length of the spectrum's curve from ``low`` to ``high``, relative to its peak.
+
+    ``step2`` is the square of a step of frequency.
+    """
+    parts = np.empty(high - low)
+    for k in range(low, high):
+        rise = spectrum[k + 1] / peak - spectrum[k] / peak
+        parts[k - low] = math.sqrt(step2 + rise * rise)
+    return numpy_sum(parts)
 
 
 def _dimensionless_jerk(velocity: FloatArray, duration: float) -> float:
@@ -119,16 +179,10 @@ def _spectral_arc_length(velocity: FloatArray, duration: float) -> float:
     return spectral_arc_length(speed, RATE / EVERY)
 
 
-def _defined(episode: Episode) -> BoolArray:
-    found = analyse(episode)
-    return found.arrived & found.trajectories.moved
-
-
 def _each(episode: Episode, measure: Callable[[FloatArray, float], float]) -> FloatArray:
     """Return ``measure(velocity, duration)`` (A,); NaN for agents without defined smoothness."""
     found = analyse(episode)
     values = np.full(len(found.arrival), math.nan)
-    for agent in np.flatnonzero(_defined(episode)):
-        velocity = found.smooth_velocity(int(agent))
+    for agent, velocity in found.smooth_velocities.items():
         values[agent] = measure(velocity, float(found.trajectories.end[agent]))
     return values

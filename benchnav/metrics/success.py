@@ -70,6 +70,9 @@ def stuck(episode: Episode) -> FloatArray:
     found = analyse(episode)
     if episode.world.clock.horizon < STUCK_WINDOW:
         return np.full(len(found.arrival), math.nan)
+    timed_out = found.active_at_end & ~found.failed
+    if not timed_out.any():
+        return np.zeros(len(found.arrival))
     t = found.trajectories
     start = max(0.0, float(t.end.max(initial=0.0)) - STUCK_WINDOW)
     states = np.arange(t.position.shape[1]) * t.dt
@@ -77,7 +80,7 @@ def stuck(episode: Episode) -> FloatArray:
     recent = np.where(states >= start, away, 0.0).max(axis=1)
     first = np.hypot(*(positions_at(t, np.array([start])) - t.position[:, -1:]).transpose(2, 0, 1))
     still: BoolArray = np.maximum(recent, first[:, 0]) < episode.world.agents.radius
-    return (still & found.active_at_end & ~found.failed).astype(np.float64)
+    return (still & timed_out).astype(np.float64)
 
 
 @metric(title="Its navigator failed", unit="", better=None, low=0.0, high=1.0, rate=True)

@@ -7,6 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from benchnav.arena.solid import Kind, Solid
+from benchnav.geometry import geodesic
 from benchnav.geometry.capsule_grid import capsule_grid, is_clear, nearby
 from benchnav.geometry.free_arc import free_arcs
 from benchnav.geometry.geodesic import FreeSpace, geodesic_lengths
@@ -167,6 +168,23 @@ def test_radii_share_what_they_can_and_bad_ones_are_refused():
     for bad in (0.0, -1.0, math.nan, math.inf):
         with pytest.raises(ValueError, match="radius must be"):
             FreeSpace(solid, bad)
+
+
+def test_lengths_are_computed_once_for_the_same_discs_among_the_same_capsules(monkeypatch):
+    spaces = []
+    real = geodesic._space
+    monkeypatch.setattr(geodesic, "_space", lambda *a: spaces.append(1) or real(*a))
+    solid, start, goal = capsules(box(0, 0, 2, 2)), np.array([(-3.0, 0.1)]), np.array([(3.0, 0.2)])
+    first = geodesic_lengths(solid, start, goal, np.array([0.25]), 0.1)
+    again = geodesic_lengths(solid.copy(), start, goal, np.array([0.25]), 0.1)
+    assert first == again
+    assert len(spaces) == 1
+    again[0] = 7.0  # a copy
+    assert geodesic_lengths(solid, start, goal, np.array([0.25]), 0.1) == first
+    assert geodesic_lengths(solid, start, goal, np.array([0.25]), 0.2) < first
+    assert geodesic_lengths(solid, start, goal, np.array([0.3]), 0.1) > first
+    assert geodesic_lengths(solid, start - 1.0, goal, np.array([0.25]), 0.1) > first
+    assert len(spaces) == 4
 
 
 # against slow twins

@@ -88,16 +88,14 @@ def test_leaving_out_who_is_far_away_changes_no_density(seed, monkeypatch):
 
 def test_frames_in_which_nobody_is_near_are_not_computed(monkeypatch):
     """One walks past: cells are asked for while it is within 0.8 m of the area, and no longer."""
-    import pedpy
-
     asked = []
-    real = pedpy.compute_individual_voronoi_polygons
+    real = density.diagram_cells
 
-    def counted(**arguments):
-        asked.append(sorted(set(arguments["traj_data"].data["frame"])))
-        return real(**arguments)
+    def counted(frames, *arguments):
+        asked.append(frames.tolist())
+        return real(frames, *arguments)
 
-    monkeypatch.setattr(pedpy, "compute_individual_voronoi_polygons", counted)
+    monkeypatch.setattr(density, "diagram_cells", counted)
     setting = Setting(horizon=20.0, area=(-1.0, -1.0, 1.0, 1.0))
     episode = record([Walk(straight((-10.0, 0.0), (1.0, 0.0)), (90.0, 0.0), 0.2)], setting)
     found = analyse(episode).density
@@ -261,7 +259,7 @@ def test_parts_are_those_of_scipy():
     rng = np.random.default_rng(0)
     place, radius = rng.uniform(-3, 3, (12, 5, 2)), rng.uniform(0.1, 0.3, 12)
     active = rng.random((12, 5)) < 0.8
-    found = groups._parts(place, place, active, radius)
+    found = groups.part_counts(place, place, active, radius)
     for k in range(5):
         p, r = place[active[:, k], k], radius[active[:, k]]
         linked = np.hypot(*(p[:, None] - p[None]).transpose(2, 0, 1)) <= 3 * (r[:, None] + r)

@@ -18,13 +18,15 @@ from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
 from benchnav.geometry.sweep import segment_distance2
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel, kernel_without_allocation
 from benchnav.metrics.quantities.trajectory import Trajectories
 
 TTC_CAP = 5.0  # [s] later collisions do not count
 RECORDED = 2.4  # [m] gaps between agents are recorded up to this
 NEAR = 4.0  # radii between centres: two diameters
 SLACK = 1e-9  # [m] tolerance for rounding when steps are skipped
+GROUP = 8  # capsules that are tested together
+LONG = 4.0  # [m] longer capsules are tested alone
 
 
 class Things(NamedTuple):
@@ -72,11 +74,12 @@ def encounters(trajectories: Trajectories, radius: FloatArray, things: Things) -
     return found
 
 
-@kernel
+@kernel_without_allocation
 def _skip(gap: float, clearance: float, ttc: float, top: float, dt: float) -> float:
     """Return the steps until a partner can have influence, at closing speeds up to ``top``."""
     if top <= 0.0:
         return math.inf
+    gap -= SLACK
     return min((gap - clearance) / (top * dt), (gap / top - ttc) / dt)
 
 
@@ -86,26 +89,101 @@ def meet_things(
     radius: FloatArray, top: FloatArray, dt: float, capsules: FloatArray, body: IntArray,
     offset: FloatArray, jumps: BoolArray, clearance: FloatArray, ttc: FloatArray,
 ) -> None:  # fmt: skip
-    """Lower ``clearance`` and ``ttc`` (A,) to their values for solids and bodies."""
-    body_top = _body_top(offset, jumps, dt)
-    for a in range(position.shape[0]):
-        for c in range(capsules.shape[0]):
-            m = body[c]
-            fastest = top[a] + (body_top[m] if m >= 0 else 0.0)
-            k = 0
-            while k < max(last[a], 1):
-                gap = _thing_step(
-                    a, c, k, position, velocity, duration, radius[a], dt, capsules, m, offset,
-                    jumps, last[a] > 0, clearance, ttc,
-                )  # fmt: skip
-                ahead = _skip(gap, clearance[a], ttc[a], fastest, dt)
-                k = last[a] + 1 if ahead > last[a] else k + max(1, int(ahead))
+    """Lower ``clearance`` and ``ttc`` (A,) to their values for solids and bodies.
+
+    Few consecutive capsules of one solid or body are first tested together, by their circle.
+    """
+    first, circle = _circles(capsules, body)
+    body_top = np.zeros(len(offset))
+    _meet_groups(
+        position, velocity, duration, last, radius, top, dt, capsules, body, offset, jumps,
+        first, circle, body_top, clearance, ttc,
+    )  # fmt: skip
 
 
 @kernel
-def _body_top(offset: FloatArray, jumps: BoolArray, dt: float) -> FloatArray:
-    """Return the largest speeds (M,) [m/s] of bodies; inf for bodies that jump."""
-    top = np.zeros(len(offset))
+def _circles(capsules: FloatArray, body: IntArray) -> tuple[IntArray, FloatArray]:
+    """Return the first capsules (G + 1,) of groups, and circles (G, 3) x, y, radius around them.
+
+    The capsules of a group touch end to end, and belong to one body or to none.
+    """
+    count = len(capsules)
+    first, circle = np.zeros(count + 1, np.int64), np.empty((count, 3))
+    groups, c = 0, 0
+    while c < count:
+        end = c + 1
+        while (
+            end < min(count, c + GROUP) and body[end] == body[c]
+            and _is_short(capsules, c) and _is_short(capsules, end)
+            and capsules[end, 0] == capsules[end - 1, 2]
+            and capsules[end, 1] == capsules[end - 1, 3]
+        ):  # fmt: skip
+            end += 1
+        _write_circle(capsules, c, end, circle[groups])
+        groups += 1
+        first[groups] = end
+        c = end
+    return first[: groups + 1], circle[:groups]
+
+
+@kernel_without_allocation
+def _write_circle(capsules: FloatArray, first: int, end: int, circle: FloatArray) -> None:
+    """Write a circle (3,) around some capsules."""
+    x0, y0, x1, y1, most = math.inf, math.inf, -math.inf, -math.inf, 0.0
+    for c in range(first, end):
+        ax, ay, bx, by = capsules[c, 0], capsules[c, 1], capsules[c, 2], capsules[c, 3]
+        x0, y0 = min(x0, ax, bx), min(y0, ay, by)
+        x1, y1, most = max(x1, ax, bx), max(y1, ay, by), max(most, capsules[c, 4])
+    wide, tall = x1 - x0, y1 - y0
+    circle[0], circle[1] = 0.5 * (x0 + x1), 0.5 * (y0 + y1)
+    circle[2] = 0.5 * math.sqrt(wide * wide + tall * tall) + most
+
+
+@kernel_without_allocation
+def _is_short(capsules: FloatArray, c: int) -> bool:
+    dx, dy = capsules[c, 2] - capsules[c, 0], capsules[c, 3] - capsules[c, 1]
+    short: bool = dx * dx + dy * dy <= LONG * LONG
+    return short
+
+
+@kernel_without_allocation
+def _meet_groups(
+    position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
+    radius: FloatArray, top: FloatArray, dt: float, capsules: FloatArray, body: IntArray,
+    offset: FloatArray, jumps: BoolArray, first: IntArray, circle: FloatArray,
+    body_top: FloatArray, clearance: FloatArray, ttc: FloatArray,
+) -> None:  # fmt: skip
+    _find_body_top(offset, jumps, dt, body_top)
+    for a in range(position.shape[0]):
+        for g in range(len(circle)):
+            m = body[first[g]]
+            fastest = top[a] + (body_top[m] if m >= 0 else 0.0)
+            k = 0
+            while k < max(last[a], 1):
+                dx, dy = position[a, k, 0] - circle[g, 0], position[a, k, 1] - circle[g, 1]
+                if m >= 0:
+                    dx, dy = dx - offset[m, k, 0], dy - offset[m, k, 1]
+                gap = math.sqrt(dx * dx + dy * dy) - circle[g, 2] - radius[a]
+                ahead = 0.0
+                if gap >= clearance[a] and fastest < math.inf:
+                    ahead = _skip(gap, clearance[a], ttc[a], fastest, dt)
+                if ahead >= 1.0:
+                    k = last[a] + 1 if ahead > last[a] else k + int(ahead)
+                    continue
+                least = math.inf
+                for c in range(first[g], first[g + 1]):
+                    gap = _thing_step(
+                        a, c, k, position, velocity, duration, radius[a], dt, capsules, m, offset,
+                        jumps, last[a] > 0, clearance, ttc,
+                    )  # fmt: skip
+                    least = min(least, gap)
+                ahead = _skip(least, clearance[a], ttc[a], fastest, dt)
+                k = last[a] + 1 if ahead > last[a] else k + max(1, int(ahead))
+
+
+@kernel_without_allocation
+def _find_body_top(offset: FloatArray, jumps: BoolArray, dt: float, top: FloatArray) -> None:
+    """Write the largest speeds (M,) [m/s] of bodies to ``top``; inf for bodies that jump."""
     for m in range(len(offset)):
         for k in range(offset.shape[1] - 1):
             dx = offset[m, k + 1, 0] - offset[m, k, 0]
@@ -113,10 +191,9 @@ def _body_top(offset: FloatArray, jumps: BoolArray, dt: float) -> FloatArray:
             top[m] = max(top[m], math.sqrt(dx * dx + dy * dy) / dt)
         if jumps[m] and top[m] > 0.0:
             top[m] = math.inf
-    return top
 
 
-@kernel
+@kernel_without_allocation
 def _thing_step(
     a: int, c: int, k: int, position: FloatArray, velocity: FloatArray, duration: FloatArray,
     radius: float, dt: float, capsules: FloatArray, m: int, offset: FloatArray, jumps: BoolArray,
@@ -146,18 +223,31 @@ def _thing_step(
         px, py = px - ox, py - oy
         qx, qy = qx - ox, qy - oy
     nx, ny = nearest_on_segment(px, py, x0, y0, x1, y1)
-    gap: float = math.sqrt((px - nx) * (px - nx) + (py - ny) * (py - ny)) - reach
+    fx, fy = px - nx, py - ny
+    apart = math.sqrt(fx * fx + fy * fy)
+    gap: float = apart - reach
     travel = math.sqrt((qx - px) * (qx - px) + (qy - py) * (qy - py))
     if gap - travel < clearance[a]:
         least = math.sqrt(segment_distance2(px, py, qx, qy, x0, y0, x1, y1)) - reach
         clearance[a] = min(clearance[a], least)
-    if moves and gap < (ttc[a] + dt) * math.sqrt(wx * wx + wy * wy):
+    if moves and _may_touch(gap, apart, -(fx * wx + fy * wy), ttc[a] + dt):
         time = capsule_time(px, py, wx, wy, reach, math.inf, x0, y0, x1, y1)
         ttc[a] = min(ttc[a], max(0.0, time - duration[a, k]))
     return gap
 
 
-@kernel
+@kernel_without_allocation
+def _may_touch(gap: float, apart: float, closing: float, time: float) -> bool:
+    """Whether a partner across ``gap`` [m] may touch within ``time`` [s].
+
+    ``closing`` is the closing speed times the distance ``apart``. The gap to a convex partner is
+    convex in time, so it never falls faster than at first.
+    """
+    soon: bool = gap * apart <= time * closing * (1.0 + SLACK) + SLACK
+    return soon
+
+
+@kernel_without_allocation
 def meet_agents(
     position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
     leaves: IntArray, radius: FloatArray, top: FloatArray, dt: float,
@@ -172,57 +262,45 @@ def meet_agents(
             end = min(max(last[i], last[j]), min(leaves[i], leaves[j]))
             k = 0
             while k <= end:
-                between = _pair_sample(i, j, k, position, last, radius, clearance, gap, near)
-                if k < end and _pair_matters(
-                    i, j, k, between, velocity, clearance, ttc, fastest, dt
-                ):
-                    _pair_step(
-                        i, j, k, position, velocity, duration, last, leaves, radius, clearance, ttc
-                    )
+                dx = position[j, k, 0] - position[i, k, 0]
+                dy = position[j, k, 1] - position[i, k, 1]
+                apart = math.sqrt(dx * dx + dy * dy)
+                between = apart - (radius[i] + radius[j])
+                _pair_sample(i, j, k, apart, between, last, radius, clearance, gap, near)
+                worst, latest = max(clearance[i], clearance[j]), max(ttc[i], ttc[j])
+                if k < end:
+                    wx = velocity[j, k, 0] - velocity[i, k, 0]
+                    wy = velocity[j, k, 1] - velocity[i, k, 1]
+                    near_miss = between - fastest * dt <= worst + SLACK
+                    if near_miss or _may_touch(between, apart, -(dx * wx + dy * wy), latest + dt):
+                        _pair_step(
+                            i, j, k, position, velocity, duration, last, leaves, radius,
+                            clearance, ttc,
+                        )  # fmt: skip
                 ahead = 0.0
                 if between > margin:
-                    worst = max(clearance[i], clearance[j])
-                    ahead = _skip(between, worst, max(ttc[i], ttc[j]), fastest, dt)
+                    worst, latest = max(clearance[i], clearance[j]), max(ttc[i], ttc[j])
+                    ahead = _skip(between, worst, latest, fastest, dt)
                     if fastest > 0.0:
                         ahead = min(ahead, (between - margin) / (fastest * dt))
                 k = end + 1 if ahead > states else k + max(1, int(ahead))
 
 
-@kernel
+@kernel_without_allocation
 def _pair_sample(
-    i: int, j: int, k: int, position: FloatArray, last: IntArray, radius: FloatArray,
+    i: int, j: int, k: int, apart: float, between: float, last: IntArray, radius: FloatArray,
     clearance: FloatArray, gap: FloatArray, near: BoolArray,
-) -> float:  # fmt: skip
-    """Handle one pair of agents in one state, and return the gap [m]."""
-    dx = position[j, k, 0] - position[i, k, 0]
-    dy = position[j, k, 1] - position[i, k, 1]
-    apart = math.sqrt(dx * dx + dy * dy)
-    between: float = apart - (radius[i] + radius[j])
+) -> None:  # fmt: skip
+    """Handle one pair of agents in one state, with centres ``apart`` [m]."""
     for a in (i, j):
         if k <= last[a]:
             near[a, k] |= apart <= NEAR * radius[a]
             gap[a, k] = min(gap[a, k], between)
         if k < last[a] or k == 0:
             clearance[a] = min(clearance[a], between)
-    return between
 
 
-@kernel
-def _pair_matters(
-    i: int, j: int, k: int, between: float, velocity: FloatArray, clearance: FloatArray,
-    ttc: FloatArray, fastest: float, dt: float,
-) -> bool:  # fmt: skip
-    """Whether a step from a gap of ``between`` [m] can lower clearance or ttc."""
-    if between - fastest * dt <= max(clearance[i], clearance[j]) + SLACK:
-        return True
-    wx = velocity[j, k, 0] - velocity[i, k, 0]
-    wy = velocity[j, k, 1] - velocity[i, k, 1]
-    soon = max(ttc[i], ttc[j]) + dt
-    soon_met: bool = between - SLACK <= soon * math.sqrt(wx * wx + wy * wy)
-    return soon_met
-
-
-@kernel
+@kernel_without_allocation
 def _pair_step(
     i: int, j: int, k: int, position: FloatArray, velocity: FloatArray, duration: FloatArray,
     last: IntArray, leaves: IntArray, radius: FloatArray, clearance: FloatArray, ttc: FloatArray,

@@ -4,17 +4,18 @@
 cached as long as the episode exists, and callers must not modify it.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from benchnav.arena.solid import Kind
 from benchnav.arena.world import World
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import BoolArray, ByteArray, FloatArray
 from benchnav.episode.episode import Contacts, Episode, Status
 from benchnav.metrics.quantities.density import frame_times, voronoi_density
 from benchnav.metrics.quantities.encounters import Encounters, encounters, things_of
-from benchnav.metrics.quantities.lowpass import smooth_velocity
+from benchnav.metrics.quantities.lowpass import smooth_velocities
 from benchnav.metrics.quantities.trajectory import Trajectories, cut, positions_at
 
 TeamMotion = tuple[FloatArray, FloatArray, BoolArray, FloatArray]
@@ -30,7 +31,7 @@ class Endings:
     arrival: FloatArray  # (A,) [s], NaN without an arrival or if its navigator failed
     contacts: Contacts
 
-    @property
+    @cached_property
     def arrived(self) -> BoolArray:
         """(A,) it arrived, and its navigator did not fail."""
         return ~np.isnan(self.arrival)
@@ -65,8 +66,16 @@ class Analysis(Endings):
     world: World
     trajectories: Trajectories
     body_position: FloatArray  # (T+1, M, 2) [m]
-    driven: IntArray  # (T,) number of agents that the navigator drives in each decision
+    status: ByteArray  # (T+1, A) of Status
     decision: FloatArray  # (T,) [s]
+
+    @cached_property
+    def charged(self) -> FloatArray:
+        """(6, A) number of charged contacts with each `Kind` of partner."""
+        c, agents = self.contacts, len(self.arrival)
+        place = c.kind[c.charged].astype(np.int64) * agents + c.agent[c.charged]
+        count = np.bincount(place, minlength=len(Kind) * agents)
+        return count.reshape(len(Kind), agents).astype(np.float64)
 
     @cached_property
     def geodesic(self) -> FloatArray:
@@ -91,7 +100,9 @@ class Analysis(Endings):
     @cached_property
     def decision_per_agent(self) -> FloatArray:
         """(N,) [s] time per decision and active agent, ascending."""
-        count = self.driven[: len(self.decision)]
+        active = self.status == int(Status.ACTIVE)
+        driven = active[:-1, self.world.agents.evaluated].sum(axis=1)
+        count = driven[: len(self.decision)]
         return np.sort(self.decision[count > 0] / count[count > 0])
 
     @cached_property
@@ -115,7 +126,7 @@ class Analysis(Endings):
                 own = np.flatnonzero(members & (agents.team == team))
                 together = active[own].sum(axis=0) > 1
                 if together.any():
-                    now = np.ix_(own, np.flatnonzero(together))
+                    now = own[:, None], np.flatnonzero(together)
                     teams.append((place[now], step[now], active[now], agents.radius[own]))
             self._together[key] = teams
         return self._together[key]
@@ -124,15 +135,15 @@ class Analysis(Endings):
     def _together(self) -> dict[bytes, list[TeamMotion]]:
         return {}
 
-    def smooth_velocity(self, agent: int) -> FloatArray:
-        """Return the velocity (N, 2) [m/s] of an agent at a fixed rate, low-passed by `lowpass`."""
-        if agent not in self._smooth:
-            self._smooth[agent] = smooth_velocity(self.trajectories, agent)
-        return self._smooth[agent]
-
     @cached_property
-    def _smooth(self) -> dict[int, FloatArray]:
-        return {}
+    def smooth_velocities(self) -> dict[int, FloatArray]:
+        """Agent → velocity (N, 2) [m/s] at a fixed rate, low-passed by `lowpass`.
+
+        For agents that arrive and move by at least their radius.
+        """
+        agents = np.flatnonzero(self.arrived & self.trajectories.moved)
+        found = smooth_velocities(self.trajectories, agents) if len(agents) else []
+        return dict(zip(agents.tolist(), found, strict=True))
 
     @cached_property
     def encounters(self) -> Encounters:
@@ -150,14 +161,11 @@ def analyse(episode: Episode) -> Analysis:
     found: Analysis | None = vars(episode).get(_KEPT)
     if found is None:
         ends = endings(episode)
-        active = episode.status == int(Status.ACTIVE)
         found = Analysis(
-            **{field.name: getattr(ends, field.name) for field in fields(Endings)},
-            world=episode.world,
-            trajectories=cut(episode),
-            body_position=episode.body_position,
-            driven=active[:-1, episode.world.agents.evaluated].sum(axis=1),
+            failed=ends.failed, active_at_end=ends.active_at_end, arrival=ends.arrival,
+            contacts=ends.contacts, world=episode.world, trajectories=cut(episode),
+            body_position=episode.body_position, status=episode.status,
             decision=episode.timings.decision,
-        )
+        )  # fmt: skip
         vars(episode)[_KEPT] = found
     return found

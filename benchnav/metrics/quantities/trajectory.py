@@ -5,13 +5,17 @@ does not count. An agent that arrives within a step stops at that instant, so it
 lasts until its arrival, not until the end of the step.
 """
 
+import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from benchnav.arena.world import Afterwards
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode, Status
+from benchnav.kernels import kernel, kernel_without_allocation
+from benchnav.metrics.quantities.numpy_sum import numpy_sum
 
 INSTANT = 1e-9  # [s] a shorter segment has no velocity
 
@@ -33,10 +37,15 @@ class Trajectories:
     def __len__(self) -> int:
         return len(self.last)
 
-    @property
+    @cached_property
     def speed(self) -> FloatArray:
         """(A, T) [m/s] mean speed over each segment."""
         return np.hypot(self.velocity[..., 0], self.velocity[..., 1])
+
+    @cached_property
+    def total_duration(self) -> FloatArray:
+        """(A,) [s] sum of the durations of the segments."""
+        return np.asarray(self.duration.sum(axis=1))
 
     @property
     def counted(self) -> BoolArray:
@@ -47,33 +56,55 @@ class Trajectories:
 
 def cut(episode: Episode) -> Trajectories:
     """Return the trajectories of all agents of an episode."""
-    dt, states = episode.world.clock.dt, len(episode.position)
-    over = episode.status != int(Status.ACTIVE)  # (T+1, A)
-    last = np.where(over.any(axis=0), over.argmax(axis=0), states - 1).astype(np.int64)
-    until = np.minimum(np.arange(states), last[:, None])  # (A, T+1)
-    position = np.ascontiguousarray(
-        np.take_along_axis(episode.position.transpose(1, 0, 2), until[..., None], axis=1)
-    )
-    end = _end(episode, last)
-    duration = np.diff(np.minimum(np.arange(states) * dt, end[:, None]), axis=1)
-    segment = np.diff(position, axis=1)
-    slow = duration < INSTANT
-    velocity = np.where(slow[..., None], 0.0, segment / np.where(slow, 1.0, duration)[..., None])
-    length = np.hypot(segment[..., 0], segment[..., 1]).sum(axis=1)
+    world = episode.world
+    position = np.array(episode.position.transpose(1, 0, 2), np.float64, order="C")
+    status = np.array(episode.status.T, np.int8, order="C")
+    agents, steps = len(position), position.shape[1] - 1
+    last, end, length = np.empty(agents, np.int64), np.empty(agents), np.empty(agents)
+    duration, velocity = np.empty((agents, steps)), np.empty((agents, steps, 2))
+    cut_paths(
+        status, np.array(episode.arrival), world.clock.dt, position, last, end, duration, velocity,
+        length,
+    )  # fmt: skip
     return Trajectories(
-        dt, last, end, position, duration, velocity, _leaves(episode, last), length,
-        length >= episode.world.agents.radius,
+        world.clock.dt, last, end, position, duration, velocity, _leaves(episode, last), length,
+        length >= world.agents.radius,
     )  # fmt: skip
 
 
-def _end(episode: Episode, last: IntArray) -> FloatArray:
-    """Return ends (A,) [s]: the arrival if it is in the segment before ``last``, else its time."""
-    dt = episode.world.clock.dt
-    before = np.maximum(last - 1, 0) * dt
-    arrived = episode.status[-1] == int(Status.ARRIVED)
-    within = arrived & (episode.arrival >= before - INSTANT)
-    end: FloatArray = np.where(within, np.fmin(episode.arrival, last * dt), last * dt)
-    return end
+@kernel
+def cut_paths(
+    status: ByteArray, arrival: FloatArray, dt: float, position: FloatArray, last: IntArray,
+    end: FloatArray, duration: FloatArray, velocity: FloatArray, length: FloatArray,
+) -> None:  # fmt: skip
+    """Cut places (A, T+1, 2) [m] at the end of each attempt, and write the other arrays.
+
+    The arrays are those of `Trajectories`. Inputs are the status (A, T+1) and the arrival (A,)
+    [s]: the attempt ends at the arrival if that is in the segment before ``last``, else at the
+    time of ``last``.
+    """
+    agents, steps = duration.shape
+    way = np.empty(steps)
+    for a in range(agents):
+        until = 0
+        while until < steps and status[a, until] == Status.ACTIVE:
+            until += 1
+        last[a], end[a] = until, until * dt
+        arrived = status[a, steps] == Status.ARRIVED
+        if arrived and arrival[a] >= max(until - 1, 0) * dt - INSTANT:
+            end[a] = min(arrival[a], end[a])
+        for k in range(until + 1, steps + 1):
+            position[a, k, 0], position[a, k, 1] = position[a, until, 0], position[a, until, 1]
+        for k in range(steps):
+            dx = position[a, k + 1, 0] - position[a, k, 0]
+            dy = position[a, k + 1, 1] - position[a, k, 1]
+            time = min((k + 1) * dt, end[a]) - min(k * dt, end[a])
+            moves = time >= INSTANT
+            duration[a, k] = time
+            velocity[a, k, 0] = dx / time if moves else 0.0
+            velocity[a, k, 1] = dy / time if moves else 0.0
+            way[k] = math.hypot(dx, dy)
+        length[a] = numpy_sum(way)
 
 
 def _leaves(episode: Episode, last: IntArray) -> IntArray:
@@ -86,15 +117,25 @@ def _leaves(episode: Episode, last: IntArray) -> IntArray:
 
 def positions_at(trajectories: Trajectories, times: FloatArray) -> FloatArray:
     """Return the places (A, N, 2) [m] at ``times`` (N,) [s], linear between states."""
-    dt, steps = trajectories.dt, trajectories.duration.shape[1]
-    if steps == 0:
-        return np.repeat(trajectories.position, len(times), axis=1)
-    k = np.clip((times / dt + 1e-9).astype(np.int64), 0, steps - 1)
-    elapsed = np.minimum(times[None] - k * dt, trajectories.duration[:, k])
-    places: FloatArray = (
-        trajectories.position[:, k] + trajectories.velocity[:, k] * elapsed[..., None]
-    )
+    t, places = trajectories, np.empty((len(trajectories), len(times), 2))
+    interpolate(t.position, t.velocity, t.duration, t.dt, times, places)
     return places
+
+
+@kernel_without_allocation
+def interpolate(
+    position: FloatArray, velocity: FloatArray, duration: FloatArray, dt: float,
+    times: FloatArray, places: FloatArray,
+) -> None:  # fmt: skip
+    """Write the ``places`` (A, N, 2) [m] at ``times`` (N,) [s] from arrays of `Trajectories`."""
+    steps = duration.shape[1]
+    for n in range(len(times)):
+        k = min(max(int(times[n] / dt + 1e-9), 0), max(steps - 1, 0))
+        for a in range(len(position)):
+            elapsed = min(times[n] - k * dt, duration[a, k]) if steps > 0 else 0.0
+            for axis in range(2):
+                place = position[a, k, axis]
+                places[a, n, axis] = place + velocity[a, k, axis] * elapsed if steps > 0 else place
 
 
 def present_at(trajectories: Trajectories, times: FloatArray) -> BoolArray:

@@ -26,9 +26,16 @@ def voronoi_cells(points: FloatArray, walkable: Any, reach: float, quarter: int)
         for other in points[_near(point, points, 2.0 * reach)]:
             ring = _nearer(ring, point, other)
         cell = shapely.intersection(shapely.Polygon(ring), walkable)
-        parts = [part for part in shapely.get_parts(cell) if part.geom_type == "Polygon"]
-        found.append(min(parts, key=lambda part: part.distance(shapely.Point(point))))
+        found.append(part_with(point, cell))
     return found
+
+
+def part_with(point: FloatArray, cell: Any) -> Any:
+    """Return the polygon of a cell that contains its point (2,), or is the nearest to it."""
+    import shapely
+
+    parts = [part for part in shapely.get_parts(cell) if part.geom_type == "Polygon"]
+    return min(parts, key=lambda part: part.distance(shapely.Point(point)))
 
 
 def _near(point: FloatArray, points: FloatArray, reach: float) -> BoolArray:

@@ -2,11 +2,12 @@
 
 from collections.abc import Iterable, Sequence
 
+import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
 from benchnav.episode.episode import Episode
-from benchnav.metrics.measure import measure
+from benchnav.metrics.measure import Cell, measure_roles
 from benchnav.metrics.metric import Metric
 from benchnav.navigation.command_check import kind_of
 from benchnav.store.parts.results import RESULTS
@@ -16,9 +17,20 @@ from benchnav.store.runs.run_path import RunPath
 
 
 def measured(episodes: Iterable[Episode], metrics: Sequence[Metric]) -> pa.Table:
-    """Return the table of `RESULTS` of these episodes."""
-    rows = [row for episode in episodes for row in measure(episode, metrics)]
-    return pa.Table.from_pylist(rows, schema=RESULTS)
+    """Return the table of `RESULTS` of these episodes: by episode, by role, in order of metrics."""
+    roles = [role for episode in episodes for role in measure_roles(episode, metrics)]
+    cells = [cell for _, of_role in roles for cell in of_role]
+    owner = np.repeat(np.arange(len(roles)), len(metrics))
+    columns = {"metric": [metric.name for metric in metrics] * len(roles)}
+    columns |= {name: [getattr(cell, name) for cell in cells] for name in Cell._fields}
+    arrays = []
+    for field in RESULTS:
+        if field.name in columns:
+            arrays.append(pa.array(columns[field.name], field.type))
+        else:
+            common = pa.array([common[field.name] for common, _ in roles], field.type)
+            arrays.append(common.take(pa.array(owner)))
+    return pa.Table.from_arrays(arrays, schema=RESULTS)
 
 
 def failed_metrics(results: pa.Table) -> list[tuple[str, str]]:

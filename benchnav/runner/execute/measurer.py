@@ -17,9 +17,10 @@ import pyarrow as pa
 from benchnav.arena.agents import Role
 from benchnav.episode.episode import Episode
 from benchnav.errors import BenchnavError, CorruptPartError
-from benchnav.metrics.measure import measure, own_metrics
+from benchnav.metrics.measure import own_metrics
 from benchnav.processes.channel import Channel
 from benchnav.runner.execute.call_timer import Notes
+from benchnav.runner.execute.measurement import measured
 from benchnav.runner.execute.plugin_metrics import plugin_rows
 from benchnav.runner.plan.task import Measuring, Played, Task, measure_part
 from benchnav.store.parts.results import RESULTS
@@ -61,26 +62,38 @@ def measured_isolated(
 ) -> pa.Table:
     """Return the table of `RESULTS`; metrics of plugins run in other processes."""
     kept: list[Episode] = []
-    rows: list[list[dict[str, Any]]] = []  # of each episode
-    for episode in _ticked(episodes, tick):
-        rows.append(measure(episode, own_metrics()))
-        if measuring.plugins:
-            kept.append(episode)
+    table = measured(_kept(_ticked(episodes, tick), measuring, kept), own_metrics())
+    if not measuring.plugins:
+        return table
+    rows: list[dict[str, Any]] = []
     for name in measuring.plugins:
         plugin_values = plugin_rows(
             name, kept, measuring.registrations, measuring.main, measuring.timeout
         )  # fmt: skip
-        for episode_rows, more in zip(rows, plugin_values, strict=True):
-            episode_rows += more
-    sorted_rows = [row for of_episode in rows for row in sorted(of_episode, key=_place)]
-    return pa.Table.from_pylist(sorted_rows, schema=RESULTS)
+        rows += [row for of_episode in plugin_values for row in of_episode]
+    table = pa.concat_tables([table, pa.Table.from_pylist(rows, schema=RESULTS)])
+    order = {episode.identity.seed: n for n, episode in enumerate(kept)}
+    keys = [
+        (order[seed], Role[role.upper()], metric)
+        for seed, role, metric in zip(*(table[name].to_pylist() for name in _KEYS), strict=True)
+    ]
+    return table.take(sorted(range(len(keys)), key=keys.__getitem__)).combine_chunks()
+
+
+_KEYS = ("seed", "role", "metric")
+
+
+def _kept(
+    episodes: Iterator[Episode], measuring: Measuring, kept: list[Episode]
+) -> Iterator[Episode]:
+    """Yield the episodes, and add them to ``kept`` if plugins measure them later."""
+    for episode in episodes:
+        if measuring.plugins:
+            kept.append(episode)
+        yield episode
 
 
 def _ticked(episodes: Iterable[Episode], tick: Callable[[], None]) -> Iterator[Episode]:
     for episode in episodes:
         yield episode
         tick()
-
-
-def _place(row: dict[str, Any]) -> tuple[int, str]:
-    return Role[row["role"].upper()], row["metric"]

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import BenchnavError
-from benchnav.metrics.measure import load_metric, subjects, valued
+from benchnav.metrics.measure import load_metric, measure_alone, subjects
 from benchnav.navigation.command_check import short
 from benchnav.navigation.plugin.trace import bounded, plain
 from benchnav.plugins import Registration, adopt
@@ -98,7 +98,7 @@ def _values(name: str, episode: Episode) -> list[dict[str, Any]]:
     except BenchnavError as error:
         fault = {"value": math.nan, "defined": 0, "missing": short(error), "traceback": None}
         return [fault for _ in subjects(episode)]
-    return [valued(metric, episode, members) for _, members in subjects(episode)]
+    return [measure_alone(metric, episode, members)._asdict() for _, members in subjects(episode)]
 
 
 def _rows(name: str, episode: Episode, answer: Any) -> Rows:
