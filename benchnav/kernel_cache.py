@@ -19,6 +19,7 @@ from typing import Any
 
 import numba
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
 
 SUFFIX = ".kernel"
@@ -41,9 +42,14 @@ class KernelCache(FunctionCache):
         self.enable()
 
     def load_overload(self, signature: Any, target: Any) -> Any:
-        """Return the compiled code; None if it must be compiled."""
+        """Return the compiled code; None if it must be compiled.
+
+        Loading needs Numba's runtime only. Numba would also read its registries of functions again
+        for each kernel; it does so anyway before it compiles one.
+        """
         try:
-            return super().load_overload(signature, target)
+            rtsys.initialize(target)
+            return self._load_overload(signature, target)
         except Exception:  # an intact file that this Numba cannot use, such as one of another build
             return None
 

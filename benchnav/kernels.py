@@ -82,6 +82,10 @@ def _let_numba_call_kernels() -> None:
     from numba.core import types
     from numba.extending import typeof_impl
 
+    from benchnav.system.blas_import import delay_blas
+
+    delay_blas()
+
     @typeof_impl.register(Kernel)
     def _(value: Kernel, _: object) -> Any:
         return types.Dispatcher(value.for_kernels)

@@ -8,7 +8,7 @@ import signal
 import socket
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from mmap import mmap
@@ -23,7 +23,7 @@ from benchnav.processes.process_tree import kill
 LIGHT = (
     "benchnav.navigation.plugin.capabilities"  # the modules that plugins build on; imported at once
 )
-WARM = "benchnav.runner.execute.preload:warm"  # the modules and kernels of a run
+WARM = "benchnav.runner.execute.preload:warm"  # loads the modules and kernels of a run in steps
 PREPARE, START = b"\1", b"\0"  # the kinds of requests on the socket
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 
@@ -51,20 +51,30 @@ def load(target: str) -> Callable[..., Any]:
     return function
 
 
+def _warm_steps() -> Iterator[None]:
+    """Load what a run needs; other requests may be served between two steps."""
+    with suppress(BenchnavError):  # a worker reports what cannot be used
+        yield from load(WARM)()
+
+
 @dataclass
 class _Server:
     requests: socket.socket
     wake_reader: int
     wake_writer: int
     children: set[int] = field(default_factory=set)
-    is_warm: bool = False
+    steps: Iterator[None] = field(default_factory=_warm_steps)  # those that are left
+    is_loading: bool = False
 
     def __post_init__(self) -> None:
         self.channel = Channel(self.requests)
 
     def serve(self) -> None:
         while True:
-            ready, _, _ = select([self.requests.fileno(), self.wake_reader], [], [])
+            patience = 0.0 if self.is_loading else None
+            ready, _, _ = select([self.requests.fileno(), self.wake_reader], [], [], patience)
+            if not ready:
+                self.is_loading = next(self.steps, False) is None
             if self.wake_reader in ready:
                 with suppress(BlockingIOError):
                     os.read(self.wake_reader, 1 << 12)
@@ -86,11 +96,12 @@ class _Server:
         if not mark:
             raise EOFError
         if mark == PREPARE:
-            self._warm()
+            self.is_loading = True
             return
         request = json.loads(self.channel.receive_bytes())
         if request["warm"]:
-            self._warm()
+            for _ in self.steps:
+                pass
         pid = os.fork()
         if not pid:
             self._become(request, *files)
@@ -98,13 +109,6 @@ class _Server:
             os.close(file)
         self.children.add(pid)
         self.channel.send({"started": pid})
-
-    def _warm(self) -> None:
-        """Load what a run needs, once."""
-        if not self.is_warm:
-            with suppress(BenchnavError):  # a worker reports what cannot be used
-                load(WARM)()
-            self.is_warm = True
 
     def _reap(self) -> None:
         with suppress(ChildProcessError):

@@ -1,5 +1,7 @@
 """The preloading of modules and kernels in the fork server, before it forks."""
 
+from collections.abc import Generator, Iterator
+
 import numpy as np
 
 from benchnav.arena.world import World
@@ -45,21 +47,26 @@ rules: {goal_tolerance: 0.5, contact: end, on_arrival: vanish, on_end: vanish}
 """
 
 
-def warm() -> None:
-    """Build, sense, step, record, store and measure one small world."""
+def warm() -> Iterator[None]:
+    """Build, sense, step, record, store and measure one small world, in steps."""
+    yield
     delay_pandas()
     scenario = scenario_from_text(_SCENARIO, "warm.yaml")
-    episodes = [_episode(build(scenario, "train", 0))]
-    measured(from_table(to_table(episodes)), own_metrics())
+    world = build(scenario, "train", 0)
+    yield
+    episode = yield from _episode(world)
+    yield
+    measured(from_table(to_table([episode])), own_metrics())
 
 
-def _episode(world: World) -> Episode:
+def _episode(world: World) -> Generator[None, None, Episode]:
     simulation = Simulation([world])
     recorder = Recorder(simulation)
     recorder.record_state()
     chosen = np.arange(simulation.A)[None]
     for _ in range(_DECISIONS):
         sense(simulation, chosen, frozenset(Need))
+        yield
         command = np.full_like(simulation.position, 0.5)
         executed = simulation.step(command, np.zeros(simulation.present.shape, np.bool_))
         recorder.record_commands(command, executed, 0.0)
