@@ -82,6 +82,10 @@ def _let_numba_call_kernels() -> None:
     from numba.core import types
     from numba.extending import typeof_impl
 
+    from benchnav.system.blas_import import delay_blas
+
+    delay_blas()
+
     @typeof_impl.register(Kernel)
     def _(value: Kernel, _: object) -> Any:
         return types.Dispatcher(value.for_kernels)
@@ -116,13 +120,19 @@ def kernels_name(package: str) -> str:
     """Return a digest name of the code from which a top-level package's kernels are compiled."""
     digest = hashlib.blake2b(version("numba").encode(), digest_size=8)
     source = getattr(sys.modules.get(package), "__file__", None)
-    roots = {_HERE, Path(source).parent if source else _HERE}
-    for root in sorted(roots):
-        for path in sorted(root.rglob("*.py")):
-            text = path.read_bytes()
-            if b"@kernel" in text or b"@inlined" in text or path.parent.name in _CONSTANTS:
-                digest.update(text)
+    for root in sorted({_HERE, Path(source).parent if source else _HERE}):
+        digest.update(_digest_of_kernels(root))
     return f"kernels-{digest.hexdigest()}"
+
+
+@lru_cache
+def _digest_of_kernels(root: Path) -> bytes:
+    digest = hashlib.blake2b()
+    for path in sorted(root.rglob("*.py")):
+        text = path.read_bytes()
+        if b"@kernel" in text or b"@inlined" in text or path.parent.name in _CONSTANTS:
+            digest.update(text)
+    return digest.digest()
 
 
 @lru_cache

@@ -8,7 +8,7 @@ import signal
 import socket
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
 from mmap import mmap
@@ -23,7 +23,7 @@ from benchnav.processes.process_tree import kill
 LIGHT = (
     "benchnav.navigation.plugin.capabilities"  # the modules that plugins build on; imported at once
 )
-WARM = "benchnav.runner.execute.preload:warm"  # the modules and kernels of a run
+WARM = "benchnav.runner.execute.preload:warm"  # loads the modules and kernels of a run in steps
 PREPARE, START = b"\1", b"\0"  # the kinds of requests on the socket
 _PR_SET_PDEATHSIG, _PR_SET_CHILD_SUBREAPER = 1, 36
 
@@ -42,6 +42,7 @@ def main(file: int) -> None:
     with suppress(EOFError, ChannelError, ConnectionError):
         server.serve()
     server.end()
+    os._exit(0)  # nothing is left to do, and Numba's objects take long to be dismantled
 
 
 def load(target: str) -> Callable[..., Any]:
@@ -51,20 +52,33 @@ def load(target: str) -> Callable[..., Any]:
     return function
 
 
+def _warm_steps() -> Iterator[int | None]:
+    """Load what a run needs; other requests may be served between two steps.
+
+    Yields the numbers of processes that help, else None.
+    """
+    with suppress(BenchnavError):  # a worker reports what cannot be used
+        yield from load(WARM)()
+
+
 @dataclass
 class _Server:
     requests: socket.socket
     wake_reader: int
     wake_writer: int
     children: set[int] = field(default_factory=set)
-    is_warm: bool = False
+    steps: Iterator[int | None] = field(default_factory=_warm_steps)  # those that are left
+    is_loading: bool = False
 
     def __post_init__(self) -> None:
         self.channel = Channel(self.requests)
 
     def serve(self) -> None:
         while True:
-            ready, _, _ = select([self.requests.fileno(), self.wake_reader], [], [])
+            patience = 0.0 if self.is_loading else None
+            ready, _, _ = select([self.requests.fileno(), self.wake_reader], [], [], patience)
+            if not ready:
+                self._load_step()
             if self.wake_reader in ready:
                 with suppress(BlockingIOError):
                     os.read(self.wake_reader, 1 << 12)
@@ -86,11 +100,12 @@ class _Server:
         if not mark:
             raise EOFError
         if mark == PREPARE:
-            self._warm()
+            self.is_loading = True
             return
         request = json.loads(self.channel.receive_bytes())
         if request["warm"]:
-            self._warm()
+            while self._load_step():
+                pass
         pid = os.fork()
         if not pid:
             self._become(request, *files)
@@ -99,12 +114,14 @@ class _Server:
         self.children.add(pid)
         self.channel.send({"started": pid})
 
-    def _warm(self) -> None:
-        """Load what a run needs, once."""
-        if not self.is_warm:
-            with suppress(BenchnavError):  # a worker reports what cannot be used
-                load(WARM)()
-            self.is_warm = True
+    def _load_step(self) -> bool:
+        """Load a part of what a run needs; return whether one was left."""
+        for helper in self.steps:
+            if helper is not None:
+                self.children.add(helper)
+            return True
+        self.is_loading = False
+        return False
 
     def _reap(self) -> None:
         with suppress(ChildProcessError):

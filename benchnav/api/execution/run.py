@@ -1,6 +1,10 @@
-"""Run a suite into a run folder: what `benchnav.run` and the command do."""
+"""Run a suite into a run folder: what `benchnav.run` and the command do.
 
-from collections.abc import Iterable
+This module imports little, so that the fork server starts before the imports of this process.
+"""
+
+from __future__ import annotations
+
 from datetime import datetime
 from functools import partial
 from os import PathLike
@@ -8,17 +12,19 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from benchnav.api.execution.navigators import Navigators, navigator_specs
-from benchnav.api.execution.suite_source import SuiteLike, scenario_name, several, suite_source
 from benchnav.api.output.messages import message, silent
-from benchnav.api.records.run import Run, open_run
-from benchnav.api.records.scenario import Scenario
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.processes.fork_server import fork_server
 from benchnav.processes.main_module import stop_import_of_main
 from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from benchnav.api.execution.navigators import Navigators
+    from benchnav.api.execution.suite_source import SuiteLike
+    from benchnav.api.records.run import Run
+    from benchnav.api.records.scenario import Scenario
     from benchnav.runner.plan.shard import Shard
     from benchnav.runner.plan.suite import Suite
     from benchnav.runner.run import Executor, Summary
@@ -74,7 +80,10 @@ def run(
     """
     stop_import_of_main()
     if workers != 0:
-        fork_server().prepare()  # loads kernels while the suite is read
+        fork_server().prepare()  # loads kernels while this process imports and reads the suite
+    from benchnav.api.execution.navigators import navigator_specs
+    from benchnav.api.execution.suite_source import scenario_name, several, suite_source
+    from benchnav.api.records.run import open_run
     from benchnav.runner.plan.suite import Selection, load_suite
 
     selection = Selection(
@@ -95,8 +104,8 @@ def run(
 
 
 def _execute(
-    suite: "Suite", folder: Path, options: dict[str, Any], quiet: bool, debug: bool
-) -> "Summary":
+    suite: Suite, folder: Path, options: dict[str, Any], quiet: bool, debug: bool
+) -> Summary:
     from benchnav.runner.conclusion import conclusion, kept_for_now, tracebacks
     from benchnav.runner.execute.progress import progress
     from benchnav.runner.run import Summary, run_suite
@@ -129,11 +138,11 @@ def seeds_text(seeds: int | str | range | None) -> str:
     return "" if seeds is None else str(seeds)
 
 
-def _new_folder(suite: "Suite") -> Path:
+def _new_folder(suite: Suite) -> Path:
     return Path("runs") / f"{suite.name}-{datetime.now():%Y%m%d-%H%M%S}"
 
 
-def _executor(name: str, address: str | None, workers: int | None) -> "Executor | None":
+def _executor(name: str, address: str | None, workers: int | None) -> Executor | None:
     if name not in EXECUTORS:
         raise UsageError(
             f"The executor must be one of {', '.join(EXECUTORS)}. Got {name!r} instead."
@@ -152,7 +161,7 @@ def _executor(name: str, address: str | None, workers: int | None) -> "Executor 
     return partial(execute_on_ray, address=address or "")
 
 
-def _shard(text: str | None) -> "Shard | None":
+def _shard(text: str | None) -> Shard | None:
     from benchnav.runner.plan.shard import Shard
 
     try:
@@ -161,7 +170,7 @@ def _shard(text: str | None) -> "Shard | None":
         raise UsageError(f"The shard {error}.") from None
 
 
-def _announcement(suite: "Suite", folder: Path) -> str:
+def _announcement(suite: Suite, folder: Path) -> str:
     sizes = (
         (len(suite.scenarios), "scenario"), (len(suite.tracks), "track"),
         (len(suite.contestants), "navigator"), (len(suite.seeds), "seed"),

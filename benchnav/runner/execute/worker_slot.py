@@ -52,6 +52,8 @@ class WorkerSlot:
         self._tasks += 1
         self._first_count, self._max_count = self._timer.notes[0], 2.0 * task.max_calls
         self._send(self._worker, task)
+        if self._measurer is None:
+            self._start_measurer()  # now, so that it is ready when the worker is
 
     def files(self) -> list[int]:
         """Return the file descriptors of its channels, for `select`."""
@@ -143,13 +145,16 @@ class WorkerSlot:
             except ChannelError:
                 child.kill()  # the next call of `messages` reports its end
 
+    def _start_measurer(self) -> None:
+        self._measurer = start_process("benchnav.runner.execute.measurer:serve", main=False)
+        main = main_of(value for _, _, value in self._registrations)
+        measuring = Measuring(self._plugins, self._registrations, main, self._limits.timeout)
+        self._send(self._measurer, measuring)
+
     def _measure(self, played: Played) -> None:
         self._state, self._measuring_time = "measuring", 0.0
-        if self._measurer is None:
-            self._measurer = start_process("benchnav.runner.execute.measurer:serve", main=False)
-            main = main_of(value for _, _, value in self._registrations)
-            measuring = Measuring(self._plugins, self._registrations, main, self._limits.timeout)
-            self._send(self._measurer, measuring)
+        if self._measurer is None:  # it ended while the worker played
+            self._start_measurer()
         self._send(self._measurer, (self.task, played))
 
     def _parsed(self, child: Child | None, message: Any) -> Iterator[TaskFailure | int | Outcome]:
