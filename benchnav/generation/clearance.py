@@ -97,9 +97,7 @@ def first_clear(
     shape: FloatArray, points: FloatArray, wall: Barrier, gap: float, whole: bool = True
 ) -> int:
     """Return the index of the first point at which `clear` is true; -1 if there is none."""
-    found: int = _first_clear(
-        shape, points, wall.capsules, wall.first, wall.hollow, gap, whole
-    )
+    found: int = _first_clear(shape, points, wall.capsules, wall.first, wall.hollow, gap, whole)
     return found
 
 

@@ -141,7 +141,9 @@ class _Placing:
         for _ in range(_STARTS if len(self.batches) > 1 else 1):
             self.ends = GoalsTried()
             try:
-                start = find_place(self.starts, self.first_start, f"the start {subject}", self.batches)
+                start = find_place(
+                    self.starts, self.first_start, f"the start {subject}", self.batches
+                )
             except NoPlaceError as error:
                 raise self.ends.explained(error, subject) from None
             try:
