@@ -230,7 +230,7 @@ class _Placing:
 
     def _labels(self, point: FloatArray) -> list[int]:
         """Return the connected part of each free space that contains a point (1, 2)."""
-        return [int(space.labels(point)[0]) for space in self.spaces]
+        return [space.label(point) for space in self.spaces]
 
 
 def _bound_goals(goal: AntipodalGoal | ShiftedGoal, starts: FloatArray) -> FloatArray:
