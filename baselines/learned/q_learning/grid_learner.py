@@ -42,14 +42,15 @@ def learn(
     values, over = first_values(cells, goal), np.zeros(len(cells.centre), np.bool_)
     over[ends] = True
     values[over] = 0.0
-    best, usable = values.argmax(axis=1), cells.usable
+    best, usable, every = values.argmax(axis=1), cells.usable, np.arange(len(values))
+    top, ahead = values[every, best], cells.after[every, best]
     count = schooling.decisions // 4 + 1
     begin = np.where(np.arange(count) % 2 == 0, start, rng.choice(usable, count))
     noise = rng.random(schooling.decisions)
     longest = 4 * (len(usable) + 1)
     episodes(
-        values, best, cells.after, cells.cost, over, begin, noise, schooling.explore,
-        schooling.rate, longest,
+        values, best, top, ahead, cells.after, cells.cost, over, begin, noise,
+        schooling.explore, schooling.rate, longest,
     )  # fmt: skip
     return values, best
 
@@ -67,13 +68,15 @@ def first_values(cells: Cells, goal: FloatArray) -> FloatArray:
 
 @kernel_without_allocation
 def episodes(
-    values: FloatArray, best: IntArray, after: IntArray, cost: FloatArray, over: BoolArray,
-    begin: IntArray, noise: FloatArray, explore: float, rate: float, longest: int,
+    values: FloatArray, best: IntArray, top: FloatArray, ahead: IntArray, after: IntArray,
+    cost: FloatArray, over: BoolArray, begin: IntArray, noise: FloatArray, explore: float,
+    rate: float, longest: int,
 ) -> None:  # fmt: skip
     """Run episodes that begin in ``begin`` (E,), until the ``noise`` (T,) of moves is used up.
 
-    ``best`` (N,) is the first of the best moves of each cell. It is kept up to date, because most
-    moves change no value: to search for it at each move takes three times as long.
+    ``best`` (N,) is the first of the best moves of each cell, ``top`` (N,) its value and ``ahead``
+    (N,) its cell. They are kept up to date: most moves are the best ones and change no value, and
+    read only these small arrays.
     """
     used = 0
     for e in range(len(begin)):
@@ -83,17 +86,19 @@ def episodes(
                 break
             if used == len(noise):
                 return
-            move = best[cell]
+            move, then, old = best[cell], ahead[cell], top[cell]
             if noise[used] < explore:
                 tried = int(noise[used] / explore * 8)
-                move = tried if after[cell, tried] >= 0 else move
+                if after[cell, tried] >= 0:
+                    move, then, old = tried, after[cell, tried], values[cell, tried]
             used += 1
-            then = after[cell, move]
-            target = values[then, best[then]] - cost[move]
-            old = values[cell, move]
-            values[cell, move] += rate * (target - old)
-            if values[cell, move] != old:
-                best[cell] = _best(values, cell)
+            target = top[then] - cost[move]
+            value = old + rate * (target - old)
+            if value != old:
+                values[cell, move] = value
+                chosen = _best(values, cell)
+                best[cell], top[cell] = chosen, values[cell, chosen]
+                ahead[cell] = after[cell, chosen]
             cell = then
 
 
