@@ -48,7 +48,7 @@ class Solid:
         """(P, 5) x0, y0, x1, y1, radius; edges in loop order."""
         if self.is_disc:
             return np.array([[*self.center, *self.center, self.radius]])
-        edges = np.zeros((sum(len(loop) for loop in self.loops), 5))
+        edges = np.zeros((sum(map(len, self.loops)), 5))
         first = 0
         for loop in self.loops:
             end = first + len(loop)
@@ -61,14 +61,14 @@ class Solid:
     @cached_property
     def bounding_radius(self) -> float:
         """Radius [m] of the smallest circle around the origin that contains the shape."""
-        c = self.capsules
-        reach = np.maximum(np.hypot(c[:, 0], c[:, 1]), np.hypot(c[:, 2], c[:, 3])) + c[:, 4]
-        return float(reach.max())
+        c = self.capsules  # each corner begins one of them
+        return float((np.hypot(c[:, 0], c[:, 1]) + c[:, 4]).max())
 
     def moved(self, offset: FloatArray) -> "Solid":
         """Return the same shape, translated by ``offset`` (2,) [m]."""
         x, y = float(offset[0]), float(offset[1])
-        loops = tuple(loop + np.array([x, y]) for loop in self.loops)
+        shift = np.array([x, y])
+        loops = tuple([loop + shift for loop in self.loops])
         return Solid(self.kind, loops, (self.center[0] + x, self.center[1] + y), self.radius)
 
 

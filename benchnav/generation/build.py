@@ -2,6 +2,7 @@
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from functools import partial
 from zlib import crc32
 
 import numpy as np
@@ -116,12 +117,9 @@ class _Draw:
         sequence = np.random.SeedSequence(self.seed, spawn_key=(*self.key, part, index))
         return np.random.Generator(np.random.PCG64(sequence))
 
-    def streams(self, part: int, count: int) -> list[np.random.Generator]:
-        return [self.stream(part, i) for i in range(count)]
-
     def world(self) -> World:
         scenario = self.scenario
-        structure = self.prepared.structure(self.stream(_LAYOUT))
+        structure = self.prepared.structure(partial(self.stream, _LAYOUT))
         given = self.given_bodies()
         pieces = self.pieces(structure, given)
         now = _with(structure.wall, [piece.solid for piece in pieces])
@@ -162,8 +160,7 @@ class _Draw:
         keep_free = self.prepared.fixed_barrier([body for bodies in given for body in bodies])
         return draw_pieces(
             groups, self.scenario.bounds, structure.wall, keep_free,
-            self.streams(_STATIC, len(groups)), self.streams(_ELSEWHERE, len(groups)),
-            self.scenario.folder,
+            partial(self.stream, _STATIC), partial(self.stream, _ELSEWHERE), self.scenario.folder,
         )  # fmt: skip
 
     def bodies(self, given: list[list[Body]], standing: Barrier) -> list[Body]:

@@ -9,7 +9,7 @@ import numpy as np
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel, kernel_without_allocation
 
 POINT = np.zeros((1, 5))  # a shape
 _FILLED = np.zeros(1, np.bool_)  # an obstacle is not hollow
@@ -93,27 +93,57 @@ def clear(
     return free
 
 
+def first_clear(
+    shape: FloatArray, points: FloatArray, wall: Barrier, gap: float, whole: bool = True
+) -> int:
+    """Return the index of the first point at which `clear` is true; -1 if there is none."""
+    found: int = _first_clear(shape, points, wall.capsules, wall.first, wall.hollow, gap, whole)
+    return found
+
+
 @kernel
 def _clear(
     shape: FloatArray, points: FloatArray, capsules: FloatArray, first: IntArray,
     hollow: BoolArray, gap: float, whole: bool,
 ) -> BoolArray:  # fmt: skip
-    result = np.ones(len(points), np.bool_)
     size = len(shape) if whole else 1
     many = len(points) * (len(shape) // size) > _FEW_TESTS
-    bands = _bands(capsules, first, hollow, many)
-    moved = shape.copy()
+    bands, moved = _bands(capsules, first, hollow, many), shape.copy()
+    result = np.empty(len(points), np.bool_)
     for n in range(len(points)):
-        x, y = points[n, 0], points[n, 1]
-        for q in range(len(shape)):
-            moved[q, 0], moved[q, 1] = shape[q, 0] + x, shape[q, 1] + y
-            moved[q, 2], moved[q, 3] = shape[q, 2] + x, shape[q, 3] + y
-        for low in range(0, len(shape), size):
-            part = moved[low : low + size]
-            if not _apart(part, capsules, bands, gap) or _nested(part, capsules, bands):
-                result[n] = False
-                break
+        result[n] = _is_clear(shape, points[n], size, moved, capsules, bands, gap)
     return result
+
+
+@kernel
+def _first_clear(
+    shape: FloatArray, points: FloatArray, capsules: FloatArray, first: IntArray,
+    hollow: BoolArray, gap: float, whole: bool,
+) -> int:  # fmt: skip
+    size = len(shape) if whole else 1
+    many = len(points) * (len(shape) // size) > _FEW_TESTS
+    bands, moved = _bands(capsules, first, hollow, many), shape.copy()
+    for n in range(len(points)):
+        if _is_clear(shape, points[n], size, moved, capsules, bands, gap):
+            return n
+    return -1
+
+
+@kernel_without_allocation
+def _is_clear(
+    shape: FloatArray, point: FloatArray, size: int, moved: FloatArray, capsules: FloatArray,
+    bands: _Bands, gap: float,
+) -> bool:  # fmt: skip
+    """Whether every part of ``size`` capsules is clear at ``point``; ``moved`` is scratch."""
+    x, y = point[0], point[1]
+    for q in range(len(shape)):
+        moved[q, 0], moved[q, 1] = shape[q, 0] + x, shape[q, 1] + y
+        moved[q, 2], moved[q, 3] = shape[q, 2] + x, shape[q, 3] + y
+    for low in range(0, len(shape), size):
+        part = moved[low : low + size]
+        if not _apart(part, capsules, bands, gap) or _nested(part, capsules, bands):
+            return False
+    return True
 
 
 @kernel
@@ -147,14 +177,14 @@ def _bands(capsules: FloatArray, first: IntArray, hollow: BoolArray, many: bool)
     return _Bands(low, height, start, item, owner, first, hollow, hollow.sum())
 
 
-@kernel
+@kernel_without_allocation
 def _span(capsule: FloatArray) -> tuple[float, float]:
     """Return the least and the greatest y of a capsule (5,)."""
     y0, y1, radius = capsule[1], capsule[3], capsule[4]
     return min(y0, y1) - radius, max(y0, y1) + radius
 
 
-@kernel
+@kernel_without_allocation
 def _reached(bands: _Bands, low: float, high: float) -> tuple[int, int]:
     """Return the items of all bands from ``low`` to ``high`` [m], as a range."""
     last = len(bands.start) - 2
@@ -166,7 +196,7 @@ def _reached(bands: _Bands, low: float, high: float) -> tuple[int, int]:
     return bands.start[int(max(k0, 0.0))], bands.start[int(min(k1, last)) + 1]
 
 
-@kernel
+@kernel_without_allocation
 def _apart(shape: FloatArray, capsules: FloatArray, bands: _Bands, gap: float) -> bool:
     """Whether no capsule of the shape (Q, 5) is within ``gap`` of any other."""
     for q in range(len(shape)):
@@ -178,7 +208,7 @@ def _apart(shape: FloatArray, capsules: FloatArray, bands: _Bands, gap: float) -
     return True
 
 
-@kernel
+@kernel_without_allocation
 def _nested(shape: FloatArray, capsules: FloatArray, bands: _Bands) -> bool:
     """Whether one contains part of the other; for separate edges, one point per loop decides."""
     for q in range(len(shape)):
@@ -189,7 +219,7 @@ def _nested(shape: FloatArray, capsules: FloatArray, bands: _Bands) -> bool:
     return len(shape) > 2 and _holds_any(shape, capsules, bands)
 
 
-@kernel
+@kernel_without_allocation
 def _inside_any(x: float, y: float, capsules: FloatArray, bands: _Bands) -> bool:
     """Whether a point is inside a solid: outside the loops of one that is hollow."""
     begin, end = _reached(bands, y, y)
@@ -206,7 +236,7 @@ def _inside_any(x: float, y: float, capsules: FloatArray, bands: _Bands) -> bool
     return beside > 0  # no edge of a hollow solid is in this band
 
 
-@kernel
+@kernel_without_allocation
 def _holds_any(shape: FloatArray, capsules: FloatArray, bands: _Bands) -> bool:
     """Whether a loop of a solid begins inside the shape (Q, 5)."""
     low, high = math.inf, -math.inf
@@ -224,7 +254,7 @@ def _holds_any(shape: FloatArray, capsules: FloatArray, bands: _Bands) -> bool:
     return False
 
 
-@kernel
+@kernel_without_allocation
 def _near(a: FloatArray, b: FloatArray, gap: float) -> bool:
     """Whether two capsules (5,) are within ``gap`` of each other."""
     reach = a[4] + b[4] + gap
@@ -245,14 +275,14 @@ def _near(a: FloatArray, b: FloatArray, gap: float) -> bool:
     return near
 
 
-@kernel
+@kernel_without_allocation
 def _distance2(x: float, y: float, c: FloatArray) -> float:
     nx, ny = nearest_on_segment(x, y, c[0], c[1], c[2], c[3])
     squared: float = (x - nx) * (x - nx) + (y - ny) * (y - ny)
     return squared
 
 
-@kernel
+@kernel_without_allocation
 def _winding(x: float, y: float, edges: FloatArray) -> int:
     """Return the winding number of the loops (P, 5) about (x, y), counter-clockwise positive."""
     turns = 0
@@ -261,7 +291,7 @@ def _winding(x: float, y: float, edges: FloatArray) -> int:
     return turns
 
 
-@kernel
+@kernel_without_allocation
 def _turn(x: float, y: float, edge: FloatArray) -> int:
     """Return what an edge (5,) adds to the winding number about (x, y)."""
     x0, y0, x1, y1 = edge[0], edge[1], edge[2], edge[3]

@@ -6,8 +6,8 @@ import numpy as np
 
 from benchnav.arena.body import Body, Law
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import BoolArray, Extent, FloatArray
-from benchnav.generation.clearance import Barrier, clear
+from benchnav.arrays import Extent, FloatArray
+from benchnav.generation.clearance import Barrier, first_clear
 from benchnav.generation.motion_law import draw_law, moved_law, recorded_laws, swept
 from benchnav.generation.placement import FEW, NoPlaceError, draw_points, find_place
 from benchnav.generation.solids import draw_solid
@@ -37,7 +37,7 @@ def check_clear(bodies: list[Body], group: DynamicGroup, name: str, standing: Ba
     """Raise NoPlaceError unless the paths of all bodies keep the group's gap."""
     for k, body in enumerate(bodies):
         path = swept(body.law, body.solid.bounding_radius)
-        if not clear(path, np.zeros((1, 2)), standing, group.gap, whole=False)[0]:
+        if first_clear(path, np.zeros((1, 2)), standing, group.gap, whole=False) < 0:
             raise NoPlaceError(
                 f"the path of {name} (number {k + 1}) is not clear of walls and static obstacles"
             )
@@ -75,11 +75,11 @@ def _place(
         law = draw_law(group.law, rng)  # type: ignore[arg-type] # recorded tracks are fixed
         path = swept(law, solid.bounding_radius)
 
-        def accept(points: FloatArray, path: FloatArray = path) -> BoolArray:
-            return clear(path, points, standing, group.gap, whole=False)
+        def first(points: FloatArray, path: FloatArray = path) -> int:
+            return first_clear(path, points, standing, group.gap, whole=False)
 
         try:
-            place = find_place(lambda n: draw_points(region, bounds, n, rng), accept, subject, FEW)
+            place = find_place(lambda n: draw_points(region, bounds, n, rng), first, subject, FEW)
         except NoPlaceError as error:
             failure = error
             continue

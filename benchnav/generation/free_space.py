@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from benchnav.arrays import AnyArray, BoolArray, Extent, FloatArray, IntArray
-from benchnav.generation.clearance import POINT, Barrier, clear
+from benchnav.generation.clearance import POINT, Barrier, clear, first_clear
 
 _QUADRANT = 8  # segments in a quarter of a grown outline
 _GROWTH = 1.0 / math.cos(math.pi / (4 * _QUADRANT))  # the polygon then contains the circle
@@ -25,6 +25,10 @@ class Space:
         """Return the connected part (N,) that contains each point (N, 2); -1: not free."""
         raise NotImplementedError
 
+    def label(self, point: FloatArray) -> int:
+        """Return the connected part that contains a point (1, 2); -1: not free."""
+        return int(self.labels(point)[0])
+
 
 class JoinedSpace(Space):
     """Free space among convex solids with gaps wider than the disc: all of it is connected."""
@@ -34,6 +38,9 @@ class JoinedSpace(Space):
 
     def labels(self, points: FloatArray) -> IntArray:
         return np.where(clear(POINT, points, self._wall, self._least), 0, -1)
+
+    def label(self, point: FloatArray) -> int:
+        return first_clear(POINT, point, self._wall, self._least)  # 0: the only part
 
 
 class PartedSpace(Space):

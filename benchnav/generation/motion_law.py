@@ -1,5 +1,6 @@
 """Motion laws with drawn numbers, and the paths that they sweep."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -22,18 +23,24 @@ def draw_law(law: BackAndForth | WaypointLoop | CircleLaw, rng: np.random.Genera
         angle = TWO_PI * (sample(law.phase, rng) % 1.0)
         points = np.array([[0.0, 0.0], [radius, angle]])
         return Law(LawKind.CIRCLE, np.array([-rate if law.clockwise else rate]), points, True)
-    if isinstance(law, WaypointLoop):
-        corners = np.array([*law.points, law.points[0]])
-    else:
-        half = 0.5 * sample(law.length, rng)
-        c, s = cos_sin(sample(law.direction, rng))
-        end = np.array([half * c, half * s])
-        corners = np.vstack([-end, end, -end])
+    if isinstance(law, BackAndForth):
+        return _back_and_forth(law, rng)
+    corners = np.array([*law.points, law.points[0]])
     legs = np.diff(corners, axis=0)
     taken = np.sqrt(np.sum(legs * legs, axis=1)) / sample(law.speed, rng)
     times = np.concatenate([[0.0], np.cumsum(taken)])
     phase = float(times[-1]) * (sample(law.phase, rng) % 1.0)
     return Law(LawKind.TRACK, times, corners, True, phase)
+
+
+def _back_and_forth(law: BackAndForth, rng: np.random.Generator) -> Law:
+    half = 0.5 * sample(law.length, rng)
+    c, s = cos_sin(sample(law.direction, rng))
+    x, y = half * c, half * s
+    way = math.sqrt(2.0 * x * (2.0 * x) + 2.0 * y * (2.0 * y)) / sample(law.speed, rng)
+    phase = (way + way) * (sample(law.phase, rng) % 1.0)
+    corners = np.array([[-x, -y], [x, y], [-x, -y]])
+    return Law(LawKind.TRACK, np.array([0.0, way, way + way]), corners, True, phase)
 
 
 def recorded_laws(law: RecordedTrack, folder: Path) -> list[Law]:
@@ -68,8 +75,9 @@ def swept(law: Law, radius: float) -> FloatArray:
         radius += reach * (1.0 - cos_sin(0.5 * step)[0])
     else:
         corners = law.points if len(law.points) > 1 else np.repeat(law.points, 2, axis=0)
-        if len(corners) == 3 and np.array_equal(corners[0], corners[2]):
-            corners = corners[:2]
+        if len(corners) == 3 and (corners[0] == corners[2]).all():  # back and forth
+            (x0, y0), (x1, y1), _ = corners.tolist()
+            return np.array([[x0, y0, x1, y1, radius]])
     ends = np.hstack([corners[:-1], corners[1:]])
     return np.hstack([ends, np.full((len(ends), 1), radius)])
 

@@ -2,11 +2,13 @@
 
 import math
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
 
 from benchnav.arrays import BoolArray, Extent, FloatArray
+from benchnav.kernels import kernel_without_allocation
 from benchnav.scenario.sampling.region import Anywhere, Points, Rectangle, Region, Ring
 
 MANY = (8, 24, 96, 384)  # candidates that are tested together, until one will do
@@ -30,10 +32,17 @@ def draw_points(region: Region, bounds: Extent, count: int, rng: np.random.Gener
     if isinstance(region, Points):
         return np.array(region.points)[rng.integers(len(region.points), size=count)]
     if isinstance(region, Rectangle | Anywhere):
-        x0, y0, x1, y1 = region.box(bounds)
-        return np.array([x0, y0]) + rng.random((count, 2)) * (x1 - x0, y1 - y0)
+        low, size = _box(region.box(bounds))
+        return low + rng.random((count, 2)) * size
     inner, outer = (region.inner, region.outer) if isinstance(region, Ring) else (0, region.radius)
     return np.array(region.center) + _in_ring(inner, outer, count, rng)
+
+
+@lru_cache(maxsize=64)
+def _box(extent: Extent) -> tuple[FloatArray, FloatArray]:
+    """Return the lower left corner (2,) and the size (2,) [m] of a rectangle."""
+    x0, y0, x1, y1 = extent
+    return np.array([x0, y0]), np.array([x1 - x0, y1 - y0])
 
 
 def within(bounds: Extent, points: FloatArray) -> BoolArray:
@@ -66,7 +75,7 @@ def _in_ring(inner: float, outer: float, count: int, rng: np.random.Generator) -
 
 def find_place(
     propose: Callable[[int], FloatArray],
-    accept: Callable[[FloatArray], BoolArray],
+    first: Callable[[FloatArray], int],
     subject: str,
     batches: Sequence[int] = MANY,
 ) -> FloatArray:
@@ -74,7 +83,7 @@ def find_place(
 
     Args:
         propose: count → (count, 2) candidates.
-        accept: (N, 2) candidates → (N,) whether each is acceptable.
+        first: (N, 2) candidates → the index of the first acceptable one; -1 if there is none.
         subject: the object to place, for the error message.
         batches: numbers of candidates tested together, until one is accepted.
 
@@ -83,19 +92,35 @@ def find_place(
     """
     for size in batches:
         candidates = propose(size)
-        good = accept(candidates)
-        k = int(np.argmax(good))
-        if good[k]:
+        k = first(candidates)
+        if k >= 0:
             place: FloatArray = candidates[k]
             return place
     raise NoPlaceError(f"no free place for {subject} in {sum(batches)} tries")
 
 
-def distances(points: FloatArray, others: FloatArray) -> FloatArray:
-    """Return distances (N, M) [m] between points (N, 2) and others (M, 2)."""
-    dx = points[:, None, 0] - others[None, :, 0]
-    dy = points[:, None, 1] - others[None, :, 1]
-    return np.sqrt(dx * dx + dy * dy)
+@kernel_without_allocation
+def next_apart(
+    begin: int, points: FloatArray, origin: FloatArray, least: float, others: FloatArray,
+    radius: FloatArray, gap: float,
+) -> int:  # fmt: skip
+    """Return the index ≥ ``begin`` of the next of the points (N, 2) that keeps all distances.
+
+    It is ``least`` [m] or more from ``origin`` (2,), and farther than ``radius`` (M,) + ``gap``
+    [m] from each of the ``others`` (M, 2). The result is -1 if there is none.
+    """
+    for n in range(begin, len(points)):
+        x, y = points[n, 0], points[n, 1]
+        dx, dy = x - origin[0], y - origin[1]
+        apart = math.sqrt(dx * dx + dy * dy) >= least
+        for m in range(len(others)):
+            if not apart:
+                break
+            dx, dy = x - others[m, 0], y - others[m, 1]
+            apart = math.sqrt(dx * dx + dy * dy) > radius[m] + gap
+        if apart:
+            return n
+    return -1
 
 
 def length(vector: FloatArray) -> float:

@@ -1,6 +1,6 @@
 """The parts that all draws of a scenario share, computed once."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -43,11 +43,11 @@ class Prepared:
     _structure: Structure | None = None
     _spaces: dict[float, Space] = field(default_factory=dict)
 
-    def structure(self, rng: np.random.Generator) -> Structure:
-        """Return the walls of a draw."""
+    def structure(self, stream: Callable[[], np.random.Generator]) -> Structure:
+        """Return the walls of a draw; ``stream`` returns their generator."""
         if self._structure is not None:
             return self._structure
-        structure = _draw_structure(self.scenario, rng)
+        structure = _draw_structure(self.scenario, stream())
         if self.fixed_walls:
             self._structure = structure
         return structure

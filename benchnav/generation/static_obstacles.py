@@ -1,6 +1,6 @@
 """Draw static obstacles one after another, each clear of the solids already placed."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -9,8 +9,8 @@ import numpy as np
 
 from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import BoolArray, Extent, FloatArray
-from benchnav.generation.clearance import Barrier, added, clear, joined
+from benchnav.arrays import Extent, FloatArray
+from benchnav.generation.clearance import Barrier, added, first_clear, joined
 from benchnav.generation.placement import NoPlaceError, directions, draw_points, find_place, within
 from benchnav.generation.solids import draw_solid
 from benchnav.scenario.obstacle import StaticGroup
@@ -18,7 +18,7 @@ from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import sample
 
 ARRANGEMENTS = 50  # of old places that are tried before the world is drawn again
-Streams = Sequence[np.random.Generator]
+Stream = Callable[[int], np.random.Generator]  # group → its generator
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ def draw_pieces(
     bounds: Extent,
     walls: Barrier,
     keep_free: Barrier,
-    streams: Streams,
-    others: Streams,
+    stream: Stream,
+    other: Stream,
     folder: Path = Path(),
 ) -> list[Piece]:
     """Return all static obstacles of one draw, in the order of their groups.
@@ -69,8 +69,8 @@ def draw_pieces(
         bounds: of the arena [m].
         walls: solids placed before anything is drawn.
         keep_free: fixed starts, goals and tracks, which sampled obstacles avoid.
-        streams: a generator per group, for shapes and for places at the start.
-        others: a generator per group, for places before the start and after it.
+        stream: returns the generator of a group, for shapes and for places at the start.
+        other: returns the generator of a group, for places before the start and after it.
         folder: base of the relative names of meshes and maps.
 
     Raises:
@@ -80,18 +80,20 @@ def draw_pieces(
     search = _Search(bounds, keep_free, folder)
     pieces: list[list[Piece]] = []
     standing = walls
-    for i, (group, rng) in enumerate(zip(groups, streams, strict=True)):
-        drawn, standing = search.now(group, f"static[{i}]", standing, rng)
+    for i, group in enumerate(groups):
+        drawn, standing = search.now(group, f"static[{i}]", standing, stream(i))
         pieces.append(drawn)
     past = walls
-    for group, drawn in zip(groups, pieces, strict=True):
-        for piece in () if group.was_moved else drawn:
-            past = added(past, piece.solid.capsules)
-    for i, (group, rng) in enumerate(zip(groups, others, strict=True)):
+    if any(group.was_moved for group in groups):
+        for group, drawn in zip(groups, pieces, strict=True):
+            for piece in () if group.was_moved else drawn:
+                past = added(past, piece.solid.capsules)
+    for i, group in enumerate(groups):
+        name = f"static[{i}]"
         if group.relocate_at is not None:
-            pieces[i], standing = search.later(group, f"static[{i}]", pieces[i], standing, rng)
+            pieces[i], standing = search.later(group, name, pieces[i], standing, other(i))
         elif group.was_moved:
-            pieces[i], past = search.before(group, f"static[{i}]", pieces[i], past, rng)
+            pieces[i], past = search.before(group, name, pieces[i], past, other(i))
     return [piece for drawn in pieces for piece in drawn]
 
 
@@ -195,8 +197,11 @@ class _Search:
                 return draw_points(region, self.bounds, count, rng)
             return away + group.moved * directions(count, rng)
 
-        def accept(points: FloatArray) -> BoolArray:
-            free = clear(shape.capsules, points, around, group.gap)
-            return free if away is None else free & within(self.bounds, points)
+        def first(points: FloatArray) -> int:
+            if away is None:
+                return first_clear(shape.capsules, points, around, group.gap)
+            inside = np.flatnonzero(within(self.bounds, points))
+            k = first_clear(shape.capsules, points[inside], around, group.gap)
+            return int(inside[k]) if k >= 0 else -1
 
-        return find_place(propose, accept, subject)
+        return find_place(propose, first, subject)

@@ -5,10 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, Extent, FloatArray, IntArray
-from benchnav.generation.clearance import POINT, Barrier, clear
+from benchnav.arrays import Extent, FloatArray
+from benchnav.generation.clearance import POINT, Barrier, first_clear
 from benchnav.generation.free_space import Space
-from benchnav.generation.placement import MANY, NoPlaceError, distances, draw_points, find_place
+from benchnav.generation.placement import MANY, NoPlaceError, draw_points, find_place, next_apart
 from benchnav.geometry.rotation import TWO_PI, cos_sin
 from benchnav.scenario.sampling.packing import lattice
 from benchnav.scenario.sampling.sampler import Scalar, fixed, sample, support
@@ -37,9 +37,9 @@ class Crowd:
 
     def add(self, start: FloatArray, goal: FloatArray, radius: float) -> None:
         """Add one agent."""
-        self.start = np.vstack([self.start, start])
-        self.goal = np.vstack([self.goal, goal])
-        self.radius = np.append(self.radius, radius)
+        self.start = np.concatenate((self.start, start[None]))
+        self.goal = np.concatenate((self.goal, goal[None]))
+        self.radius = np.concatenate((self.radius, (radius,)))
 
 
 def draw_numbers(scalar: Scalar, count: int, rng: np.random.Generator) -> FloatArray:
@@ -89,13 +89,21 @@ class GoalsTried:
     unreachable: int = 0  # free, but not joined to the start
     reached: int = 0
 
-    def count(self, starts: IntArray, goals: IntArray) -> None:
-        """Count goals, given the part of each free space (spaces, N) of them and of the starts."""
-        free = np.all(goals >= 0, axis=0)
-        reached = np.all(goals == starts, axis=0)
-        self.blocked += int((~free).sum())
-        self.unreachable += int((free & ~reached).sum())
-        self.reached += int(reached.sum())
+    def count(self, home: Sequence[int], ends: Sequence[int]) -> bool:
+        """Count a goal, and return whether it is reached.
+
+        Args:
+            home: the part of each free space that contains the start.
+            ends: likewise of the goal; -1: it is not free.
+        """
+        reached = ends == home
+        if reached:
+            self.reached += 1
+        elif min(ends) >= 0:
+            self.unreachable += 1
+        else:
+            self.blocked += 1
+        return reached
 
     def explained(self, error: NoPlaceError, subject: str) -> NoPlaceError:
         """Return the error; if no goal was ever reached, one that reports this."""
@@ -133,7 +141,9 @@ class _Placing:
         for _ in range(_STARTS if len(self.batches) > 1 else 1):
             self.ends = GoalsTried()
             try:
-                start = find_place(self.starts, self.start_ok, f"the start {subject}", self.batches)
+                start = find_place(
+                    self.starts, self.first_start, f"the start {subject}", self.batches
+                )
             except NoPlaceError as error:
                 raise self.ends.explained(error, subject) from None
             try:
@@ -168,50 +178,59 @@ class _Placing:
         ways = np.array([cos_sin(TWO_PI * float(share)) for share in shares])
         return _jittered(np.array(start.center) + start.radius * ways, start.jitter, self.rng)
 
-    def start_ok(self, points: FloatArray) -> BoolArray:
+    def first_start(self, points: FloatArray) -> int:
+        """Return the index of the first of the points (N, 2) that can be the start; -1: none."""
+        crowd, gap = self.crowd, self.radius + self.team.start.separation
+        k = -1
+        while True:
+            k = next_apart(k + 1, points, points[0], 0.0, crowd.start, crowd.radius, gap)
+            if k < 0 or self._start_is_free(points[k : k + 1], gap):
+                return k
+
+    def _start_is_free(self, point: FloatArray, gap: float) -> bool:
+        """Whether a point (1, 2), which is apart from all starts, can be the start."""
         team, crowd = self.team, self.crowd
-        gap = self.radius + team.start.separation
-        good = _apart(points, crowd.start, crowd.radius + gap)
-        if isinstance(team.start, CircleStart) and team.start.clear_of_goals:
-            good &= _apart(points, crowd.goal, crowd.radius + gap)
-        good[good] = clear(POINT, points[good], self.bodies, gap)
-        labels = self._labels(points[good])
-        joined = np.all(labels >= 0, axis=0)
-        if isinstance(team.goal, AntipodalGoal | ShiftedGoal):
-            ends = self._labels(_bound_goals(team.goal, points[good]))
-            self.ends.count(labels[:, joined], ends[:, joined])
-            joined &= np.all(ends == labels, axis=0)
-        good[good] = joined
-        return good
+        beside = isinstance(team.start, CircleStart) and team.start.clear_of_goals
+        if beside and next_apart(0, point, point[0], 0.0, crowd.goal, crowd.radius, gap) < 0:
+            return False
+        if first_clear(POINT, point, self.bodies, gap) < 0:
+            return False
+        home = self._labels(point)
+        free = min(home) >= 0
+        if free and isinstance(team.goal, AntipodalGoal | ShiftedGoal):
+            return self._reaches(home, _bound_goals(team.goal, point))
+        return free
+
+    def _reaches(self, home: Sequence[int], goal: FloatArray) -> bool:
+        """Whether a start in the free parts ``home`` is joined to a goal (1, 2)."""
+        return self.ends.count(home, self._labels(goal))
 
     def goal(self, start: FloatArray, subject: str) -> FloatArray:
         goal, crowd = self.team.goal, self.crowd
         if isinstance(goal, AntipodalGoal | ShiftedGoal):
             return _bound_goals(goal, start)
         home = self._labels(start[None])
-
-        def joined(points: FloatArray) -> BoolArray:
-            ends = self._labels(points)
-            self.ends.count(home, ends)
-            reached: BoolArray = np.all(ends == home, axis=0)
-            return reached
-
         if isinstance(goal, PointsGoal):
             point = np.array([goal.points[self.number]])
-            return find_place(lambda n: point, joined, subject, (1,))
+            return find_place(
+                lambda n: point, lambda points: self._reaches(home, points) - 1, subject, (1,)
+            )
 
-        def accept(points: FloatArray) -> BoolArray:
-            good = distances(points, start[None])[:, 0] >= goal.min_distance
-            good &= _apart(points, crowd.goal, crowd.radius + self.radius)
-            good[good] = joined(points[good])
-            return good
+        def first(points: FloatArray) -> int:
+            least, k = goal.min_distance, -1
+            while True:
+                k = next_apart(
+                    k + 1, points, start, least, crowd.goal, crowd.radius, self.radius
+                )  # fmt: skip
+                if k < 0 or self._reaches(home, points[k : k + 1]):
+                    return k
 
         region = goal.region
-        return find_place(lambda n: draw_points(region, self.bounds, n, self.rng), accept, subject)
+        return find_place(lambda n: draw_points(region, self.bounds, n, self.rng), first, subject)
 
-    def _labels(self, points: FloatArray) -> IntArray:
-        """Return the connected parts (spaces, N) of the points."""
-        return np.array([space.labels(points) for space in self.spaces])
+    def _labels(self, point: FloatArray) -> list[int]:
+        """Return the connected part of each free space that contains a point (1, 2)."""
+        return [space.label(point) for space in self.spaces]
 
 
 def _bound_goals(goal: AntipodalGoal | ShiftedGoal, starts: FloatArray) -> FloatArray:
@@ -272,9 +291,3 @@ def _jittered(points: FloatArray, jitter: float, rng: np.random.Generator) -> Fl
         return points
     moved: FloatArray = points + jitter * (rng.random(points.shape) - 0.5)
     return moved
-
-
-def _apart(points: FloatArray, others: FloatArray, least: FloatArray) -> BoolArray:
-    """Whether each point is farther than ``least`` (M,) from each of others (M, 2), (N,)."""
-    far: BoolArray = np.all(distances(points, others) > least, axis=1)
-    return far

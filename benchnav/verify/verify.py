@@ -38,7 +38,7 @@ class Wanted:
     """The checks beyond re-simulation."""
 
     twin: int = 20  # number of episodes that the reference simulator replays
-    twin_seconds: float = 60.0  # [s] of processor time for these replays, shared equally
+    twin_seconds: float = 20.0  # [s] of processor time for these replays, shared equally
     referee: bool = False  # judge every contact again with trimesh and python-fcl
     rerun: bool = False  # run the navigators again
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from benchnav.arena.body import Body, LawKind
 from benchnav.arena.world import World
-from benchnav.arrays import AnyArray
+from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel_without_allocation
 from benchnav.world.records import BODY, KNOT, capsule_records
@@ -53,17 +53,34 @@ def law_records(bodies: Sequence[Body]) -> tuple[AnyArray, AnyArray]:
     return rows, knots
 
 
-def top_speed(world: World) -> float:
-    """Return the largest speed [m/s] of any body's law."""
-    top = 0.0
-    for law in (body.law for body in world.bodies):
-        if law.kind == LawKind.CIRCLE:
-            top = max(top, abs(float(law.times[0] * law.points[1, 0])))
-        elif law.kind == LawKind.TRACK and len(law.times) > 1:
-            step = np.diff(law.times)
-            length = np.hypot(*np.diff(law.points, axis=0).T)[step > 0]
-            top = max(top, float((length / step[step > 0]).max(initial=0.0)))
-    return top
+@kernel_without_allocation
+def start_bodies(bodies: AnyArray, count: IntArray, knots: AnyArray, h: FloatArray) -> None:
+    """Put the bodies (B, M) at t = 0, with the velocity of a first substep of ``h`` (B,) [s].
+
+    ``count`` (B,) is the number of bodies of each world.
+    """
+    for b in range(len(bodies)):
+        for m in range(count[b]):
+            body = bodies[b, m]
+            body.x, body.y = body_at(body, knots, 0.0)
+            x, y = body_at(body, knots, h[b])
+            body.vx, body.vy = (x - body.x) / h[b], (y - body.y) / h[b]
+
+
+@kernel_without_allocation
+def top_speeds(bodies: AnyArray, count: IntArray, knots: AnyArray, top: FloatArray) -> None:
+    """Write the largest speed [m/s] of any body's law in each world to ``top`` (B,)."""
+    for b in range(len(bodies)):
+        for m in range(count[b]):
+            first, last = bodies[b, m].law_first, bodies[b, m].law_last - 1
+            if bodies[b, m].law == _CIRCLE:
+                top[b] = max(top[b], abs(knots[first].t * knots[last].x))
+            elif bodies[b, m].law == _TRACK:
+                for k in range(first, last):
+                    dx, dy = knots[k + 1].x - knots[k].x, knots[k + 1].y - knots[k].y
+                    step = knots[k + 1].t - knots[k].t
+                    if step > 0.0:
+                        top[b] = max(top[b], math.sqrt(dx * dx + dy * dy) / step)
 
 
 @kernel_without_allocation

@@ -11,7 +11,7 @@ from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.episode.episode import Contacts, Status
 from benchnav.geometry.hash_grid import hash_table
 from benchnav.threads import run_rows
-from benchnav.world.bodies import body_at, stack_bodies, top_speed
+from benchnav.world.bodies import stack_bodies, start_bodies, top_speeds
 from benchnav.world.contacts import RELEASE
 from benchnav.world.fixed import stack_fixed
 from benchnav.world.records import AGENT as AGENT_RECORD
@@ -34,7 +34,7 @@ class Simulation:
             raise ValueError("The worlds of a batch must share their clock and rules.")
         self.agents = _agent_records(self.worlds)
         self.bodies, self.shapes, self.knots = stack_bodies(self.worlds)
-        self.records = _world_records(self.worlds, self.agents)
+        self.records = _world_records(self.worlds, self.agents, self.bodies, self.knots)
         # wider lists change nothing: an object out of reach is never the next touch
         margin = float((0.5 * self.records["reach"]).max()) + RELEASE
         self.capsules, self.start, self.item = stack_fixed(self.worlds, self.records, margin)
@@ -56,7 +56,7 @@ class Simulation:
         self.near = np.full((self.B, self.A), 4.0 * self.widest)
         self.most_shapes = int((self.bodies["last"] - self.bodies["first"]).sum(1).max())
         self._views()
-        self._place_bodies()
+        start_bodies(self.bodies, self.records["bodies"], self.knots, self.records["h"])
 
     def _views(self) -> None:
         agents, bodies, records = self.agents, self.bodies, self.records
@@ -72,15 +72,6 @@ class Simulation:
         self.steps_done: IntArray = field(records, "steps_done")  # (B,)
         self.running: BoolArray = field(records, "running")  # (B,)
         self.revision: IntArray = field(records, "revision")  # (B,) count of relocations
-
-    def _place_bodies(self) -> None:
-        """Put bodies at t = 0, with the velocity of the first substep."""
-        for b, world in enumerate(self.worlds):
-            for m in range(len(world.bodies)):
-                here = np.array(body_at(self.bodies[b, m], self.knots, 0.0))
-                soon = np.array(body_at(self.bodies[b, m], self.knots, self.records["h"][b]))
-                self.body_position[b, m] = here
-                self.body_velocity[b, m] = (soon - here) / self.records["h"][b]
 
     @property
     def B(self) -> int:
@@ -198,10 +189,12 @@ def _agent_records(worlds: Sequence[World]) -> AnyArray:
     return records
 
 
-def _world_records(worlds: Sequence[World], agents: AnyArray) -> AnyArray:
+def _world_records(
+    worlds: Sequence[World], agents: AnyArray, bodies: AnyArray, knots: AnyArray
+) -> AnyArray:
     """Return WORLD records (B,); `stack_fixed` adds the grids' frames."""
     records = np.zeros(len(worlds), WORLD)
-    for row, world, members in zip(records, worlds, agents, strict=True):
+    for row, world in zip(records, worlds, strict=True):
         clock, rules = world.clock, world.rules
         row["dt"], row["h"] = clock.dt, clock.dt / clock.substeps
         row["substeps"], row["steps"] = clock.substeps, clock.steps
@@ -211,9 +204,10 @@ def _world_records(worlds: Sequence[World], agents: AnyArray) -> AnyArray:
         row["charge_both"] = rules.charge == Charge.BOTH
         row["agents"], row["bodies"] = len(world.agents), len(world.bodies)
         row["running"] = bool(world.agents.evaluated.any())
-        # no pair farther apart than this can touch within a substep
-        speed = max(float(members["max_speed"].max()), top_speed(world))
-        row["widest"] = members["radius"].max()
-        reach = 2.0 * float(row["widest"]) + 2.0 * speed * float(row["h"])
-        row["reach"] = 1.001 * reach + 1e-6
+    speed, widest = agents["max_speed"].max(axis=1), agents["radius"].max(axis=1)
+    top_speeds(bodies, records["bodies"], knots, speed)
+    records["widest"] = widest
+    # no pair farther apart than this can touch within a substep
+    reach = 2.0 * widest + 2.0 * speed * records["h"]
+    records["reach"] = 1.001 * reach + 1e-6
     return records

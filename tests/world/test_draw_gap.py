@@ -6,7 +6,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from benchnav.arena.solid import Kind, Solid
-from benchnav.generation.clearance import POINT, barrier, clear, joined
+from benchnav.generation.clearance import POINT, barrier, clear, first_clear, joined
+from benchnav.generation.placement import next_apart
 from benchnav.generation.solids import bounds_wall
 from benchnav.geometry.rotation import rotated
 from tests.reference import clearance as slow
@@ -111,3 +112,26 @@ def test_many_points_among_many_solids_are_judged_like_each_alone(walled, kind):
         ]
         assert together.tolist() == alone
         assert 20 < together.sum() < 480
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(solids(), max_size=3), shapes(), st.lists(_PLACE, max_size=6), st.floats(0, 1))
+def test_the_first_clear_point_is_the_first_of_the_clear_ones(walls, shape, places, gap):
+    points = np.array(places).reshape(-1, 2)
+    clear_ones = np.flatnonzero(clear(shape, points, barrier(walls), gap))
+    expected = clear_ones[0] if len(clear_ones) else -1
+    assert first_clear(shape, points, barrier(walls), gap) == expected
+
+
+def test_the_next_point_apart_keeps_all_distances():
+    rng = np.random.default_rng(1)
+    points, others = rng.uniform(-3, 3, (40, 2)), rng.uniform(-3, 3, (5, 2))
+    radius, origin = rng.uniform(0.1, 0.8, 5), np.array([1.0, 0.0])
+    apart = np.hypot(*(points - origin).T) >= 1.5
+    for other, r in zip(others, radius, strict=True):
+        apart &= np.hypot(*(points - other).T) > r + 0.3
+    found, k = [], -1
+    while (k := next_apart(k + 1, points, origin, 1.5, others, radius, 0.3)) >= 0:
+        found.append(k)
+    assert found == np.flatnonzero(apart).tolist()
+    assert 5 < len(found) < 35

@@ -1,6 +1,7 @@
 """The step against its slow twin, and what must hold of every step."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from benchnav.arena.body import Body, Law, LawKind
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards, Charge, ContactRule
 from benchnav.episode.episode import Status
+from benchnav.verify.reference.reference_geometry import law_position
 from benchnav.world.simulation import Simulation
 from tests.reference.step import SlowWorld
 from tests.worlds import agents, back_and_forth, box, disc, random_world, walls, world
@@ -324,6 +326,35 @@ def run_towards(simulation, steps):
     for _ in range(steps):
         simulation.step(2.0 * (simulation.goal - simulation.position), twist)
     return simulation
+
+
+def slow_top_speed(drawn):
+    top = float(drawn.agents.max_speed.max())
+    for law in (body.law for body in drawn.bodies):
+        if law.kind == LawKind.CIRCLE:
+            top = max(top, abs(law.times[0] * law.points[1, 0]))
+        elif law.kind == LawKind.TRACK and len(law.times) > 1:
+            legs = np.hypot(*np.diff(law.points, axis=0).T)
+            top = max(top, (legs / np.diff(law.times)).max())
+    return top
+
+
+def test_bodies_start_on_their_laws_and_reach_covers_their_speed():
+    circle = Law(LawKind.CIRCLE, np.array([7.0]), np.array([[1.0, 2.0], [3.0, 0.5]]), True)
+    drawn = [random_world(seed) for seed in range(4)]
+    drawn[2] = replace(
+        drawn[2], bodies=(*drawn[2].bodies, Body(disc(Kind.DYNAMIC, 0, 0, 0.3), circle))
+    )
+    simulation = Simulation(drawn)
+    h = drawn[0].clock.dt / drawn[0].clock.substeps
+    for b, one in enumerate(drawn):
+        radius = float(one.agents.radius.max())
+        assert simulation.records["reach"][b] >= 2.0 * (radius + slow_top_speed(one) * h)
+        for m in range(len(one.bodies)):
+            here, soon = (law_position(one.bodies[m], t, False) for t in (0.0, h))
+            np.testing.assert_allclose(simulation.body_position[b, m], here, atol=1e-12)
+            velocity = (soon - here) / h
+            np.testing.assert_allclose(simulation.body_velocity[b, m], velocity, atol=1e-9)
 
 
 def test_a_big_fast_world_in_the_batch_changes_no_bit_of_the_others():

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -26,14 +27,20 @@ class Cells:
     side: float  # [m]
     grid: CapsuleGrid  # the obstacles, grown by the disc
 
+    @cached_property
+    def usable(self) -> IntArray:
+        """The cells with a move, ascending."""
+        return np.flatnonzero(self.after.max(axis=1) >= 0)
+
     def joined(self, place: FloatArray, reach: float) -> IntArray:
         """Return cells with a move and a centre within ``reach`` [m] of a place, nearest first.
 
         The disc can move straight between the place and the centre.
         """
-        away = np.sqrt(np.sum((self.centre - place) ** 2, axis=1))
-        near = np.flatnonzero((away <= reach) & (self.after >= 0).any(axis=1))
-        near = near[np.argsort(away[near], kind="stable")]
+        offset = self.centre[self.usable] - place
+        away = np.sqrt(offset[:, 0] ** 2 + offset[:, 1] ** 2)
+        close = np.flatnonzero(away <= reach)
+        near = self.usable[close[np.argsort(away[close], kind="stable")]]
         x, y = float(place[0]), float(place[1])
         clear = [is_clear(self.grid, x, y, *self.centre[n].tolist()) for n in near]
         return near[np.array(clear, np.bool_)]

@@ -103,12 +103,12 @@ class _Row:
         c = self.config
         how = Schooling(c.decisions, c.explore, c.rate)
         start = int(begin[0])
-        values = learn(cells, ends, goal, start, how, self._streams[agent])
-        over = np.zeros(len(values), np.bool_)
+        _, best = learn(cells, ends, goal, start, how, self._streams[agent])
+        over = np.zeros(len(best), np.bool_)
         over[ends] = True
-        if follow(values, cells.after, over, start) < 0:
+        if follow(best, cells.after, over, start) < 0:
             return False
-        after = cells.after[np.arange(len(values)), values.argmax(axis=1)]
+        after = cells.after[np.arange(len(best)), best]
         after[over] = _GOAL
         self._policy[agent], self.going[agent] = (cells, after), start
         return True

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 
 from .cells import Cells
 
@@ -28,8 +28,8 @@ class Schooling:
 def learn(
     cells: Cells, ends: IntArray, goal: FloatArray, start: int, schooling: Schooling,
     rng: np.random.Generator,
-) -> FloatArray:  # fmt: skip
-    """Return learned values (N, 8); -inf if there is no such move.
+) -> tuple[FloatArray, IntArray]:  # fmt: skip
+    """Return learned values (N, 8), -inf if there is no such move, and the best moves (N,).
 
     Args:
         cells: the arena.
@@ -42,23 +42,17 @@ def learn(
     values, over = first_values(cells, goal), np.zeros(len(cells.centre), np.bool_)
     over[ends] = True
     values[over] = 0.0
-    usable = np.flatnonzero((cells.after >= 0).any(axis=1))
+    best, usable, every = values.argmax(axis=1), cells.usable, np.arange(len(values))
+    top, ahead = values[every, best], cells.after[every, best]
     count = schooling.decisions // 4 + 1
     begin = np.where(np.arange(count) % 2 == 0, start, rng.choice(usable, count))
     noise = rng.random(schooling.decisions)
     longest = 4 * (len(usable) + 1)
     episodes(
-        values,
-        cells.after,
-        cells.cost,
-        over,
-        begin,
-        noise,
-        schooling.explore,
-        schooling.rate,
-        longest,
-    )
-    return values
+        values, best, top, ahead, cells.after, cells.cost, over, begin, noise,
+        schooling.explore, schooling.rate, longest,
+    )  # fmt: skip
+    return values, best
 
 
 def first_values(cells: Cells, goal: FloatArray) -> FloatArray:
@@ -66,18 +60,24 @@ def first_values(cells: Cells, goal: FloatArray) -> FloatArray:
 
     A goal cell's centre may lie a side and a half off the goal on either axis.
     """
-    away = np.maximum(np.abs(cells.centre - goal) - 1.5 * cells.side, 0.0)
-    octile = away.max(axis=1) + (np.sqrt(2.0) - 1.0) * away.min(axis=1)
+    x, y = np.maximum(np.abs(cells.centre - goal) - 1.5 * cells.side, 0.0).T
+    octile = np.maximum(x, y) + (np.sqrt(2.0) - 1.0) * np.minimum(x, y)
     values: FloatArray = np.where(cells.after >= 0, -cells.cost - octile[cells.after], -np.inf)
     return values
 
 
-@kernel
+@kernel_without_allocation
 def episodes(
-    values: FloatArray, after: IntArray, cost: FloatArray, over: BoolArray, begin: IntArray,
-    noise: FloatArray, explore: float, rate: float, longest: int,
+    values: FloatArray, best: IntArray, top: FloatArray, ahead: IntArray, after: IntArray,
+    cost: FloatArray, over: BoolArray, begin: IntArray, noise: FloatArray, explore: float,
+    rate: float, longest: int,
 ) -> None:  # fmt: skip
-    """Run episodes that begin in ``begin`` (E,), until the ``noise`` (T,) of moves is used up."""
+    """Run episodes that begin in ``begin`` (E,), until the ``noise`` (T,) of moves is used up.
+
+    ``best`` (N,) is the first of the best moves of each cell, ``top`` (N,) its value and ``ahead``
+    (N,) its cell. They are kept up to date: most moves are the best ones and change no value, and
+    read only these small arrays.
+    """
     used = 0
     for e in range(len(begin)):
         cell = begin[e]
@@ -86,35 +86,40 @@ def episodes(
                 break
             if used == len(noise):
                 return
-            move = _best(values[cell])
+            move, then, old = best[cell], ahead[cell], top[cell]
             if noise[used] < explore:
                 tried = int(noise[used] / explore * 8)
-                move = tried if after[cell, tried] >= 0 else move
+                if after[cell, tried] >= 0:
+                    move, then, old = tried, after[cell, tried], values[cell, tried]
             used += 1
-            then = after[cell, move]
-            target = values[then, _best(values[then])] - cost[move]
-            values[cell, move] += rate * (target - values[cell, move])
+            target = top[then] - cost[move]
+            value = old + rate * (target - old)
+            if value != old:
+                values[cell, move] = value
+                chosen = _best(values, cell)
+                best[cell], top[cell] = chosen, values[cell, chosen]
+                ahead[cell] = after[cell, chosen]
             cell = then
 
 
-@kernel
-def _best(values: FloatArray) -> int:
-    """Return the first of the highest values."""
+@kernel_without_allocation
+def _best(values: FloatArray, cell: int) -> int:
+    """Return the first of the highest values of a cell."""
     best = 0
-    for m in range(1, len(values)):
-        if values[m] > values[best]:
+    for m in range(1, values.shape[1]):
+        if values[cell, m] > values[cell, best]:
             best = m
     return best
 
 
-@kernel
-def follow(values: FloatArray, after: IntArray, over: BoolArray, start: int) -> int:
+@kernel_without_allocation
+def follow(best: IntArray, after: IntArray, over: BoolArray, start: int) -> int:
     """Return the greedy policy's number of moves from ``start`` to an end; -1 if it fails."""
     cell = start
-    for k in range(len(values)):
+    for k in range(len(best)):
         if over[cell]:
             return k
-        cell = after[cell, _best(values[cell])]
+        cell = after[cell, best[cell]]
         if cell < 0:
             return -1
     return -1

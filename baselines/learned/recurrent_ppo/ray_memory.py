@@ -86,15 +86,11 @@ def _others(met: FloatArray) -> Neighbours:
 
 def _chosen(edges: Edges, which: BoolArray) -> Edges:
     """Return some of the edges, still nearest first."""
-    order = np.argsort(~which, axis=-1, kind="stable")
-    index = order[..., None]
-
-    def moved(array: AnyArray) -> AnyArray:
-        return np.take_along_axis(array, index if array.ndim == 4 else order, axis=2)
-
+    worlds, agents, _ = np.ogrid[tuple(map(slice, which.shape))]
+    place = worlds, agents, np.argsort(~which, axis=-1, kind="stable")
     return Edges(
-        moved(edges.start), moved(edges.end), moved(edges.before), moved(edges.after),
-        moved(edges.start_convex), moved(edges.end_convex), which.sum(axis=-1),
+        edges.start[place], edges.end[place], edges.before[place], edges.after[place],
+        edges.start_convex[place], edges.end_convex[place], which.sum(axis=-1),
     )  # fmt: skip
 
 

@@ -182,7 +182,7 @@ class Run:
         self,
         *,
         twin: int = 20,
-        twin_seconds: float = 60.0,
+        twin_seconds: float = 20.0,
         referee: str | None = None,
         rerun: bool = False,
         workers: int | None = None,

@@ -21,7 +21,7 @@ def verify(
         typer.Option(
             metavar="S", min=0.0, help="Processor time for these replays; each has an equal share."
         ),
-    ] = 60.0,
+    ] = 20.0,
     referee: Annotated[
         str | None,
         typer.Option(help="Library that checks every contact a second time: fcl."),

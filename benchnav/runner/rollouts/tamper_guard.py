@@ -29,6 +29,7 @@ class Guard:
 
     def __init__(self) -> None:
         self._spaces = [*_spaces()]
+        self._views = [held.values() for _, held, _ in self._spaces]  # they show later changes
         self._keep()
         found = {id(f): f for value in self._values for f in _functions(value)}
         self._functions = [*found.values()]
@@ -53,7 +54,7 @@ class Guard:
         self._values = self._now()
 
     def _now(self) -> list[Any]:
-        return [*chain.from_iterable([held.values() for _, held, _ in self._spaces])]
+        return [*chain.from_iterable(self._views)]
 
 
 def _same(before: list[Any], now: list[Any]) -> bool:

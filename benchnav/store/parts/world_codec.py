@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache
+from operator import attrgetter
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
@@ -19,7 +20,7 @@ from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
 from benchnav.config.document import shown
 
-_DTYPES = ("<f8", "<i8", "|i1", "|b1")
+_DTYPES = {name: np.dtype(name) for name in ("<f8", "<i8", "|i1", "|b1")}
 Convert = Callable[[Any], Any]
 _PLAIN = {bool: (bool,), int: (int,), float: (int, float), str: (str,)}  # types of JSON itself
 MAX_TEXT = 64 << 20  # characters of a world; one of a million triangles takes 50 MB
@@ -68,15 +69,26 @@ def _encoder(kind: type) -> Convert:
     if issubclass(kind, np.ndarray):
         return lambda value: [value.dtype.str, list(value.shape), value.ravel().tolist()]
     if is_dataclass(kind):
-        names = [f.name for f in fields(kind)]
-        return lambda value: {name: encode(getattr(value, name)) for name in names}
+        return _dataclass_encoder([f.name for f in fields(kind)])
     if issubclass(kind, Enum):
         return lambda value: value.value
     if issubclass(kind, tuple | list):
-        return lambda value: [encode(item) for item in value]
+        return lambda value: [_encoder(item.__class__)(item) for item in value]
     if issubclass(kind, np.generic):
         return lambda value: value.item()
     return lambda value: value
+
+
+def _dataclass_encoder(names: list[str]) -> Convert:
+    values = attrgetter(*names) if len(names) > 1 else lambda value: (getattr(value, names[0]),)
+
+    def encoded(value: Any) -> dict[str, Any]:
+        return {
+            name: one if one.__class__ in _PLAIN else _encoder(one.__class__)(one)
+            for name, one in zip(names, values(value), strict=True)
+        }
+
+    return encoded
 
 
 @cache
@@ -114,7 +126,7 @@ def _unalias(kind: Any) -> Any:
 def _decode_array(dtype: str, shape: list[int], items: list[Any]) -> AnyArray:
     if dtype not in _DTYPES:
         raise ValueError(f"an array must be of {', '.join(_DTYPES)}; got {str(dtype)[:20]!r}")
-    return np.array(items, dtype=np.dtype(dtype)).reshape(shape)
+    return np.array(items, dtype=_DTYPES[dtype]).reshape(shape)
 
 
 def _tuple_decoder(kinds: tuple[Any, ...]) -> Convert:

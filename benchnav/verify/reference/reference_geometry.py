@@ -15,11 +15,17 @@ APPROACH = 1e-9  # a lower closing speed, over the reach, counts as zero
 TOUCHING = 1e-12  # [m] a smaller gap is rounding
 
 
+def dot(u: FloatArray, v: FloatArray) -> FloatArray:
+    """Return the scalar products (…,) of vectors (…, 2)."""
+    product: FloatArray = u[..., 0] * v[..., 0] + u[..., 1] * v[..., 1]
+    return product
+
+
 def nearest(p: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the point (…, 2) of the segment a–b that is nearest to p."""
     d = b - a
-    length2 = (d * d).sum(axis=-1)
-    share = ((p - a) * d).sum(axis=-1) / np.where(length2 > 0.0, length2, 1.0)
+    length2 = dot(d, d)
+    share = dot(p - a, d) / np.where(length2 > 0.0, length2, 1.0)
     near: FloatArray = a + np.clip(share, 0.0, 1.0)[..., None] * d
     return near
 
@@ -30,26 +36,31 @@ def first_touch(
     """Return when p + v t first comes within ``reach`` of the segment (…,); inf if never.
 
     It is the smallest of the times at which the point crosses the circles around both ends and the
-    two lines beside the segment, as roots of polynomials.
+    two lines beside the segment, as roots of polynomials. A point that does not approach never
+    touches: a segment is convex.
     """
     offset = p - nearest(p, a, b)
     gap = np.hypot(offset[..., 0], offset[..., 1]) - reach
-    approaching = (offset * v).sum(axis=-1) < -APPROACH * reach
-    times = [_circle(p - end, v, reach) for end in (a, b)]
-    times += [_line(p, v, a, b, reach, side) for side in (-1.0, 1.0)]
-    first = np.where(gap <= TOUCHING, 0.0, np.min(times, axis=0))
-    touch: FloatArray = np.where(approaching, first, math.inf)
+    approaching = dot(offset, v) < -APPROACH * reach
+    p, v, a, b = (np.broadcast_to(x, offset.shape)[approaching] for x in (p, v, a, b))
+    reach, gap = np.broadcast_to(reach, approaching.shape)[approaching], gap[approaching]
+    first = np.minimum(_circle(p - a, v, reach), _circle(p - b, v, reach))
+    for side in (-1.0, 1.0):
+        first = np.minimum(first, _line(p, v, a, b, reach, side))
+    touch = np.full(approaching.shape, math.inf)
+    touch[approaching] = np.where(gap <= TOUCHING, 0.0, first)
     return touch
 
 
 def _circle(f: FloatArray, v: FloatArray, reach: FloatArray) -> FloatArray:
     """Return the smallest t ≥ 0 with |f + v t| = reach."""
-    a, b = (v * v).sum(axis=-1), 2.0 * (f * v).sum(axis=-1)
-    under = b * b - 4.0 * a * ((f * f).sum(axis=-1) - reach * reach)
+    a, b = dot(v, v), 2.0 * dot(f, v)
+    under = b * b - 4.0 * a * (dot(f, f) - reach * reach)
     hits = (a > 0.0) & (under >= 0.0)
     root = np.sqrt(np.where(hits, under, 0.0))
     both = [(-b + sign * root) / np.where(hits, 2.0 * a, 1.0) for sign in (-1.0, 1.0)]
-    least: FloatArray = np.min([np.where(hits & (t >= 0.0), t, math.inf) for t in both], axis=0)
+    early, late = [np.where(hits & (t >= 0.0), t, math.inf) for t in both]
+    least: FloatArray = np.minimum(early, late)
     return least
 
 
@@ -61,10 +72,10 @@ def _line(
     length = np.hypot(d[..., 0], d[..., 1])
     safe = np.where(length > 0.0, length, 1.0)
     normal = np.stack([-d[..., 1], d[..., 0]], axis=-1) / safe[..., None]
-    speed = (v * normal).sum(axis=-1)
+    speed = dot(v, normal)
     moves = (length > 0.0) & (speed != 0.0)
-    t = (side * reach - ((p - a) * normal).sum(axis=-1)) / np.where(moves, speed, 1.0)
-    share = ((p + v * t[..., None] - a) * d).sum(axis=-1) / (safe * safe)
+    t = (side * reach - dot(p - a, normal)) / np.where(moves, speed, 1.0)
+    share = dot(p + v * t[..., None] - a, d) / (safe * safe)
     beside: FloatArray = np.where(moves & (t >= 0.0) & (share >= 0.0) & (share <= 1.0), t, math.inf)
     return beside
 

@@ -173,17 +173,26 @@ class Twin:
         """Return the first touch of each of ``agents`` (N,), by the order of rules for ties."""
         world, r = self.world, self.world.agents.radius
         p, v = self.position[agents][:, None], self.velocity[agents][:, None]
-        goal, tolerance = world.agents.goal[agents][:, None], np.array(world.rules.goal_tolerance)
-        away = np.hypot(*(p - goal)[:, 0].T)
-        home = np.where(away <= tolerance, 0.0, first_touch(p, v, goal, goal, tolerance)[:, 0])
-        f, c = self._fixed, self._carried
-        fixed = first_touch(p, v, f[:, :2], f[:, 2:4], r[agents][:, None] + f[:, 4])
+        goal, tolerance = world.agents.goal[agents][:, None], world.rules.goal_tolerance
+        f, c, zero = self._fixed, self._carried, np.zeros((len(r), 2))
         at, carry = self.bodies[self._owner], self._carry[self._owner]
-        bodies = first_touch(p - at, v - carry, c[:, :2], c[:, 2:4], r[agents][:, None] + c[:, 4])
-        zero = np.zeros(2)
-        reach = r[agents][:, None] + r
-        others = first_touch(p - self.position, v - self.velocity, zero, zero, reach)
-        others[np.arange(len(agents)), agents] = math.inf
+        # partners are the goal, solids, bodies and agents: one call for all of them is faster
+        place, moved = (
+            np.concatenate([own, own - np.zeros_like(f[:, :2]), own - bodies, own - others], axis=1)
+            for own, bodies, others in ((p, at, self.position), (v, carry, self.velocity))
+        )
+        many = len(agents)
+        first, second = (
+            np.concatenate([goal, *(np.broadcast_to(e, (many, *e.shape)) for e in ends)], axis=1)
+            for ends in ((f[:, :2], c[:, :2], zero), (f[:, 2:4], c[:, 2:4], zero))
+        )
+        reach = r[agents][:, None] + np.concatenate([f[:, 4], c[:, 4], r])
+        reach = np.concatenate([np.full((many, 1), tolerance), reach], axis=1)
+        times = first_touch(place, moved, first, second, reach)
+        home, fixed, bodies, others = np.split(times, np.cumsum([1, len(f), len(c)]), axis=1)
+        away = np.hypot(*(p - goal)[:, 0].T)
+        home = np.where(away <= tolerance, 0.0, home[:, 0])
+        others[np.arange(many), agents] = math.inf
         others[:, ~self.present] = math.inf
         found = []
         for row, i in enumerate(agents):
