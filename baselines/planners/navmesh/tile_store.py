@@ -11,7 +11,7 @@ MOST_BYTES = 64_000_000  # of triangles in memory; a larger map has its own in a
 
 
 class TileStore:
-    """Triangulates the tiles that it does not hold. What it holds never changes an answer."""
+    """Triangulates only unknown tiles. The answer is the same whatever tiles are known."""
 
     def __init__(self, most_bytes: int = MOST_BYTES) -> None:
         self._most_bytes = most_bytes
