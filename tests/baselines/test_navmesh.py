@@ -5,7 +5,7 @@ import pytest
 import shapely
 from benchnav_baselines.common.disc_planner import Query, frame_of
 from benchnav_baselines.common.validity_checker import PlanarChecker
-from benchnav_baselines.planners.navmesh import planner as navmesh_planner
+from benchnav_baselines.planners.navmesh import tile_store
 from benchnav_baselines.planners.navmesh.free_polygon import capsule_polygons
 from benchnav_baselines.planners.navmesh.mesh import mesh_of, nearest
 from benchnav_baselines.planners.navmesh.taut_search import shortest_path
@@ -260,7 +260,7 @@ def test_a_growing_map_is_meshed_where_it_changed_and_plans_are_those_from_scrat
         meshed_tiles.append(len(tiles))
         return triangulated(tiles, inflation, segments)
 
-    monkeypatch.setattr(navmesh_planner, "triangulated", counted)
+    monkeypatch.setattr(tile_store, "triangulated", counted)
     rng = np.random.default_rng(0)
     low = rng.uniform(3.0, 36.0, (60, 2))
     capsules = np.column_stack([low, low + rng.uniform(-2.5, 2.5, (60, 2)), np.zeros(60)])
@@ -281,8 +281,24 @@ def test_a_growing_map_is_meshed_where_it_changed_and_plans_are_those_from_scrat
 def test_a_map_that_is_seen_again_is_not_meshed_at_all(monkeypatch):
     planner = make(PLANNERS, NAVMESH)
     first = plan(planner, furnished(0))
-    monkeypatch.setattr(navmesh_planner, "triangulated", lambda tiles, *_: [None] * len(tiles))
+    monkeypatch.setattr(tile_store, "triangulated", None)
     assert plan(planner, furnished(0)).path.tobytes() == first.path.tobytes()
+
+
+def test_a_store_forgets_the_tiles_that_were_not_used_for_longest():
+    tiles = tiling((0.0, 0.0, 40.0, 40.0))
+    capsules = np.random.default_rng(0).uniform(0.0, 40.0, (60, 5)) * [1, 1, 1, 1, 0.01]
+    needed = tiles_of(capsules, 0.3, 8, tiles)
+    expected = triangulated(needed, 0.3, 8)
+    large, small = tile_store.TileStore(), tile_store.TileStore(10_000)
+    for _ in range(2):
+        for store in (large, small):
+            for one, other in zip(store.triangles(needed, 0.3, 8), expected, strict=True):
+                np.testing.assert_array_equal(one, other)
+    assert [tile for *_, tile in large._held] == needed
+    assert [tile for *_, tile in small._held] == needed[-len(small._held) :]
+    assert 0 < small._bytes <= 10_000 < large._bytes
+    assert large._bytes == sum(tile_store._size(*pair) for pair in large._held.items())
 
 
 def test_long_maps_have_larger_tiles():

@@ -221,7 +221,7 @@ def test_doctor_counts_what_can_be_used_and_says_what_is_missing(call, monkeypat
         )
     usable = [int(re.search(rf"{kind} +(\d+) can be used", whole)[1]) for kind in kinds]
     left = [int(re.search(rf"{kind} +(\d+) can be used", stdout)[1]) for kind in kinds]
-    assert [a - b for a, b in zip(usable, left, strict=True)] == [2, 6, 0]
+    assert [a - b for a, b in zip(usable, left, strict=True)] == [2, 5, 0]
     assert "ors without" not in whole
     assert f"{core_count()}, so" in stdout
 

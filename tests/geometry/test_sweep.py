@@ -159,6 +159,6 @@ def test_rows_tell_what_is_inside_like_a_walk_over_all_edges(seed):
     capsules = np.vstack([np.zeros((0, 5)), *(solid.capsules for solid in solids)])
     index, rows = (capsules, *solid_index(solids)), solid_rows(solids)
     corners = capsules[:, :2] if len(capsules) else np.zeros((1, 2))
-    places = [*rng.uniform(-10, 10, (300, 2)), *corners, *(corners + (0.01, 0.0))]
+    places = [*rng.uniform(-10, 10, (300, 2)), *corners, *np.add(corners, (0.01, 0.0))]
     for x, y in places:
         assert inside_rows(rows, x, y) == inside_solid(x, y, *index)

@@ -1,6 +1,5 @@
 """The planner on a navigation mesh."""
 
-from collections import OrderedDict
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -13,10 +12,10 @@ from ...common.clearance_planner import ClearanceConfig
 from ...common.disc_planner import DiscPlanner, Query, frame_of
 from .mesh import Mesh, mesh_of, nearest
 from .taut_search import shortest_path
-from .tile import Tile, Tiling, tiles_of, tiling, triangulated
+from .tile import Tiling, tiles_of, tiling
+from .tile_store import TileStore
 
 _AROUND = 1.0  # [m] of space around all obstacles
-_KEPT = 50_000  # tiles in memory
 
 
 class NavMesh(DiscPlanner):
@@ -38,7 +37,7 @@ class NavMesh(DiscPlanner):
         super().__init__(config)
         self._meshes: WeakKeyDictionary[Map, dict[tuple[float, Tiling], Mesh]]
         self._meshes = WeakKeyDictionary()
-        self._triangles: OrderedDict[tuple[float, Tile], FloatArray] = OrderedDict()
+        self._tiles = TileStore()
 
     def search(self, query: Query) -> tuple[FloatArray, int]:
         """Search; ends beside the mesh are connected to its nearest point if the motion is free."""
@@ -62,22 +61,11 @@ class NavMesh(DiscPlanner):
         tiles = tiling(frame_of(query, _AROUND))
         key = (query.inflation, tiles)
         if key not in known:
-            known[key] = mesh_of(self._tiles(query, tiles), tiles, query.map)
+            inflation, segments = query.inflation, self.config.segments
+            needed = tiles_of(query.map.capsules, inflation, segments, tiles)
+            triangles = self._tiles.triangles(needed, inflation, segments)
+            known[key] = mesh_of(triangles, tiles, query.map)
         return known[key]
-
-    def _tiles(self, query: Query, tiles: Tiling) -> list[FloatArray]:
-        """Return the triangles (T, 3, 2) of each tile; only unknown tiles are triangulated."""
-        inflation, segments = query.inflation, self.config.segments
-        needed = tiles_of(query.map.capsules, inflation, segments, tiles)
-        new = [tile for tile in needed if (inflation, tile) not in self._triangles]
-        for tile, triangles in zip(new, triangulated(new, inflation, segments), strict=True):
-            self._triangles[inflation, tile] = triangles
-        for tile in needed:
-            self._triangles.move_to_end((inflation, tile))
-        found = [self._triangles[inflation, tile] for tile in needed]
-        while len(self._triangles) > _KEPT:
-            self._triangles.popitem(last=False)
-        return found
 
 
 def _may_go(query: Query, x: float, y: float, px: float, py: float, off: float) -> bool:
