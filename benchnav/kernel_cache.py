@@ -11,13 +11,14 @@ import pickle
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numba
+from llvmlite.binding import parse_assembly
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
 from numba.core.runtime import rtsys
 from numba.core.serialize import dumps
@@ -34,7 +35,7 @@ class KernelCache(FunctionCache):
     def __init__(self, function: Callable[..., Any], folder: Path, prefix: str = "") -> None:
         self._name = repr(function)
         self._py_func = function
-        self._impl = _Codec()
+        self._impl = _Codec(is_linked=bool(prefix))
         self._cache_path = str(folder)
         name = f"{prefix}{function.__module__}.{function.__qualname__}"
         name = name.replace("<", "").replace(">", "")
@@ -65,15 +66,39 @@ class KernelCache(FunctionCache):
 
 
 class _Codec(CompileResultCacheImpl):
-    """Converts a compiled function to the data that Numba stores."""
+    """Converts a compiled function to the data that Numba stores.
 
-    def __init__(self) -> None:
+    Numba stores machine code, and LLVM code that is linked into callers; to parse the latter takes
+    more time than all else. For a function that only Python calls, the names are enough.
+    """
+
+    def __init__(self, is_linked: bool) -> None:
         """Skip Numba's search by source location: `_Files` finds the files."""
+        self._is_linked = is_linked
+
+    def reduce(self, compiled: Any) -> Any:
+        """Return the data to store."""
+        library, function, *rest = super().reduce(compiled)
+        if not self._is_linked:
+            name, kind, (machine_code, _) = library
+            names = (
+                function.llvm_func_name, function.llvm_cpython_wrapper_name,
+                function.llvm_cfunc_wrapper_name,
+            )  # fmt: skip
+            library = name, kind, (machine_code, _module_of(names))
+        return library, function, *rest
 
     def check_cachable(self, compiled: Any) -> bool:
         """Whether another process can use the compiled code."""
         whole = all(part.can_cache for part in compiled.lifted)
         return whole and not compiled.library.has_dynamic_globals
+
+
+def _module_of(names: Iterable[str]) -> bytes:
+    """Return LLVM code that defines these names, and nothing else."""
+    lines = (f'define void @"{name}"() {{ ret void }}' for name in names)
+    code: bytes = parse_assembly("\n".join(lines)).as_bitcode()
+    return code
 
 
 @lru_cache

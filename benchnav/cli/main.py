@@ -15,7 +15,7 @@ from benchnav.cli.console import put, say
 from benchnav.cli.machine_fault import machine_fault
 from benchnav.cli.running.merge import merge
 from benchnav.cli.running.pack import pack
-from benchnav.cli.running.run import run
+from benchnav.cli.running.run import RunCommand, run
 from benchnav.cli.running.train import train
 from benchnav.cli.running.verify import verify
 from benchnav.cli.stopping import report_stop, stop_on_signals, stoppable
@@ -57,7 +57,7 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
 )
-app.command("run")(stoppable(run))
+app.command("run", cls=RunCommand)(stoppable(run))
 app.command("leaderboard")(stoppable(leaderboard))
 app.command("verify")(stoppable(verify))
 app.command("pack")(stoppable(pack))

@@ -85,6 +85,7 @@ class ForkServer:
         self._socket, self._channel = ours, Channel(ours)
         self._children: dict[int, Child] = {}
         self._starting: list[Child] = []
+        self._is_used = False
         self.owner = os.getpid()
 
     def fileno(self) -> int:
@@ -124,6 +125,7 @@ class ForkServer:
                 socket.send_fds(self._socket, [START], [theirs.fileno(), file.fileno()])
                 self._channel.send(request)
                 self._starting.append(child)
+                self._is_used = True
                 while not child.pid:
                     self._read_message(None)
             except (OSError, ChannelError, BenchnavError) as error:
@@ -156,8 +158,9 @@ class ForkServer:
     def close(self) -> None:
         """End the server and all its processes."""
         self._channel.close()
-        with suppress(subprocess.TimeoutExpired):
-            self._process.wait(5.0)
+        if self._is_used:  # else there are no processes to end
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(5.0)
         self._lost()
 
     def _read_message(self, patience: float | None) -> None:

@@ -42,6 +42,7 @@ def main(file: int) -> None:
     with suppress(EOFError, ChannelError, ConnectionError):
         server.serve()
     server.end()
+    os._exit(0)  # nothing is left to do, and Numba's objects take long to be dismantled
 
 
 def load(target: str) -> Callable[..., Any]:
