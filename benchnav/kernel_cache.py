@@ -20,7 +20,7 @@ from typing import Any
 import numba
 from llvmlite.binding import parse_assembly
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
-from numba.core.runtime import rtsys
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 SUFFIX = ".kernel"

@@ -152,3 +152,23 @@ def test_processes_that_compile_at_once_leave_what_each_of_them_can_load(tmp_pat
         hits = [process.communicate()[0].strip() for process in processes]
         assert [process.returncode for process in processes] == [0] * len(arguments)
     assert hits == ["2", "2"]
+
+
+@pytest.mark.parametrize("prefix", ["", "inner-"])
+def test_loaded_code_runs_and_links_into_callers_where_it_may(prefix, tmp_path):
+    def new():
+        dispatcher = numba.njit(double)
+        dispatcher._cache = KernelCache(double, tmp_path, prefix)
+        return dispatcher
+
+    assert new()(21) == 42
+    loaded = new()
+    if prefix:
+
+        @numba.njit
+        def twice(x):
+            return loaded(loaded(x))
+
+        assert twice(21) == 84
+    assert loaded(21) == 42
+    assert was_loaded(loaded)

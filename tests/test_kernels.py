@@ -102,3 +102,23 @@ def test_pandas_waits_until_a_data_frame_is_wanted():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+def test_scipy_waits_until_a_kernel_multiplies_matrices():
+    code = (
+        "import sys\n"
+        "import numpy as np\n"
+        "import benchnav.kernels\n"
+        "@benchnav.kernels.kernel\n"
+        "def product(a, b):\n"
+        "    return np.dot(a, b)\n"
+        "@benchnav.kernels.kernel\n"
+        "def double(x):\n"
+        "    return 2 * x\n"
+        "assert double(21) == 42\n"
+        "assert 'scipy.linalg' not in sys.modules\n"
+        "assert product(np.eye(2), np.array([3.0, 4.0])).tolist() == [3.0, 4.0]\n"
+        "assert 'scipy.linalg' in sys.modules"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
