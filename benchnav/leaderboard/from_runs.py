@@ -29,7 +29,7 @@ from benchnav.metrics.metric import Metric
 from benchnav.runner.plan.installed_differences import Caveat
 from benchnav.scenario.parameters import joined_parameters, split_parameters
 from benchnav.store.runs.manifest import IN_PROCESS
-from benchnav.store.runs.reading import episodes_in_every_track, results_of
+from benchnav.store.runs.reading import encoded_results_of, episodes_in_every_track
 from benchnav.store.runs.run_folder import RunFolder
 
 SUCCESS = "success"
@@ -44,7 +44,7 @@ Notify = Callable[[str], None]
 class StoredValues:
     """The measured values of one or more runs, and the facts that their tables show."""
 
-    results: pa.Table  # of the schema `benchnav.store.parts.results.RESULTS`
+    results: pa.Table  # of the schema `benchnav.store.parts.results.RESULTS`, or encoded
     metrics: Mapping[str, Metric]  # every installed metric
     caveats: Sequence[Caveat]
     not_applicable: Sequence[NotApplicable]
@@ -240,7 +240,7 @@ def _tables(
     folders: Sequence[RunFolder], metrics: Mapping[str, Metric], recompute: bool
 ) -> list[pa.Table]:
     """The measured values of each run; a label must stand for one navigator in all of them."""
-    stored = [results_of(folder) for folder in folders]
+    stored = [encoded_results_of(folder) for folder in folders]
     named = zip(folders, stored, strict=True)
     require_one_navigator_per_label({str(f.shown): results for f, results in named})
     if not recompute:
@@ -251,7 +251,7 @@ def _tables(
 
 
 def _joined(folders: Sequence[RunFolder], tables: Sequence[pa.Table]) -> pa.Table:
-    joined = pa.concat_tables(tables, promote_options="default")
+    joined = pa.concat_tables(tables, promote_options="default").unify_dictionaries()
     if not len(joined):
         raise StoreError(
             f"There must be episodes to make a table of. {folders[0].shown} holds none."

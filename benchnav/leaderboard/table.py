@@ -166,8 +166,8 @@ def _group(group: list[Stratum], metrics: Mapping[str, Metric]) -> Iterator[Reco
 
 def _sample(s: Stratum) -> Sample:
     worlds = len(s.seeds)
-    weights = resample(worlds, s.rng("bootstrap"))
-    return Sample(s.value.reshape(worlds, -1), s.agents.reshape(worlds, -1), weights)
+    counts = resample(worlds, s.rng("bootstrap"))
+    return Sample(s.value.reshape(worlds, -1), s.agents.reshape(worlds, -1), counts)
 
 
 def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:

@@ -6,7 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
+from benchnav.leaderboard.statistics import interval
 from benchnav.leaderboard.statistics.interval import (
+    RESAMPLES,
     bca,
     cumulants,
     effective_size,
@@ -103,10 +105,10 @@ def test_effective_size_leaves_undefined_worlds_out():
 def test_the_bootstrap_is_scipys_where_the_expansion_vanishes():
     rng = np.random.default_rng(5)
     values = rng.exponential(size=(400, 1)) ** 1.5
-    weights = np.vstack([resample(400, np.random.default_rng(k)) for k in range(10)])
+    counts = np.vstack([resample(400, np.random.default_rng(k)) for k in range(10)])
     second, third = cumulants(values)
     low, high = bca(
-        resampled_means(values, weights), mean(values), third / (6 * second**1.5),
+        resampled_means(values, counts), mean(values), third / (6 * second**1.5),
         np.array([400.0]), np.array([399.0]),
     )  # fmt: skip
     known = stats.bootstrap(
@@ -128,9 +130,9 @@ def test_the_acceleration_is_that_of_the_jackknife():
 
 def test_small_samples_get_students_width():
     values = np.random.default_rng(8).normal(size=(6, 400))
-    weights = resample(6, np.random.default_rng(0))
+    counts = resample(6, np.random.default_rng(0))
     low, high = bca(
-        resampled_means(values, weights), mean(values), np.zeros(400),
+        resampled_means(values, counts), mean(values), np.zeros(400),
         np.full(400, 6.0), np.full(400, 5.0),
     )  # fmt: skip
     student = 2 * stats.t.ppf(0.975, 5) * values.std(axis=0, ddof=1) / np.sqrt(6)
@@ -140,15 +142,14 @@ def test_small_samples_get_students_width():
 @settings(max_examples=30, deadline=None)
 @given(st.integers(1, 40), st.integers(0, 2**32))
 def test_resamples_are_made_of_the_values(count, seed):
-    weights = resample(count, np.random.default_rng(seed))
-    assert np.allclose(weights.sum(axis=1), 1.0)
-    assert np.allclose(weights * count, np.round(weights * count))
+    counts = resample(count, np.random.default_rng(seed))
+    assert (counts.sum(axis=1) == count).all()
 
 
 def test_resampled_means_leave_undefined_values_out():
     values = np.array([[1.0, 5.0], [np.nan, 5.0], [3.0, np.nan]])
-    weights = np.array([[1 / 3, 1 / 3, 1 / 3], [0.0, 2 / 3, 1 / 3], [0.0, 1.0, 0.0]])
-    assert resampled_means(values, weights) == pytest.approx(
+    counts = np.array([[1, 1, 1], [0, 2, 1], [0, 3, 0]], np.uint8)
+    assert resampled_means(values, counts) == pytest.approx(
         np.array([[2.0, 5.0], [3.0, 5.0], [2.0, 5.0]])  # nothing drawn: the mean, 2
     )
 
@@ -171,3 +172,19 @@ def test_quantiles_and_trimmed_means_are_scipys(values, freedom):
     column = np.array(values)[:, None]
     expected = pytest.approx(stats.trim_mean(column, 0.25, axis=0), abs=1e-12)
     assert trimmed_mean(column, 0.25) == expected
+
+
+@pytest.mark.parametrize("count", [1, 2, 7, 255, 256, 1000])
+def test_resamples_are_those_of_one_large_draw(count):
+    drawn = np.random.default_rng(5).integers(count, size=(RESAMPLES, count))
+    expected = [np.bincount(row, minlength=count) for row in drawn]
+    assert np.array_equal(resample(count, np.random.default_rng(5)), expected)
+
+
+def test_means_of_many_units_are_computed_in_blocks(monkeypatch):
+    values = np.random.default_rng(1).normal(size=(300, 3))
+    counts = resample(300, np.random.default_rng(2))
+    whole = resampled_means(values, counts)
+    assert np.array_equal(whole, (counts / 300.0) @ values)
+    monkeypatch.setattr(interval, "_BLOCK", 7000)
+    assert resampled_means(values, counts) == pytest.approx(whole, rel=1e-12)

@@ -19,7 +19,12 @@ from benchnav.store.parts.results import RESULTS
 from benchnav.store.parts.seal import read_seal
 from benchnav.store.runs import checked_json
 from benchnav.store.runs.manifest import MANIFEST, load_manifest
-from benchnav.store.runs.reading import in_every_track, read_results
+from benchnav.store.runs.reading import (
+    encoded,
+    encoded_results_of,
+    in_every_track,
+    read_results,
+)
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.spans import count, twice, union, without
 from tests.store.hostile import resealed
@@ -267,3 +272,25 @@ def test_rows_stand_for_other_tracks_in_one_pass(part, run):
     found = in_every_track(results, manifest)
     assert found.schema == results.schema
     assert sorted(found["track"].to_pylist()) == ["known"] * 3 + ["stale"] * 3 + ["unknown"] * 3
+    assert in_every_track(encoded(results), manifest).cast(RESULTS).equals(found)
+
+
+def test_encoded_results_are_the_results_in_less_memory(part, run):
+    found = encoded_results_of(RunFolder.open(run))
+    assert found.cast(RESULTS).equals(read_results(run))
+    assert found.nbytes < read_results(run).nbytes
+
+
+@pytest.mark.parametrize("texts", [["a", "b"], ["a", "a"]])
+def test_texts_that_stay_references_are_distinct(texts):
+    column = pa.DictionaryArray.from_arrays(pa.array([0, 1], pa.int32()), pa.array(texts))
+    table = pa.table({"n": [1, 2], "text": column, "list": [["a"], ["b"]]})
+    content = written(table, store_schema=False)
+    try:
+        found = bounded_parquet.read(content, SCHEMA, encoded=True)
+    except ValueError as error:
+        assert "repeats a text" in str(error)  # noqa: PT017 - writers may also repair it
+    else:
+        assert pa.types.is_dictionary(found["text"].type)
+        assert found["text"].unique().to_pylist() == list(dict.fromkeys(texts))
+        assert found.cast(SCHEMA).equals(bounded_parquet.read(content, SCHEMA))

@@ -130,8 +130,8 @@ def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
     every = np.array([success_by_horizon(each, _times(horizon, points)) for each in times])
     value, places = np.unique(every, axis=1, return_inverse=True)  # few times differ
     agents = np.repeat([[float(len(each))] for each in times], value.shape[1], axis=1)
-    weights = resample(len(value), np.random.default_rng(0))
-    found = estimate(Sample(value, agents, weights), columns_of([success] * value.shape[1]))
+    counts = resample(len(value), np.random.default_rng(0))
+    found = estimate(Sample(value, agents, counts), columns_of([success] * value.shape[1]))
     for k, time in zip(places.ravel().tolist(), _times(horizon, points), strict=True):
         yield Point(
             navigator, scenario, track, role, success.name, HORIZON, "s", float(time),

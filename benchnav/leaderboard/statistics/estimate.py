@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import BoolArray, CountArray, FloatArray, IntArray
 from benchnav.leaderboard.statistics.interval import (
     bca,
     cumulants,
@@ -60,7 +60,7 @@ class Sample:
 
     value: FloatArray  # (n, C)
     agents: FloatArray  # (n, C)
-    weights: FloatArray  # (R, n) bootstrap
+    counts: CountArray  # (R, n) units in bootstrap resamples
 
 
 def estimate(sample: Sample, column: Column) -> Estimate:
@@ -83,7 +83,7 @@ def estimate(sample: Sample, column: Column) -> Estimate:
     usual = ~rate & (count > 1) & ~flat
     second, third = cumulants(sample.value[:, usual])
     n = count[usual].astype(np.float64)
-    means = resampled_means(sample.value[:, usual], sample.weights)
+    means = resampled_means(sample.value[:, usual], sample.counts)
     found.put(usual, *bca(means, value[usual], third / (6 * second**1.5), n, n - 1))
     return found
 
@@ -117,7 +117,7 @@ def mean_over(parts: list[Estimate], samples: list[Sample], column: Column) -> E
     usual = ~recovered & varies.any(axis=0) & (np.where(has, counts, np.inf).min(axis=0) > 1)
     for strata, columns in _alike(has, usual):
         chosen = [samples[s] for s in strata]
-        means = np.mean([resampled_means(s.value[:, columns], s.weights) for s in chosen], axis=0)
+        means = np.mean([resampled_means(s.value[:, columns], s.counts) for s in chosen], axis=0)
         n = counts[strata][:, columns]
         moments = np.array([cumulants(s.value[:, columns]) for s in chosen])  # (strata, 2, C)
         second, third = (moments[:, 0] / n**2).sum(axis=0), (moments[:, 1] / n**3).sum(axis=0)
@@ -141,7 +141,7 @@ def interquartile_mean_over(samples: list[Sample]) -> Estimate:
     found = _unknown(np.where(whole, trimmed_mean(np.nan_to_num(values), 0.25), np.nan))
     counts = _counts(samples)
     for _, columns in _alike(np.ones_like(values, dtype=np.bool_), counts.min(axis=0) > 1):
-        drawn = [resampled_means(s.value[:, columns], s.weights) for s in samples]
+        drawn = [resampled_means(s.value[:, columns], s.counts) for s in samples]
         means = trimmed_mean(np.array(drawn), 0.25)
         n = counts[:, columns]
         straight = np.zeros(len(columns))

@@ -48,13 +48,16 @@ class _Leaf:
     spelled: bool = False  # strings of which each is copied when read
 
 
-def read(content: bytes, schema: pa.Schema, later: Collection[str] = ()) -> pa.Table:
+def read(
+    content: bytes, schema: pa.Schema, later: Collection[str] = (), encoded: bool = False
+) -> pa.Table:
     """Return the table in a file's ``content``.
 
     Args:
         content: the bytes of the file.
         schema: its columns, in this order.
         later: columns that may be missing.
+        encoded: whether texts stay references to distinct texts, which takes less memory.
 
     Raises ValueError if it is not such a file, or decodes to more than `allowed`.
     """
@@ -62,12 +65,16 @@ def read(content: bytes, schema: pa.Schema, later: Collection[str] = ()) -> pa.T
     if len(content) < 12 or content[-4:] != _MAGIC or length > min(_MAX_FOOTER, len(content)):
         raise ValueError("is not a Parquet file, or has a footer that is too large")
     try:
-        return _decode(content, schema, later)
+        table, expected = _decode(content, schema, later)
+        return table if encoded else table.cast(expected)
     except (pa.ArrowException, OSError, OverflowError) as error:
         raise ValueError(f"cannot be decoded ({short(error)})") from error
 
 
-def _decode(content: bytes, schema: pa.Schema, later: Collection[str]) -> pa.Table:
+def _decode(
+    content: bytes, schema: pa.Schema, later: Collection[str]
+) -> tuple[pa.Table, pa.Schema]:
+    """Return the table with texts as references, and its schema without them."""
     file = _open(content)
     found = file.schema_arrow
     names = set(found.names)
@@ -80,7 +87,18 @@ def _decode(content: bytes, schema: pa.Schema, later: Collection[str]) -> pa.Tab
     spelled = sum(map(_length, table.columns))
     if spelled > allowed(len(content)):
         raise ValueError(f"holds texts of {spelled} bytes, more than {allowed(len(content))}")
-    return table.cast(expected)
+    _require_distinct(table)
+    return table, expected
+
+
+def _require_distinct(table: pa.Table) -> None:
+    """Raise ValueError if two references may stand for the same text."""
+    for name in table.column_names:
+        for chunk in table[name].chunks:
+            if pa.types.is_dictionary(chunk.type):
+                texts = chunk.dictionary
+                if texts.null_count or len(texts.unique()) < len(texts):
+                    raise ValueError(f"has a dictionary of {name!r} that repeats a text")
 
 
 def _open(

@@ -79,12 +79,17 @@ class Part:
 
     def results(self) -> pa.Table:
         """Return its measured values, sorted by seed. Raises CorruptPartError."""
-        table = results.completed(self._table(RESULTS_FILE, results.RESULTS, results.LATER))
+        return self.encoded_results().cast(results.RESULTS)
+
+    def encoded_results(self) -> pa.Table:
+        """Return the same with texts as references to distinct texts: a third of the memory."""
+        stored = self._table(RESULTS_FILE, results.RESULTS, results.LATER, encoded=True)
+        table = results.completed(stored)
         try:
             results.require_possible(table)
         except ValueError as error:
             raise self._corrupt(self.path(RESULTS_FILE), str(error)) from error
-        return table.take(pc.sort_indices(table, _by(table)))
+        return table if _is_sorted(table) else table.take(pc.sort_indices(table, _by(table)))
 
     def episodes(self) -> Iterator[Episode]:
         """Yield its scored episodes, by seed. Raises CorruptPartError."""
@@ -128,7 +133,9 @@ class Part:
         except UNDECODABLE as error:
             raise self._corrupt(self.path(suffix), f"cannot be decoded ({short(error)})") from error
 
-    def _table(self, suffix: str, schema: pa.Schema, later: Collection[str]) -> pa.Table:
+    def _table(
+        self, suffix: str, schema: pa.Schema, later: Collection[str], encoded: bool = False
+    ) -> pa.Table:
         """Return the table in one of its files; the decoded bytes are the hashed bytes."""
         path, sealed = self.path(suffix), self._seal()[suffix]
         self._check_size(suffix, sealed)
@@ -139,7 +146,7 @@ class Part:
                 raise self._corrupt(
                     path, f"has sha256 {found[:12]}…; its seal has {sealed['sha256'][:12]}…"
                 )
-            table = bounded_parquet.read(content, schema, later)
+            table = bounded_parquet.read(content, schema, later, encoded)
         except ValueError as error:
             raise self._corrupt(path, short(error)) from error
         except OSError as error:
@@ -193,6 +200,12 @@ class Part:
 def _by(table: pa.Table) -> list[tuple[str, str]]:
     """Return the sort keys of a part's table."""
     return [(key, "ascending") for key in ("seed", "rehearsal") if key in table.column_names]
+
+
+def _is_sorted(table: pa.Table) -> bool:
+    """Whether the rows of a table of one number of rehearsals are sorted by seed already."""
+    seeds, rehearsals = table["seed"].to_numpy(), table["rehearsal"].unique()
+    return len(rehearsals) == 1 and bool((seeds[1:] >= seeds[:-1]).all())
 
 
 def parts_of(folder: Path) -> list[Part]:

@@ -75,18 +75,18 @@ LATER = {
 
 
 def completed(table: pa.Table) -> pa.Table:
-    """Return the table with the columns that older parts do not have."""
+    """Return an encoded table with the columns that older parts do not have."""
     for name, missing in LATER.items():
         if name not in table.column_names:
-            field = RESULTS.field(name)
-            table = table.append_column(
-                field, pa.repeat(pa.scalar(missing, field.type), len(table))
-            )
+            kind = RESULTS.field(name).type
+            column = pa.repeat(pa.scalar(missing, kind), len(table))
+            encoded = column.dictionary_encode() if pa.types.is_string(kind) else column
+            table = table.append_column(name, encoded)
     return table.select(RESULTS.names)
 
 
 def require_possible(table: pa.Table) -> None:
-    """Raise ValueError if a table of `RESULTS` holds values that no part can have."""
+    """Raise ValueError if an encoded table of `RESULTS` holds values that no part can have."""
     if len(table) > MAX_ROWS:
         raise ValueError(f"must have at most {MAX_ROWS} rows; it has {len(table)}")
     for name in RESULTS.names:
@@ -127,7 +127,12 @@ def _require_one_of(name: str, column: pa.ChunkedArray) -> None:
 
 def _require_short(name: str, column: pa.ChunkedArray) -> None:
     most = _TEXTS[name]
-    texts = pc.list_flatten(column) if pa.types.is_list(column.type) else column
+    texts = pc.list_flatten(column) if pa.types.is_list(column.type) else _distinct(column)
     longest = pc.max(pc.utf8_length(texts)).as_py() or 0
     if longest > most:
         raise ValueError(f"must have at most {most} characters in {name!r}; one has {longest}")
+
+
+def _distinct(column: pa.ChunkedArray) -> pa.Array:
+    found = column.unique()
+    return found.dictionary_decode() if pa.types.is_dictionary(found.type) else found

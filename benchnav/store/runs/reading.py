@@ -1,6 +1,6 @@
 """Read episodes and measured values of whole runs."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import pyarrow as pa
@@ -8,7 +8,7 @@ import pyarrow as pa
 from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError
 from benchnav.store.bounded.bounded_parquet import allowed
-from benchnav.store.parts.part import RESULTS_FILE
+from benchnav.store.parts.part import RESULTS_FILE, Part
 from benchnav.store.parts.results import RESULTS
 from benchnav.store.runs.manifest import Manifest
 from benchnav.store.runs.run_folder import RunFolder
@@ -69,10 +69,31 @@ def read_results(run: RunPath) -> pa.Table:
 
 def results_of(run: RunFolder) -> pa.Table:
     """Return the same, for an open run."""
-    tables = [RESULTS.empty_table()]
+    return in_every_track(_joined(run, Part.results, RESULTS.empty_table()), run.manifest)
+
+
+def encoded_results_of(run: RunFolder) -> pa.Table:
+    """Return the same with texts as references to distinct texts: a third of the memory."""
+    joined = _joined(run, Part.encoded_results, encoded(RESULTS.empty_table()))
+    every = in_every_track(joined, run.manifest)
+    return every.unify_dictionaries()  # else pyarrow cannot group by them
+
+
+def encoded(results: pa.Table) -> pa.Table:
+    """Return results (RESULTS) with texts as references to distinct texts."""
+    for place, field in enumerate(results.schema):
+        if pa.types.is_string(field.type):
+            column = results[field.name].dictionary_encode()
+            results = results.set_column(place, field.name, column)
+    return results
+
+
+def _joined(run: RunFolder, read: Callable[[Part], pa.Table], none: pa.Table) -> pa.Table:
+    """Return the tables of all parts together, ``none`` if there are none."""
+    tables = [none]
     decoded = stored = 0
     for part in run.parts():
-        tables.append(part.results())
+        tables.append(read(part))
         decoded += tables[-1].nbytes
         stored += part.path(RESULTS_FILE).stat().st_size
         if decoded > allowed(stored):
@@ -80,11 +101,14 @@ def results_of(run: RunFolder) -> pa.Table:
                 f"The results of {run.shown} must decode to at most {allowed(stored)} bytes, as"
                 f" their files have {stored}. They decode to more."
             )
-    return in_every_track(pa.concat_tables(tables), run.manifest)
+    return pa.concat_tables(tables)
 
 
 def in_every_track(results: pa.Table, manifest: Manifest) -> pa.Table:
-    """Return the rows of `RESULTS`, repeated for each other track that their cell represents."""
+    """Return the rows of `RESULTS`, repeated for each other track that their cell represents.
+
+    The rows may be encoded, like those of `encoded_results_of`.
+    """
     others = [
         (*(cell[name] for name in _OF_A_CELL), track)
         for cell in manifest.cells
@@ -94,10 +118,14 @@ def in_every_track(results: pa.Table, manifest: Manifest) -> pa.Table:
         return results
     columns = (pa.array(column, pa.string()) for column in zip(*others, strict=True))
     named = pa.table(dict(zip((*_OF_A_CELL, "other"), columns, strict=True)))
-    rows = results.select(_OF_A_CELL).append_column(
-        "row", pa.array(range(len(results)), pa.int64())
+    cells = pa.schema([RESULTS.field(name) for name in _OF_A_CELL])
+    rows = (
+        results.select(_OF_A_CELL)
+        .cast(cells)
+        .append_column("row", pa.array(range(len(results)), pa.int64()))
     )
     found = rows.join(named, _OF_A_CELL, join_type="inner").sort_by("row")
     place = RESULTS.get_field_index("track")
-    again = results.take(found["row"]).set_column(place, RESULTS.field("track"), found["other"])
+    column = found["other"].cast(results.schema.field("track").type)
+    again = results.take(found["row"]).set_column(place, "track", column)
     return pa.concat_tables([results, again])
