@@ -52,8 +52,11 @@ def load(target: str) -> Callable[..., Any]:
     return function
 
 
-def _warm_steps() -> Iterator[None]:
-    """Load what a run needs; other requests may be served between two steps."""
+def _warm_steps() -> Iterator[int | None]:
+    """Load what a run needs; other requests may be served between two steps.
+
+    Yields the numbers of processes that help, else None.
+    """
     with suppress(BenchnavError):  # a worker reports what cannot be used
         yield from load(WARM)()
 
@@ -64,7 +67,7 @@ class _Server:
     wake_reader: int
     wake_writer: int
     children: set[int] = field(default_factory=set)
-    steps: Iterator[None] = field(default_factory=_warm_steps)  # those that are left
+    steps: Iterator[int | None] = field(default_factory=_warm_steps)  # those that are left
     is_loading: bool = False
 
     def __post_init__(self) -> None:
@@ -75,7 +78,7 @@ class _Server:
             patience = 0.0 if self.is_loading else None
             ready, _, _ = select([self.requests.fileno(), self.wake_reader], [], [], patience)
             if not ready:
-                self.is_loading = next(self.steps, False) is None
+                self._load_step()
             if self.wake_reader in ready:
                 with suppress(BlockingIOError):
                     os.read(self.wake_reader, 1 << 12)
@@ -101,7 +104,7 @@ class _Server:
             return
         request = json.loads(self.channel.receive_bytes())
         if request["warm"]:
-            for _ in self.steps:
+            while self._load_step():
                 pass
         pid = os.fork()
         if not pid:
@@ -110,6 +113,15 @@ class _Server:
             os.close(file)
         self.children.add(pid)
         self.channel.send({"started": pid})
+
+    def _load_step(self) -> bool:
+        """Load a part of what a run needs; return whether one was left."""
+        for helper in self.steps:
+            if helper is not None:
+                self.children.add(helper)
+            return True
+        self.is_loading = False
+        return False
 
     def _reap(self) -> None:
         with suppress(ChildProcessError):

@@ -1,13 +1,15 @@
 """The preloading of modules and kernels in the fork server, before it forks."""
 
-from collections.abc import Generator, Iterator
+import os
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache, partial
 
 import numpy as np
 
 from benchnav.arena.world import World
-from benchnav.episode.episode import Episode
 from benchnav.generation.build import build
 from benchnav.geometry.geodesic import geodesic_lengths
+from benchnav.kernels import cache_folder
 from benchnav.metrics.measure import own_metrics
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.observe import deciding, observe
@@ -17,9 +19,11 @@ from benchnav.runner.rollouts.rollout import Assignment
 from benchnav.scenario.load import scenario_from_text
 from benchnav.store.parts.episodes import from_table, to_table
 from benchnav.system.pandas_import import delay_pandas
+from benchnav.threads import core_count
 from benchnav.world.command import give_commands
 from benchnav.world.simulation import Simulation
 
+Part = Callable[[], None]
 _DECISIONS = 3
 _SCENARIO = """
 name: warm/crowd
@@ -49,35 +53,64 @@ rules: {goal_tolerance: 0.5, contact: end, on_arrival: vanish, on_end: vanish}
 """
 
 
-def warm() -> Iterator[None]:
-    """Build, sense, step, record, store and measure one small world, in steps."""
-    yield
+def warm() -> Iterator[int | None]:
+    """Use the kernels of a run once, in steps.
+
+    If none is compiled yet, a second process uses them in the opposite order: each process loads
+    from the cache what the other one has compiled. Yields its process number once.
+    """
+    yield None
     delay_pandas()
-    scenario = scenario_from_text(_SCENARIO, "warm.yaml")
-    world = build(scenario, "train", 0)
-    yield
-    episode = yield from _episode(world)
-    yield
-    measured(from_table(to_table([episode])), own_metrics())
-    _find_path()
+    sensors: list[Part] = [partial(_observe, need) for need in sorted(Need)]
+    parts: list[Part] = [_measure, *sensors, _find_path]
+    folder = cache_folder("benchnav")
+    if folder is not None and not folder.exists() and core_count() > 1:
+        yield _started(reversed(parts))
+    for part in parts:
+        part()
+        yield None
 
 
-def _episode(world: World) -> Generator[None, None, Episode]:
-    simulation = Simulation([world])
+def _started(parts: Iterable[Part]) -> int:
+    """Start a process that runs ``parts``; return its number."""
+    pid = os.fork()
+    if not pid:
+        try:
+            for part in parts:
+                part()
+        finally:
+            os._exit(0)
+    return pid
+
+
+@cache
+def _world() -> World:
+    return build(scenario_from_text(_SCENARIO, "warm.yaml"), "train", 0)
+
+
+def _observe(need: Need) -> None:
+    """Sense once in a small world."""
+    simulation = Simulation([_world()])
+    chosen = np.arange(simulation.A)[None]
+    observe(simulation, chosen, deciding(simulation, chosen), frozenset([need]), (None,))
+
+
+def _measure() -> None:
+    """Step, record, store and measure a small world."""
+    simulation = Simulation([_world()])
     recorder = Recorder(simulation)
     recorder.record_state()
     chosen = np.arange(simulation.A)[None]
     for _ in range(_DECISIONS):
-        active = deciding(simulation, chosen)
-        observe(simulation, chosen, active, frozenset(Need), (None,))
-        yield
         command = np.zeros_like(simulation.position)
+        active = deciding(simulation, chosen)
         give_commands(0, 1, np.arange(1), chosen, active, command + 0.5, command)
         executed = simulation.step(command, np.zeros(simulation.present.shape, np.bool_))
         recorder.record_commands(command, executed, 0.0)
         recorder.record_state()
     assignment = Assignment("warm/crowd@1", "", "train", "known", "none", "none")
-    return recorder.episodes([assignment.identity(0)], 0.0, "", True, [()])[0]
+    episode = recorder.episodes([assignment.identity(0)], 0.0, "", True, [()])[0]
+    measured(from_table(to_table([episode])), own_metrics())
 
 
 def _find_path() -> None:
