@@ -15,7 +15,7 @@ from benchnav.cli.console import put, say
 from benchnav.cli.machine_fault import machine_fault
 from benchnav.cli.running.merge import merge
 from benchnav.cli.running.pack import pack
-from benchnav.cli.running.run import RunCommand, run
+from benchnav.cli.running.run import run
 from benchnav.cli.running.train import train
 from benchnav.cli.running.verify import verify
 from benchnav.cli.stopping import report_stop, stop_on_signals, stoppable
@@ -39,7 +39,7 @@ from benchnav.errors import (
 from benchnav.navigation.plugin.trace import notes, trace
 from benchnav.system.streams import drop, prepare_streams
 
-DEBUG = "--debug"
+DEBUG, HELP = "--debug", {"-h", "--help"}
 _Usage: type[Any] = typer.BadParameter.mro()[2]  # click's UsageError; typer moves its module
 _USAGE_ERRORS = (
     UsageError, InputError, PluginError, UnsolvableError, MissingExtraError, NoRunError,
@@ -55,9 +55,9 @@ app = typer.Typer(
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
-    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    context_settings={"help_option_names": sorted(HELP), "max_content_width": 100},
 )
-app.command("run", cls=RunCommand)(stoppable(run))
+app.command("run")(stoppable(run))
 app.command("leaderboard")(stoppable(leaderboard))
 app.command("verify")(stoppable(verify))
 app.command("pack")(stoppable(pack))
@@ -106,6 +106,10 @@ def _options(
 def status(arguments: Sequence[str]) -> int:
     """Run the command with ``arguments``, and return the exit status."""
     try:
+        if [*arguments[:1]] == ["run"] and not {*arguments} & HELP:
+            from benchnav.processes.fork_server import fork_server
+
+            fork_server()  # starts while this process imports what parses the options
         code = app(list(arguments), standalone_mode=False)
     except BenchnavError as error:
         say(f"benchnav: {error}")

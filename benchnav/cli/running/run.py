@@ -1,23 +1,7 @@
 """`benchnav run`: execute a suite."""
 
-from typing import Any
-
-from typer.core import TyperCommand
-
 from benchnav.cli.console import put, say
 from benchnav.cli.running import run_options as options
-
-
-class RunCommand(TyperCommand):
-    """Starts the fork server, which needs a second core, before it parses the options."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        """Return the arguments that are no options."""
-        if not {"-h", "--help"} & set(args):
-            from benchnav.processes.fork_server import fork_server
-
-            fork_server()
-        return super().parse_args(ctx, args)
 
 
 def run(
