@@ -276,7 +276,7 @@ def pairs(peers: str) -> list[Pair]:
     return [
         Pair(
             name=f"{crowd} against {other}", unit="agent-steps/s", wanted=wanted, peer=f"{other}",
-            ours=partial(rate, sys.executable, "benchnav", crowd), warm=False,
+            ours=partial(rate, sys.executable, "benchnav", crowd), warm=False, blocks=2,
             theirs=partial(rate, sys.executable, "benchnav", other) if isinstance(other, Crowd)
             else partial(rate, peers, other, crowd),
         )
