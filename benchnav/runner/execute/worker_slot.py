@@ -102,9 +102,8 @@ class WorkerSlot:
     def abort(self) -> Task:
         """Return the task, which failed; stop the processes that ran it, and free the slot."""
         self._stop_worker()
-        if self._state == "measuring" and self._measurer is not None:
-            self._measurer.close()
-            self._measurer = None
+        if self._state == "measuring":
+            self._stop_measurer()
         return self._free()
 
     def processes(self) -> list[int]:
@@ -114,9 +113,7 @@ class WorkerSlot:
     def close(self) -> None:
         """End its processes."""
         self._stop_worker()
-        if self._measurer is not None:
-            self._measurer.close()
-            self._measurer = None
+        self._stop_measurer()
 
     def _free(self) -> Task:
         task, self.task, self._state = self.task, None, "idle"
@@ -150,6 +147,11 @@ class WorkerSlot:
         main = main_of(value for _, _, value in self._registrations)
         measuring = Measuring(self._plugins, self._registrations, main, self._limits.timeout)
         self._send(self._measurer, measuring)
+
+    def _stop_measurer(self) -> None:
+        if self._measurer is not None:
+            self._measurer.close()
+        self._measurer = None
 
     def _measure(self, played: Played) -> None:
         self._state, self._measuring_time = "measuring", 0.0
@@ -204,7 +206,7 @@ class WorkerSlot:
             return
         measuring = child is self._measurer
         if measuring and self._state != "measuring":
-            self._measurer = None
+            self._stop_measurer()
         elif not measuring and self._state != "playing":
             self._stop_worker()
         else:
