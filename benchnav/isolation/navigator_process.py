@@ -25,7 +25,7 @@ from benchnav.isolation.frame import (
     head,
     write_parts,
 )
-from benchnav.isolation.shared_memory import SIZE, SharedMemory
+from benchnav.isolation.shared_memory import SharedMemory
 from benchnav.system.temporary_folder import TemporaryFolder
 
 _PIPE_SIZE = 1 << 20  # bytes, where the system grants them
@@ -123,7 +123,7 @@ class Process:
         if not self._shares:
             return encode(kind, fields)
         parts, size = encode_parts(fields)
-        if size > SIZE:
+        if size > len(self._memory.memory):
             return encode(kind, fields)
         write_parts(parts, self._memory.memory, 0)
         return encode_head(kind, len(fields), size)

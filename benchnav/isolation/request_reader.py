@@ -4,7 +4,7 @@ import os
 from typing import Any
 
 from benchnav.isolation.frame import HEAD, decode, head
-from benchnav.isolation.shared_memory import map_readable
+from benchnav.isolation.shared_memory import open_offered
 
 
 class RequestReader:
@@ -29,9 +29,9 @@ class RequestReader:
         return None if body is None else (kind, decode(count, body))
 
     def agree(self, fields: dict[str, Any]) -> bool:
-        """Use the memory that the fields of `hello` offer, if any. Return whether it is used."""
+        """Return whether to use the memory that the fields of `hello` offer from now on."""
         if self._offered is None and "memory" in fields:
-            self._offered = map_readable(*fields["memory"].tolist())
+            self._offered = open_offered(*fields["memory"].tolist())
         self._agreed = self._offered is not None and "memory" in fields
         return self._agreed
 

@@ -16,7 +16,7 @@ import numpy as np
 from benchnav.arrays import IntArray
 
 SIZE = 1 << 26  # bytes; pages that no request reaches take no memory
-_SEAL_SEAL, _SEAL_SHRINK, _SEAL_GROW, _SEAL_FUTURE_WRITE = 0x1, 0x2, 0x4, 0x10
+_SEALS = 0x1 | 0x2 | 0x4 | 0x10  # against: other seals, shrinking, growing, writing
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +38,7 @@ class SharedMemory:
         try:
             os.ftruncate(descriptor, SIZE)
             memory = mmap.mmap(descriptor, SIZE)
-            seals = _SEAL_SEAL | _SEAL_SHRINK | _SEAL_GROW | _SEAL_FUTURE_WRITE
-            fcntl.fcntl(descriptor, fcntl.F_ADD_SEALS, seals)
+            fcntl.fcntl(descriptor, fcntl.F_ADD_SEALS, _SEALS)
         except (AttributeError, OSError):
             os.close(descriptor)
             return None
@@ -47,17 +46,28 @@ class SharedMemory:
 
     @property
     def offer(self) -> IntArray:
-        """Its descriptor and its size [bytes], as the process is informed of them."""
-        return np.array([self.descriptor, SIZE])
+        """The descriptor and the size [bytes], as `hello` reports them."""
+        return np.array([self.descriptor, len(self.memory)])
 
     def close_descriptor(self) -> None:
-        """Close the descriptor, once the process has its own."""
+        """Close the descriptor, once the process has inherited it."""
         os.close(self.descriptor)
 
 
-def map_readable(descriptor: int, size: int) -> memoryview:
-    """Return the memory behind a descriptor that the runner gave, and close the descriptor."""
+def open_offered(descriptor: int, size: int) -> memoryview | None:
+    """Return the memory that the runner offers, and close its descriptor.
+
+    Return None if the descriptor does not lead to it: a program between both, such as a
+    container's, may not pass it on.
+    """
     try:
-        return memoryview(mmap.mmap(descriptor, size, prot=mmap.PROT_READ))
-    finally:
-        os.close(descriptor)
+        import fcntl
+
+        seals = fcntl.fcntl(descriptor, fcntl.F_GET_SEALS)
+        if seals != _SEALS or os.fstat(descriptor).st_size != size:
+            return None
+        memory = mmap.mmap(descriptor, size, prot=mmap.PROT_READ)
+    except (ImportError, AttributeError, OSError):
+        return None
+    os.close(descriptor)
+    return memoryview(memory)
