@@ -16,8 +16,9 @@ from pydantic import TypeAdapter
 from benchnav.arena.sensing import Sensing
 from benchnav.errors import BenchnavError, MissingExtraError
 from benchnav.isolation.briefing_codec import decode_briefings
-from benchnav.isolation.frame import HEAD, decode, encode, head
+from benchnav.isolation.frame import encode
 from benchnav.isolation.observation_codec import decode_changed_maps, decode_observation
+from benchnav.isolation.request_reader import RequestReader
 from benchnav.named_module import search_in
 from benchnav.navigation.command_check import CallFailed, checked, exception_text, remarks_of
 from benchnav.navigation.map import Map
@@ -101,26 +102,14 @@ class Host:
 
 def serve(host: Host, requests: int, answers: int) -> None:
     """Answer the frames in the file ``requests`` until it ends; write to the file ``answers``."""
-    while (start := _read(requests, HEAD.size)) is not None:
-        kind, count, size = head(start)
-        body = _read(requests, size)
-        if body is None:
-            return
-        unsent = memoryview(encode(*host.answer(kind, decode(count, body))))
+    reader = RequestReader(requests)
+    while (request := reader.read()) is not None:
+        kind, answer = host.answer(*request)
+        if kind == "ready" and reader.agree(request[1]):
+            answer["memory"] = True
+        unsent = memoryview(encode(kind, answer))
         while unsent:
             unsent = unsent[os.write(answers, unsent) :]
-
-
-def _read(file: int, size: int) -> bytearray | None:
-    """Return ``size`` bytes; None if the file ends before."""
-    data = bytearray(size)
-    rest = memoryview(data)
-    while rest:
-        count = os.readv(file, [rest])
-        if not count:
-            return None
-        rest = rest[count:]
-    return data
 
 
 def main() -> None:

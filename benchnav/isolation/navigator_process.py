@@ -3,7 +3,7 @@
 import contextlib
 import math
 import os
-import selectors
+import select
 import signal
 import subprocess
 import sys
@@ -15,10 +15,22 @@ from weakref import finalize
 
 from benchnav.errors import NavigatorError
 from benchnav.isolation import sandbox
-from benchnav.isolation.frame import HEAD, Fields, decode, encode, head
+from benchnav.isolation.frame import (
+    HEAD,
+    Fields,
+    decode,
+    encode,
+    encode_head,
+    encode_parts,
+    head,
+    write_parts,
+)
+from benchnav.isolation.shared_memory import SharedMemory
 from benchnav.system.temporary_folder import TemporaryFolder
 
 _PIPE_SIZE = 1 << 20  # bytes, where the system grants them
+_CHUNK = 1 << 16  # bytes of one read
+_MAX_WAIT = 1 << 30  # [ms] of one call of poll
 _TAIL = 2000  # bytes of its standard error that are kept
 _F_SETPIPE_SZ = 1031  # Linux
 
@@ -31,20 +43,30 @@ class Process:
 
     def __init__(self, command: Sequence[str]) -> None:
         folder = TemporaryFolder("navigator")
+        self._memory = SharedMemory.create()
+        shared = () if self._memory is None else (self._memory.descriptor,)
         try:
             self._popen = subprocess.Popen(  # noqa: S603 - the command is the user's
                 [*sandbox.prefix(), *command],
                 bufsize=0, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                 cwd=folder.path, env=sandbox.environment(folder.path), start_new_session=True,
+                pass_fds=shared,
             )  # fmt: skip
         except BaseException:
             folder.remove()
             raise
+        finally:
+            if self._memory is not None:
+                self._memory.close_descriptor()
+        self._shares = False  # whether the program takes fields from the memory
         self._pipes = [self._popen.stdin, self._popen.stdout, self._popen.stderr]
         self._in, self._out, self._err = (pipe.fileno() for pipe in self._pipes if pipe)
+        self._poll = select.poll()
         for pipe in (self._in, self._out, self._err):
             os.set_blocking(pipe, False)
             _widen(pipe)
+        self._poll.register(self._out, select.POLLIN)
+        self._poll.register(self._err, select.POLLIN)
         self._stderr_tail = b""
         self.stop = finalize(self, _stop, self._popen, folder)
 
@@ -65,27 +87,56 @@ class Process:
         """
         if not self.alive:
             raise NavigatorError(self._ended())
-        unsent, received = memoryview(encode(kind, fields)), bytearray()
-        deadline, size = monotonic() + patience, None
-        with selectors.DefaultSelector() as pipes:
-            pipes.register(self._in, selectors.EVENT_WRITE)
-            pipes.register(self._out, selectors.EVENT_READ)
-            pipes.register(self._err, selectors.EVENT_READ)
-            while size is None or len(received) < size:
-                left = max(deadline - monotonic(), 0.0)
-                ready = pipes.select(None if math.isinf(left) else left)
-                if not ready and monotonic() >= deadline:
-                    self._fail(f"did not answer within {patience:g} s")
-                for key, _ in ready:
-                    if key.fd == self._in:
-                        unsent = self._send(unsent, pipes)
-                    elif key.fd == self._err:
-                        self._pass_on_stderr(pipes)
-                    else:
-                        self._receive(received)
-                if size is None and len(received) >= HEAD.size:
-                    size = HEAD.size + self._size(received)
-        return self._decode(received)
+        if (self._out, select.POLLIN) in self._poll.poll(0):
+            self._fail("sent more bytes than its last answer announces")
+        deadline = monotonic() + patience
+        unsent, received = self._send(memoryview(self._encode(kind, fields))), bytearray()
+        size = None
+        if unsent:
+            self._poll.register(self._in, select.POLLOUT)
+        while size is None or len(received) < size:
+            for pipe, _ in self._ready(deadline, patience):
+                if pipe == self._in:
+                    unsent = self._send(unsent)
+                    if not unsent:
+                        self._poll.unregister(self._in)
+                elif pipe == self._err:
+                    self._pass_on_stderr()
+                else:
+                    self._receive(received)
+            if size is None and len(received) >= HEAD.size:
+                size = HEAD.size + self._size(received)
+        if unsent:
+            self._fail("answered before it had read the whole request")
+        answer = self._decode(received)
+        if kind == "hello":
+            self._shares = self._memory is not None and answer[1].get("memory") is True
+        return answer
+
+    def _encode(self, kind: str, fields: Fields) -> bytes | bytearray:
+        """Return what the pipe must carry of a frame; the rest is in the memory."""
+        if self._memory is None:
+            return encode(kind, fields)
+        if kind == "hello":
+            self._shares = False
+            return encode(kind, {**fields, "memory": self._memory.offer})
+        if not self._shares:
+            return encode(kind, fields)
+        parts, size = encode_parts(fields)
+        if size > len(self._memory.memory):
+            return encode(kind, fields)
+        write_parts(parts, self._memory.memory, 0)
+        return encode_head(kind, len(fields), size)
+
+    def _ready(self, deadline: float, patience: float) -> list[tuple[int, int]]:
+        """Return the pipes that can be read or written. Raises NavigatorError at the deadline."""
+        while True:
+            left = min(max(deadline - monotonic(), 0.0) * 1e3, _MAX_WAIT)
+            ready = self._poll.poll(math.ceil(left))
+            if ready:
+                return ready
+            if monotonic() >= deadline:
+                self._fail(f"did not answer within {patience:g} s")
 
     def peak_memory(self) -> int:
         """Return the largest memory [bytes] it held in RAM; 0 if the system does not tell."""
@@ -99,17 +150,17 @@ class Process:
                         most = max(most, int(line.split()[1]) * 1024)
         return most
 
-    def _send(self, unsent: memoryview, pipes: selectors.BaseSelector) -> memoryview:
-        with contextlib.suppress(BlockingIOError, BrokenPipeError):  # its output shows its end
-            unsent = unsent[os.write(self._in, unsent) :]
-            if unsent:
-                return unsent
-        if self._in in pipes.get_map():
-            pipes.unregister(self._in)
-        return unsent
+    def _send(self, unsent: memoryview) -> memoryview:
+        """Write what the pipe takes now; return the rest."""
+        try:
+            return unsent[os.write(self._in, unsent) :]
+        except BlockingIOError:
+            return unsent
+        except BrokenPipeError:  # its output shows its end
+            return unsent[:0]
 
     def _receive(self, received: bytearray) -> None:
-        data = os.read(self._out, _PIPE_SIZE)
+        data = os.read(self._out, _CHUNK)
         if not data:
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self._popen.wait(2.0)
@@ -119,15 +170,16 @@ class Process:
             raise NavigatorError(cause)
         received += data
 
-    def _pass_on_stderr(self, pipes: selectors.BaseSelector | None = None) -> None:
+    def _pass_on_stderr(self) -> None:
         """Pass on its standard error, and keep the last bytes."""
         with contextlib.suppress(BlockingIOError):
-            data = os.read(self._err, _PIPE_SIZE)
+            data = os.read(self._err, _CHUNK)
             self._stderr_tail = (self._stderr_tail + data)[-_TAIL:]
             if data:
                 sys.stderr.write(data.decode("utf-8", "replace"))
-            elif pipes is not None:
-                pipes.unregister(self._err)
+            else:
+                with contextlib.suppress(KeyError):
+                    self._poll.unregister(self._err)
 
     def _size(self, received: bytearray) -> int:
         try:

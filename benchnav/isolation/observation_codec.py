@@ -12,6 +12,10 @@ from benchnav.navigation.observation import Observation
 from benchnav.sensors.readings import Edges, Neighbours, Rays
 
 _SENSORS: dict[str, Any] = {"rays": Rays, "neighbours": Neighbours, "edges": Edges}
+_READINGS = {  # of a sensor: (attribute, field of the frame) of each array
+    sensor: [(f.name, f"{sensor}.{f.name}") for f in fields_of(kind)]
+    for sensor, kind in _SENSORS.items()
+}
 _OWN = ("rows", "time", "active", "position", "heading", "velocity", "goal")
 _CHANGED = "map.rows"
 
@@ -19,11 +23,11 @@ _CHANGED = "map.rows"
 def encode_observation(observation: Observation, changed: Sequence[int]) -> dict[str, Any]:
     """Return the frame fields of an observation, and the maps of batch places ``changed`` only."""
     fields: dict[str, Any] = {name: getattr(observation, name) for name in _OWN}
-    for sensor in _SENSORS:
+    for sensor, names in _READINGS.items():
         readings = getattr(observation, sensor)
         if readings is not None:
-            for f in fields_of(readings):
-                fields[f"{sensor}.{f.name}"] = getattr(readings, f.name)
+            for attribute, name in names:
+                fields[name] = getattr(readings, attribute)
     if changed:
         fields[_CHANGED] = observation.rows[np.array(changed)]
         fields |= encode_maps([observation.maps[b] for b in changed])
@@ -40,9 +44,9 @@ def decode_changed_maps(fields: dict[str, Any]) -> dict[int, Map | None]:
 def decode_observation(fields: dict[str, Any], maps: dict[int, Map | None]) -> Observation:
     """Return the observation that `encode_observation` encoded; ``maps`` holds the maps by row."""
     readings_by_sensor = {
-        sensor: kind(**{f.name: fields[f"{sensor}.{f.name}"] for f in fields_of(kind)})
-        for sensor, kind in _SENSORS.items()
-        if f"{sensor}.{fields_of(kind)[0].name}" in fields
+        sensor: _SENSORS[sensor](**{attribute: fields[name] for attribute, name in names})
+        for sensor, names in _READINGS.items()
+        if names[0][1] in fields
     }
     own = {name: fields[name] for name in _OWN}
     held = tuple(maps[row] for row in fields["rows"].tolist())

@@ -5,7 +5,7 @@ import math
 import sys
 from abc import abstractmethod
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -181,4 +181,9 @@ def _with_note(error: BenchnavError, traceback: str) -> BenchnavError:
 
 def python_path() -> list[str]:
     """Return the import path of this process, as absolute folders."""
-    return [str(Path(entry).resolve()) for entry in sys.path]
+    return list(_absolute_folders(tuple(sys.path), Path.cwd()))
+
+
+@lru_cache(maxsize=1)
+def _absolute_folders(entries: tuple[str, ...], _current: Path) -> list[str]:
+    return [str(Path(entry).resolve()) for entry in entries]

@@ -29,26 +29,28 @@ def read():
     return kind.rstrip(b"\0").decode(), fields
 
 
-def write(kind, name="", code=b"t", shape=(), data=b""):
+def write(kind, name="", code=b"t", shape=(), data=b"", flush=True):
     body = b""
     if name:
         shape = (*shape, 0, 0, 0, 0)[:4], len(shape)
         body = FIELD.pack(name.encode(), code, shape[1], *shape[0]) + data + bytes(-len(data) % 8)
     sys.stdout.buffer.write(HEAD.pack(kind.encode(), 1 if name else 0, len(body)) + body)
-    sys.stdout.buffer.flush()
+    if flush:
+        sys.stdout.buffer.flush()
 
 
 def send_text(kind, text):
     write(kind, "text", shape=(len(text.encode()),), data=text.encode())
 
 
-def command(fields, how):
+def command(fields, how, flush=True):
     worlds, agents = fields["active"][0]
     value = math.nan if how == "nan" else 0.25
     shape = (worlds, agents, 3 if how == "shape" else 2)
     if how == "flags":
         return write("command", "command", b"?", shape, bytes(math.prod(shape)))
-    return write("command", "command", b"d", shape, struct.pack("<d", value) * math.prod(shape))
+    data = struct.pack("<d", value) * math.prod(shape)
+    return write("command", "command", b"d", shape, data, flush)
 
 
 def main(how):
@@ -80,8 +82,12 @@ def main(how):
                 write("failed", "reason", shape=(4,), data=b"lost")
             elif acts == 3 and how == "other":
                 write("done")
-            elif acts == 3 and how == "twice":
+            elif acts == 3 and how == "late":
                 command(fields, how)
+                time.sleep(0.2)  # the runner's next request waits in the pipe
+                command(fields, how)
+            elif acts == 3 and how == "twice":
+                command(fields, how, flush=False)
                 command(fields, how)
             else:
                 command(fields, how)

@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from benchnav.errors import BrokenPluginError, ConfigError, NavigatorError
+from benchnav.isolation.frame import encode
+from benchnav.isolation.navigator_process import Process
 from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.suite import Selection, load_suite
@@ -78,6 +80,19 @@ def test_its_episode_is_charged_with_the_cause(how, cause):
     (episode,) = play(how)
     assert episode.failure.startswith(cause)
     assert (episode.status[-1] == episode.status.max()).all()
+
+
+def test_an_answer_to_no_request_is_refused():
+    (episode,) = play("late")
+    assert episode.failure.startswith("act: its process sent more bytes than its")
+
+
+def test_an_answer_before_the_end_of_the_request_is_refused():
+    frame = encode("done", {})
+    answers = f"import os, time; os.write(1, {bytes(frame)!r}); time.sleep(60)"
+    process = Process([sys.executable, "-c", answers])
+    with pytest.raises(NavigatorError, match="before it had read the whole request"):
+        process.request("reset", {"much": np.zeros(1 << 20)}, 30.0)
 
 
 def test_it_is_hung_once_its_patience_is_over():
