@@ -6,10 +6,12 @@ from benchnav_baselines.learned.q_learning.cells import STEPS, lay_cells
 from benchnav_baselines.learned.q_learning.grid import QLearningGrid
 from benchnav_baselines.learned.q_learning.grid_learner import (
     Schooling,
+    best_moves,
     episodes,
     first_values,
     follow,
     learn,
+    next_cells,
 )
 
 from benchnav.arena.solid import Kind, Solid
@@ -108,16 +110,17 @@ def test_learning_equals_a_slow_twin():
     noise = rng.random(6000)
     fast, slow = first_values(cells, goal), first_values(cells, goal)
     fast[over] = slow[over] = 0.0
-    best, every = fast.argmax(axis=1), np.arange(len(fast))
-    top, ahead = fast[every, best], cells.after[every, best]
-    episodes(fast, best, top, ahead, cells.after, cells.cost, over, begin, noise, 0.3, 0.5, 60)
+    link, top = best_moves(fast, cells.after, np.flatnonzero(over))
+    episodes(fast, link, top, cells.after, cells.cost, begin, noise, 0.3, 0.5, 60)
     slow_episodes(slow, cells.after, cells.cost, over, begin, noise, 0.3, 0.5, 60)
     moved = (cells.after >= 0) & ~over[:, None]
     assert np.abs(fast[moved] - first_values(cells, goal)[moved]).max() > 0.5
     np.testing.assert_allclose(fast, slow, atol=1e-12)
-    np.testing.assert_array_equal(best, fast.argmax(axis=1))
+    best, every = fast.argmax(axis=1), np.arange(len(fast))
+    ahead = np.where(over, -1, cells.after[every, best])
     np.testing.assert_array_equal(top, fast[every, best])
-    np.testing.assert_array_equal(ahead, cells.after[every, best])
+    np.testing.assert_array_equal(next_cells(link), ahead)
+    np.testing.assert_array_equal(link[ahead >= 0] & 7, best[ahead >= 0])
 
 
 def test_the_learned_way_is_the_shortest_on_the_grid():
@@ -128,8 +131,8 @@ def test_the_learned_way_is_the_shortest_on_the_grid():
     over[ends] = True
     start = int(cells.joined(np.array([-4.2, -0.2]), 0.8)[0])
     how = Schooling(100_000, 0.1, 1.0)
-    values, best = learn(cells, ends, goal, start, how, np.random.default_rng(0))
-    assert follow(best, cells.after, over, start) > 0
+    values, after = learn(cells, ends, goal, start, how, np.random.default_rng(0))
+    assert follow(after, over, start) > 0
     exact = np.where(over, 0.0, np.inf)
     for _ in range(200):  # Bellman's equation, until nothing changes
         way = np.where(cells.after >= 0, cells.cost + exact[cells.after], np.inf)

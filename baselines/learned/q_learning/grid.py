@@ -7,6 +7,7 @@ import numpy as np
 from pydantic import Field
 
 from benchnav.arrays import FloatArray, IntArray
+from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import (
     Briefing,
     Map,
@@ -57,41 +58,54 @@ class QLearningGrid(Navigator):
                 state.learn(briefing.map, briefing.start, all_agents)
 
     def act(self, observation: Observation) -> FloatArray:
-        command = np.zeros((*observation.active.shape, 2))
+        place, aim = observation.position, observation.position.copy()
+        speed, dt = np.zeros(place.shape[:2]), np.ones(place.shape[:2])
         for world, row in enumerate(observation.rows):
             state, map = self._rows[int(row)], observation.maps[world]
-            count = len(state.briefing)
-            place = observation.position[world, :count]
+            agents = slice(len(state.briefing))
             if map is not None and map.revision != state.revision:
-                state.learn(map, place, np.flatnonzero(observation.active[world, :count]))
-            command[world, :count] = state.velocity(place)
-        return command
+                active = np.flatnonzero(observation.active[world, agents])
+                state.learn(map, place[world, agents], active)
+            state.aim(place[world, agents], aim[world, agents])
+            speed[world, agents] = state.briefing.preferred_speed
+            dt[world, agents] = state.briefing.dt
+        return approach(place, aim, speed, dt)
 
 
 class _Row:
-    """One world: the learned values of its agents, and their targets."""
+    """One world: the learned next cells of its agents, and their targets."""
 
     def __init__(self, briefing: Briefing, config: QLearningGrid.Config) -> None:
         self.briefing, self.config = briefing, config
         self.revision = -1
-        self.going = np.full(len(briefing), _GOAL)  # (A,) cell
+        self._reach = np.maximum(0.5 * briefing.preferred_speed * briefing.dt, 1e-3)  # (A,) [m]
+        self._going = np.full(len(briefing), _GOAL)  # (A,) cell
         self._streams = agent_streams(briefing)
-        self._policy: dict[int, tuple[Cells, IntArray]] = {}  # agent → cell after each cell
+        self._centre = np.empty((0, 2))  # (N, 2) [m] of cells; equal for any clearance
+        self._after = np.empty((len(briefing), 0), np.int64)  # (A, N) cell after each cell
 
     def learn(self, map: Map, place: FloatArray, agents: IntArray) -> None:
         """Learn again on ``map`` for agents at ``place`` (A, 2) [m]."""
         self.revision = map.revision
+        self._going[agents] = _GOAL
         laid: dict[tuple[float, float], Cells] = {}
         for agent in agents.tolist():
-            self.going[agent] = _GOAL
-            self._policy.pop(agent, None)
             radius, wanted = float(self.briefing.radius[agent]), self.config.clearance
             for clearance in dict.fromkeys((wanted, 0.5 * wanted, 0.0)):
                 key = (radius, clearance)
                 if key not in laid:
-                    laid[key] = lay_cells(map, self.config.cell, *key)
+                    laid[key] = self._laid(map, *key)
                 if self._learn_agent(laid[key], place[agent], agent):
                     break
+
+    def _laid(self, map: Map, radius: float, clearance: float) -> Cells:
+        """Return the cells of a map; without agents on the way if its bounds are new."""
+        cells = lay_cells(map, self.config.cell, radius, clearance)
+        if not np.array_equal(cells.centre, self._centre):
+            self._centre = cells.centre
+            self._after = np.full((len(self.briefing), len(cells.centre)), _GOAL)
+            self._going[:] = _GOAL
+        return cells
 
     def _learn_agent(self, cells: Cells, place: FloatArray, agent: int) -> bool:
         """Learn for one agent; return whether a path was found."""
@@ -103,30 +117,33 @@ class _Row:
         c = self.config
         how = Schooling(c.decisions, c.explore, c.rate)
         start = int(begin[0])
-        _, best = learn(cells, ends, goal, start, how, self._streams[agent])
-        over = np.zeros(len(best), np.bool_)
+        _, after = learn(cells, ends, goal, start, how, self._streams[agent])
+        over = np.zeros(len(after), np.bool_)
         over[ends] = True
-        if follow(best, cells.after, over, start) < 0:
+        if follow(after, over, start) < 0:
             return False
-        after = cells.after[np.arange(len(best)), best]
-        after[over] = _GOAL
-        self._policy[agent], self.going[agent] = (cells, after), start
+        self._after[agent], self._going[agent] = after, start
         return True
 
-    def velocity(self, place: FloatArray) -> FloatArray:
-        """Return velocities (A, 2) [m/s] towards target centres, or the next ones after arrival."""
-        aim = self.briefing.goal.copy()
-        speed, dt = self.briefing.preferred_speed, self.briefing.dt
-        for agent, (cells, after) in self._policy.items():
-            reach = max(0.5 * float(speed[agent]) * dt, 1e-3)
-            for _ in range(3):
-                cell = self.going[agent]
-                if cell == _GOAL:
-                    break
-                aim[agent] = cells.centre[cell]
-                offset = aim[agent] - place[agent]
-                if offset @ offset > reach * reach:
-                    break
-                self.going[agent] = after[cell]
-                aim[agent] = self.briefing.goal[agent]
-        return approach(place, aim, speed, np.full(len(speed), dt))
+    def aim(self, place: FloatArray, out: FloatArray) -> None:
+        """Set ``out`` (A, 2) [m] to centres of cells that lie ahead, or to goals."""
+        out[:] = self.briefing.goal
+        _pursue(place, self._centre, self._after, self._reach, self._going, out)
+
+
+@kernel_without_allocation
+def _pursue(
+    place: FloatArray, centre: FloatArray, after: IntArray, reach: FloatArray, going: IntArray,
+    aim: FloatArray,
+) -> None:  # fmt: skip
+    """Set ``aim`` (A, 2) to the centre of the cell ``going`` (A,), or of a next one if reached."""
+    for agent in range(len(going)):
+        for _ in range(3):
+            cell = going[agent]
+            if cell == _GOAL:
+                break
+            x, y = centre[cell, 0] - place[agent, 0], centre[cell, 1] - place[agent, 1]
+            if x * x + y * y > reach[agent] * reach[agent]:
+                aim[agent, 0], aim[agent, 1] = centre[cell, 0], centre[cell, 1]
+                break
+            going[agent] = after[agent, cell]

@@ -29,7 +29,9 @@ def learn(
     cells: Cells, ends: IntArray, goal: FloatArray, start: int, schooling: Schooling,
     rng: np.random.Generator,
 ) -> tuple[FloatArray, IntArray]:  # fmt: skip
-    """Return learned values (N, 8), -inf if there is no such move, and the best moves (N,).
+    """Return learned values (N, 8), -inf if there is no such move, and the next cells (N,).
+
+    The next cell is that of the best move; -1 in ``ends`` and in cells without a move.
 
     Args:
         cells: the arena.
@@ -39,20 +41,19 @@ def learn(
         schooling: its parameters.
         rng: of exploration.
     """
-    values, over = first_values(cells, goal), np.zeros(len(cells.centre), np.bool_)
-    over[ends] = True
-    values[over] = 0.0
-    best, usable, every = values.argmax(axis=1), cells.usable, np.arange(len(values))
-    top, ahead = values[every, best], cells.after[every, best]
-    count = schooling.decisions // 4 + 1
-    begin = np.where(np.arange(count) % 2 == 0, start, rng.choice(usable, count))
+    values = first_values(cells, goal)
+    values[ends] = 0.0
+    link, top = best_moves(values, cells.after, ends)
+    usable, count = cells.usable, schooling.decisions // 4 + 1
+    begin = rng.choice(usable, count)
+    begin[::2] = start
     noise = rng.random(schooling.decisions)
     longest = 4 * (len(usable) + 1)
     episodes(
-        values, best, top, ahead, cells.after, cells.cost, over, begin, noise,
-        schooling.explore, schooling.rate, longest,
+        values, link, top, cells.after, cells.cost, begin, noise, schooling.explore,
+        schooling.rate, longest,
     )  # fmt: skip
-    return values, best
+    return values, next_cells(link)
 
 
 def first_values(cells: Cells, goal: FloatArray) -> FloatArray:
@@ -62,64 +63,99 @@ def first_values(cells: Cells, goal: FloatArray) -> FloatArray:
     """
     x, y = np.maximum(np.abs(cells.centre - goal) - 1.5 * cells.side, 0.0).T
     octile = np.maximum(x, y) + (np.sqrt(2.0) - 1.0) * np.minimum(x, y)
-    values: FloatArray = np.where(cells.after >= 0, -cells.cost - octile[cells.after], -np.inf)
+    values = np.full(cells.after.shape, -np.inf)
+    _add_moves(octile, cells.after, cells.cost, values)
     return values
 
 
 @kernel_without_allocation
+def _add_moves(octile: FloatArray, after: IntArray, cost: FloatArray, values: FloatArray) -> None:
+    """Set ``values`` (N, 8) of all moves that exist."""
+    for cell in range(after.shape[0]):
+        for move in range(after.shape[1]):
+            if after[cell, move] >= 0:
+                values[cell, move] = -cost[move] - octile[after[cell, move]]
+
+
+def best_moves(
+    values: FloatArray, after: IntArray, ends: IntArray
+) -> tuple[IntArray, FloatArray]:  # fmt: skip
+    """Return the link (N,) to the first of the best moves of each cell, and its value (N,).
+
+    A link is 8 × the cell that the move leads to + the move, so that learning reads one number a
+    cell; it is negative in ``ends`` and in cells without a move.
+    """
+    link, top = np.empty(len(values), np.int64), np.empty(len(values))
+    _set_best_moves(values, after, link, top)
+    link[ends] = -1
+    return link, top
+
+
+def next_cells(link: IntArray) -> IntArray:
+    """Return the cells (N,) that links lead to; -1 if they are negative."""
+    return link >> 3
+
+
+@kernel_without_allocation
+def _set_best_moves(values: FloatArray, after: IntArray, link: IntArray, top: FloatArray) -> None:
+    for cell in range(len(values)):
+        move = _best(values, cell)
+        link[cell], top[cell] = 8 * after[cell, move] + move, values[cell, move]
+
+
+@kernel_without_allocation
 def episodes(
-    values: FloatArray, best: IntArray, top: FloatArray, ahead: IntArray, after: IntArray,
-    cost: FloatArray, over: BoolArray, begin: IntArray, noise: FloatArray, explore: float,
-    rate: float, longest: int,
+    values: FloatArray, link: IntArray, top: FloatArray, after: IntArray, cost: FloatArray,
+    begin: IntArray, noise: FloatArray, explore: float, rate: float, longest: int,
 ) -> None:  # fmt: skip
     """Run episodes that begin in ``begin`` (E,), until the ``noise`` (T,) of moves is used up.
 
-    ``best`` (N,) is the first of the best moves of each cell, ``top`` (N,) its value and ``ahead``
-    (N,) its cell. They are kept up to date: most moves are the best ones and change no value, and
-    read only these small arrays.
+    ``link`` (N,) and ``top`` (N,) are those of `best_moves`. They are kept up to date: most moves
+    are the best ones and change no value, and read only these small arrays.
     """
-    used = 0
+    used, decisions = 0, len(noise)
     for e in range(len(begin)):
         cell = begin[e]
+        here = link[cell]
         for _ in range(longest):
-            if over[cell]:
+            if here < 0:
                 break
-            if used == len(noise):
+            if used == decisions:
                 return
-            move, then, old = best[cell], ahead[cell], top[cell]
+            move, then, old = here & 7, here >> 3, top[cell]
             if noise[used] < explore:
                 tried = int(noise[used] / explore * 8)
                 if after[cell, tried] >= 0:
                     move, then, old = tried, after[cell, tried], values[cell, tried]
             used += 1
+            there = link[then]
             target = top[then] - cost[move]
             value = old + rate * (target - old)
             if value != old:
                 values[cell, move] = value
                 chosen = _best(values, cell)
-                best[cell], top[cell] = chosen, values[cell, chosen]
-                ahead[cell] = after[cell, chosen]
-            cell = then
+                link[cell], top[cell] = 8 * after[cell, chosen] + chosen, values[cell, chosen]
+            cell, here = then, there
 
 
 @kernel_without_allocation
 def _best(values: FloatArray, cell: int) -> int:
     """Return the first of the highest values of a cell."""
-    best = 0
-    for m in range(1, values.shape[1]):
-        if values[cell, m] > values[cell, best]:
-            best = m
+    best, top = 0, values[cell, 0]
+    for m in range(1, 8):
+        if values[cell, m] > top:
+            best, top = m, values[cell, m]
     return best
 
 
 @kernel_without_allocation
-def follow(best: IntArray, after: IntArray, over: BoolArray, start: int) -> int:
-    """Return the greedy policy's number of moves from ``start`` to an end; -1 if it fails."""
+def follow(after: IntArray, over: BoolArray, start: int) -> int:
+    """Return the number of moves from ``start`` to an end by `next_cells`; -1 if it fails."""
     cell = start
-    for k in range(len(best)):
+    for k in range(len(after)):
         if over[cell]:
             return k
-        cell = after[cell, best[cell]]
+        cell = after[cell]
         if cell < 0:
             return -1
     return -1

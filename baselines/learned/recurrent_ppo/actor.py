@@ -4,14 +4,15 @@ The summation order of a library's matrix product depends on the size of the bat
 here each agent's sums run over the inputs in order. Neither torch nor an extra is needed.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from benchnav.kernels import kernel
+from benchnav.kernels import inlined, kernel_without_allocation
+
+from .activations import exp, tanh
 
 Float32Array = npt.NDArray[np.float32]
 _BLOCK = 4  # agents that share a pass over the weights
@@ -63,10 +64,10 @@ class Actor:
         first = 0
         for layer in self.lstm:
             size = len(layer.bias) // 4
-            h, c = state[:, first : first + size], state[:, first + size : first + 2 * size]
+            h = state[:, first : first + size]
             gates = affine(np.concatenate([x, h], axis=1), layer.weight, layer.bias)
             x = np.empty((len(x), size), np.float32)
-            _cell(gates, c, x)
+            _cell(gates, state, first, x)
             h[:] = x
             first += 2 * size
         for dense in self.dense:
@@ -87,7 +88,7 @@ def affine(x: Float32Array, weight: Float32Array, bias: Float32Array) -> Float32
     return out[: len(x)]
 
 
-@kernel
+@kernel_without_allocation
 def _affine(x: Float32Array, weight: Float32Array, bias: Float32Array, out: Float32Array) -> None:
     for first in range(0, len(x), _BLOCK):
         a, b, c, d = out[first], out[first + 1], out[first + 2], out[first + 3]
@@ -107,17 +108,19 @@ def _affine(x: Float32Array, weight: Float32Array, bias: Float32Array, out: Floa
                 d[j] += s * w
 
 
-@kernel
-def _sigmoid(x: float) -> float:
-    return 1.0 / (1.0 + math.exp(-x))
+@inlined
+def _sigmoid(x: np.float32) -> float:
+    return 1.0 / (1.0 + float(exp(-x)))
 
 
-@kernel
-def _cell(gates: Float32Array, c: Float32Array, h: Float32Array) -> None:
+@kernel_without_allocation
+def _cell(gates: Float32Array, state: Float32Array, first: int, h: Float32Array) -> None:
+    """Set ``h`` (N, H), and advance the cells in the columns ``first`` + H … of ``state``."""
     size = h.shape[1]
     for i in range(len(h)):
+        gate, c, out = gates[i], state[i, first + size :], h[i]
         for j in range(size):
-            keep = _sigmoid(gates[i, size + j]) * c[i, j]
-            fresh = _sigmoid(gates[i, j]) * math.tanh(gates[i, 2 * size + j])
-            c[i, j] = keep + fresh
-            h[i, j] = _sigmoid(gates[i, 3 * size + j]) * math.tanh(c[i, j])
+            keep = _sigmoid(gate[size + j]) * c[j]
+            fresh = _sigmoid(gate[j]) * tanh(gate[2 * size + j])
+            c[j] = keep + fresh
+            out[j] = _sigmoid(gate[3 * size + j]) * tanh(c[j])

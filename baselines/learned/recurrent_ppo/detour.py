@@ -12,7 +12,7 @@ import numpy as np
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.envs import Bodies
 from benchnav.geometry import nearest_on_segment
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Briefing, Observation, RowTable
 
 PLACE = 0.5  # [m] an agent that stays within this distance makes no progress
@@ -73,7 +73,7 @@ class Detours:
         self._kept.write("state", observation.rows, state)
 
 
-@kernel
+@kernel_without_allocation
 def _detour(
     indices: IntArray, patience: float, dt: FloatArray, position: FloatArray, heading: FloatArray,
     goal: FloatArray, radius: FloatArray, max_speed: FloatArray, max_turn: FloatArray,
@@ -104,7 +104,7 @@ def _detour(
         out[i, 1] = min(max(error / dt[i], -max_turn[i]), max_turn[i])
 
 
-@kernel
+@kernel_without_allocation
 def _course(
     x: float, y: float, ahead: float, last: float, again: bool, radius: float, other: FloatArray,
     other_radius: FloatArray, others: int, first: FloatArray, second: FloatArray, edges: int,
@@ -123,7 +123,7 @@ def _course(
     return chosen
 
 
-@kernel
+@kernel_without_allocation
 def _room(
     x: float, y: float, course: float, radius: float, other: FloatArray, other_radius: FloatArray,
     others: int, first: FloatArray, second: FloatArray, edges: int,

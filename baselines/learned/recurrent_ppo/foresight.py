@@ -17,7 +17,7 @@ from benchnav.arena import Kind
 from benchnav.arrays import ByteArray, FloatArray, IntArray
 from benchnav.envs import Bodies
 from benchnav.geometry import nearest_on_segment
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Observation
 
 HORIZON = 2.0  # [s] of prediction for agents and dynamic obstacles
@@ -27,6 +27,7 @@ TICK = 0.1  # [s] between tested positions
 MARGIN = 0.05  # [m] of clearance beyond touching; twice as much from dynamic obstacles
 HIT = 4.0  # danger of a contact at the end of the horizon,
 SOONER = 8.0  # and the additional danger of an immediate contact
+SLACK = 1e-6  # [m] for rounding, where objects out of reach are left out
 BACK = 4.0  # danger of an immediate contact with an obstacle that would have to turn back
 SPEEDS = 5
 TURNS = 9
@@ -67,7 +68,7 @@ def foresee(
     return out.reshape(command.shape)
 
 
-@kernel
+@kernel_without_allocation
 def _correct(
     indices: IntArray, position: FloatArray, heading: FloatArray, goal: FloatArray,
     tolerance: FloatArray, radius: FloatArray, max_speed: FloatArray, max_turn: FloatArray,
@@ -77,9 +78,16 @@ def _correct(
 ) -> None:  # fmt: skip
     for i in indices:
         v, w = out[i, 0], out[i, 1]
+        way = max(abs(v), max_speed[i]) * (1.0 + SLACK)
+        met = _others_in_reach(
+            position[i], way * HORIZON, radius[i], other[i], velocity[i], other_radius[i], others[i]
+        )
+        near = _edges_in_reach(
+            position[i], way * FIXED + radius[i], first[i], second[i], edges[i]
+        )  # fmt: skip
         best = _danger(
             v, w, position[i], heading[i], goal[i], tolerance[i], radius[i], other[i], velocity[i],
-            other_radius[i], kind[i], others[i], first[i], second[i], edges[i], holds,
+            other_radius[i], kind[i], met, first[i], second[i], near, holds,
         )  # fmt: skip
         if best == 0.0:
             continue
@@ -92,15 +100,47 @@ def _correct(
                     continue
                 cost = apart + _danger(
                     cv, cw, position[i], heading[i], goal[i], tolerance[i], radius[i], other[i],
-                    velocity[i], other_radius[i], kind[i], others[i], first[i], second[i],
-                    edges[i], holds,
+                    velocity[i], other_radius[i], kind[i], met, first[i], second[i], near, holds,
                 )  # fmt: skip
                 if cost < best:
                     best = cost
                     out[i, 0], out[i, 1] = cv, cw
 
 
-@kernel
+@kernel_without_allocation
+def _others_in_reach(
+    position: FloatArray, way: float, radius: float, other: FloatArray, velocity: FloatArray,
+    other_radius: FloatArray, others: int,
+) -> int:  # fmt: skip
+    """Return how many agents and obstacles to test: those after them cannot be met.
+
+    ``way`` [m] is the longest of the agent before the horizon.
+    """
+    last = 0
+    for j in range(others):
+        dx, dy = other[j, 0] - position[0], other[j, 1] - position[1]
+        u, s = velocity[j, 0], velocity[j, 1]
+        reach = way + math.sqrt(u * u + s * s) * HORIZON + radius + other_radius[j] + 2.0 * MARGIN
+        if _within(dx, dy, reach + SLACK):
+            last = j + 1
+    return last
+
+
+@kernel_without_allocation
+def _edges_in_reach(
+    position: FloatArray, way: float, first: FloatArray, second: FloatArray, edges: int
+) -> int:
+    """Return how many edges to test: those after them cannot be met within ``way`` [m]."""
+    last = 0
+    x, y = position[0], position[1]
+    for e in range(edges):
+        px, py = nearest_on_segment(x, y, first[e, 0], first[e, 1], second[e, 0], second[e, 1])
+        if _within(px - x, py - y, way + MARGIN + SLACK):
+            last = e + 1
+    return last
+
+
+@kernel_without_allocation
 def _danger(
     v: float, w: float, position: FloatArray, heading: float, goal: FloatArray, tolerance: float,
     radius: float, other: FloatArray, velocity: FloatArray, other_radius: FloatArray,
@@ -121,7 +161,7 @@ def _danger(
     return least
 
 
-@kernel
+@kernel_without_allocation
 def _danger_held(
     v: float, w: float, position: FloatArray, heading: float, goal: FloatArray, tolerance: float,
     radius: float, other: FloatArray, velocity: FloatArray, other_radius: FloatArray,
@@ -158,6 +198,6 @@ def _danger_held(
     return back
 
 
-@kernel
+@kernel_without_allocation
 def _within(dx: float, dy: float, reach: float) -> bool:
     return bool(dx * dx + dy * dy < reach * reach)

@@ -14,7 +14,7 @@ import numpy as np
 from benchnav.arena import Kind
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.geometry import nearest_on_segment
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel, kernel_without_allocation
 from benchnav.navigation import Briefing, Edges, Neighbours, Observation, RowTable
 
 MEMORY = 2.0  # [s] for which an agent or mover is remembered
@@ -136,7 +136,7 @@ def _meet(
                 n += 1
 
 
-@kernel
+@kernel_without_allocation
 def _touch(
     indices: IntArray, position: FloatArray, heading: FloatArray, radius: FloatArray,
     angle: FloatArray, distance: FloatArray, ray_kind: ByteArray, first: FloatArray,

@@ -118,10 +118,17 @@ class WorkerPool:
                 self._start(slot, self._next_task(slot))
 
     def _next_task(self, slot: WorkerSlot) -> Task:
-        """Prefer a task of the same navigator, then of one that no other slot runs."""
-        others = {other.process_key for other in self.slots if other.task is not None}
-        ranks = ((slot.process_key != t.process_key, t.process_key in others) for t in self.pending)
-        place = min(enumerate(ranks), key=lambda one: one[1])[0]
+        """Prefer a task for the slot's process, of a navigator that no other slot runs.
+
+        A process takes tasks with drivers after those without, but not the reverse.
+        """
+        others = {other.process_key[0] for other in self.slots if other.task is not None}
+
+        def rank(task: Task) -> tuple[bool, bool, bool]:
+            navigator, drivers = task.process_key
+            return not slot.may_run(task), navigator in others, drivers != ""
+
+        place = min(enumerate(self.pending), key=lambda one: rank(one[1]))[0]
         task = self.pending[place]
         del self.pending[place]
         return task

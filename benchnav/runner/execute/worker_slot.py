@@ -38,22 +38,28 @@ class WorkerSlot:
         self._first_count = 0.0  # of the call timer, when the task began
         self._max_count = 0.0  # by which that count may rise until the task ends
         self._measuring_time = 0.0  # [s] since the last episode was measured
-        self.process_key = ""  # of the tasks that its worker may run
+        self.process_key = ("", "")  # of the last task of its worker
         self.task: Task | None = None
         self.reported = 0  # episodes of its task, to the progress
 
     def start(self, task: Task) -> None:
-        """Begin a task, in a new process if the task needs one or has another process key."""
+        """Begin a task, in a new process if the task needs one or the worker may not run it."""
         self.task, self.reported, self._state = task, 0, "playing"
-        if task.new_process or task.forced_failure or self.process_key != task.process_key:
+        if task.new_process or task.forced_failure or not self.may_run(task):
             self._stop_worker()
         if self._worker is None:
             self._start_worker(task)
+        self.process_key = task.process_key
         self._tasks += 1
         self._first_count, self._max_count = self._timer.notes[0], 2.0 * task.max_calls
         self._send(self._worker, task)
         if self._measurer is None:
             self._start_measurer()  # now, so that it is ready when the worker is
+
+    def may_run(self, task: Task) -> bool:
+        """Whether the worker has run no code of navigators or drivers but that of the task."""
+        navigator, drivers = task.process_key
+        return self.process_key in ((navigator, drivers), (navigator, ""))
 
     def files(self) -> list[int]:
         """Return the file descriptors of its channels, for `select`."""
@@ -127,13 +133,12 @@ class WorkerSlot:
             "benchnav.runner.execute.worker:serve", main=is_of_main(places)
         )
         self._timer, self._tasks = CallTimer(self._worker.notes), 0
-        self.process_key = task.process_key
         self._send(self._worker, self._registrations)
 
     def _stop_worker(self) -> None:
         if self._worker is not None:
             self._worker.close()
-        self._worker, self.process_key = None, ""
+        self._worker, self.process_key = None, ("", "")
 
     def _send(self, child: Child | None, content: Any) -> None:
         if child is not None:

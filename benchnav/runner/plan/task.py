@@ -57,10 +57,11 @@ class Task:
         return range(self.first, self.stop)
 
     @property
-    def process_key(self) -> str:
-        """A key that is equal for tasks of the same navigators, which may share a process."""
+    def process_key(self) -> tuple[str, str]:
+        """The navigator, and the scenario's drivers ("" if none), whose code a process runs."""
         job, own = self.job, self.job.contestant
-        return repr((own.label, own.hash, own.source_hash, job.scenario.driver_specs))
+        drivers = job.scenario.driver_specs
+        return repr((own.label, own.hash, own.source_hash)), repr(drivers) if drivers else ""
 
     @property
     def load(self) -> Load:
