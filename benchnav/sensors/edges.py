@@ -13,25 +13,8 @@ from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel, kernel_without_allocation
-from benchnav.sensors.sight import (
-    DX,
-    DY,
-    FREE,
-    FROM_X0,
-    FROM_Y0,
-    LENGTH2,
-    R,
-    SIDE,
-    TABLE,
-    X0,
-    X1,
-    Y0,
-    Y1,
-    copy_fixed,
-    in_sight,
-    list_blockers,
-    stand_at,
-)
+from benchnav.sensors import sight
+from benchnav.sensors.sight import in_sight, list_blockers, stand_at
 
 CANDIDATES = 64  # nearest facing edges that are tested for visibility
 _STATIC = int(Kind.STATIC)
@@ -58,7 +41,7 @@ def find_edges(
     _find_in_rows(
         low, high, chosen, limit, bulge, occlusion, worlds, agents, bodies, shapes, capsules, start,
         item, first, second, before, after, first_convex, second_convex, count, best, code,
-        np.empty(10), np.empty(TABLE), np.empty(bodies.shape[1], np.int64),
+        np.empty(10), np.empty(sight.TABLE), np.empty(bodies.shape[1], np.int64),
     )  # fmt: skip
 
 
@@ -74,7 +57,7 @@ def _find_in_rows(
     width, most = first.shape[1], first.shape[2]
     for b in range(low // width, (high + width - 1) // width):
         world, here, others = worlds[b], agents[b], bodies[b]
-        size, discs = copy_fixed(world, capsules, table)
+        size, discs = sight.copy_fixed(world, capsules, table)
         for k in range(max(low - b * width, 0), min(high - b * width, width)):
             i, kept = chosen[b, k], 0
             if i < 0 or not here[i].present:
@@ -156,25 +139,36 @@ def _gather_few(
     best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
     """Gather from a table of all fixed capsules."""
+    px, py, reach2 = a.x, a.y, limit * limit
     for k in range(size):
-        dx, dy = table[DX + k], table[DY + k]
-        along = -(dx * table[FROM_X0 + k] + dy * table[FROM_Y0 + k])
-        length2 = table[LENGTH2 + k]
+        dx, dy = table[sight.DX + k], table[sight.DY + k]
+        along = -(dx * table[sight.FROM_X0 + k] + dy * table[sight.FROM_Y0 + k])
+        length2 = table[sight.LENGTH2 + k]
         t = along / length2
-        x = table[X0 + k] + t * dx
-        x = table[X0 + k] if along <= 0.0 else (table[X1 + k] if along >= length2 else x)
-        y = table[Y0 + k] + t * dy
-        y = table[Y0 + k] if along <= 0.0 else (table[Y1 + k] if along >= length2 else y)
-        table[FREE + k] = (a.x - x) * (a.x - x) + (a.y - y) * (a.y - y)
+        x = table[sight.X0 + k] + t * dx
+        x = (
+            table[sight.X0 + k]
+            if along <= 0.0
+            else (table[sight.X1 + k] if along >= length2 else x)
+        )
+        y = table[sight.Y0 + k] + t * dy
+        y = (
+            table[sight.Y0 + k]
+            if along <= 0.0
+            else (table[sight.Y1 + k] if along >= length2 else y)
+        )
+        table[sight.FREE + k] = (px - x) * (px - x) + (py - y) * (py - y)
     n = 0
     for k in range(world.last - world.first):
         p = world.first + k
-        if table[R + k] > 0.0:
+        if table[sight.R + k] > 0.0:
             n = _consider(a, 0.0, 0.0, capsules[p], p, limit, n, best, code)
-        elif table[SIDE + k] < 0.0 and table[FREE + k] <= limit * limit:
-            c = capsules[p]
-            if c.nx * (a.x - c.x0) + c.ny * (a.y - c.y0) > 0.0:
-                n = _insert(table[FREE + k], 8 * p, n, best, code)
+        elif table[sight.SIDE + k] < 0.0 and table[sight.FREE + k] <= reach2:
+            ahead = table[sight.NX + k] * (a.x - table[sight.X0 + k]) + table[sight.NY + k] * (
+                a.y - table[sight.Y0 + k]
+            )
+            if ahead > 0.0:
+                n = _insert(table[sight.FREE + k], 8 * p, n, best, code)
     return n
 
 
@@ -241,7 +235,7 @@ def _offer(
 
 @kernel_without_allocation
 def _insert(d2: float, edge_code: int, n: int, best: FloatArray, code: IntArray) -> int:
-    """Insert an edge into n sorted ones if it is nearer or if there is room; return their number."""
+    """Insert an edge into n sorted ones, if it is near enough or there is room; return n."""
     if n == len(best) and d2 >= best[n - 1]:
         return n
     n = min(n + 1, len(best))

@@ -17,12 +17,12 @@ FEW = 64  # up to this many capsules, testing all is cheaper than walking the gr
 PADDED = 16  # the rows of a table are filled up to a multiple of this many capsules
 SPARE = 1e-3  # [m] farther than it must be, an obstacle is out of sight, whatever the rounding
 
-# rows of a table, each of FEW numbers: first end, second end, direction, its square, radius;
-# then as seen by the agent: its side of the line, both ends, and a free row
-X0, Y0, X1, Y1, DX, DY, LENGTH2, R, SIDE, FROM_X0, FROM_Y0, FROM_X1, FROM_Y1, FREE = range(
-    0, 14 * FEW, FEW
+# rows of a table, each of FEW numbers: first end, second end, direction, its square, unit normal,
+# radius; then as seen by the agent: its side of the line, both ends, and a free row
+X0, Y0, X1, Y1, DX, DY, LENGTH2, NX, NY, R, SIDE, FROM_X0, FROM_Y0, FROM_X1, FROM_Y1, FREE = range(
+    0, 16 * FEW, FEW
 )
-TABLE = 14 * FEW  # numbers of a table
+TABLE = 16 * FEW  # numbers of a table
 
 
 @kernel_without_allocation
@@ -40,6 +40,7 @@ def copy_fixed(world: Any, capsules: AnyArray, table: FloatArray) -> tuple[int, 
         dx, dy = c.x1 - c.x0, c.y1 - c.y0
         table[X0 + k], table[Y0 + k], table[X1 + k], table[Y1 + k] = c.x0, c.y0, c.x1, c.y1
         table[DX + k], table[DY + k], table[R + k] = dx, dy, c.r
+        table[NX + k], table[NY + k] = c.nx, c.ny
         length2 = dx * dx + dy * dy
         table[LENGTH2 + k] = length2 if length2 > 0.0 else 1.0
         discs = discs or c.r > 0.0
@@ -62,7 +63,7 @@ def stand_at(px: float, py: float, size: int, table: FloatArray) -> None:
 
 @kernel_without_allocation
 def list_blockers(a: Any, limit: float, count: int, bodies: AnyArray, blockers: IntArray) -> int:
-    """List the bodies that may hide a point within ``limit`` [m] of agent a; return their number."""
+    """List bodies that may hide a point within ``limit`` [m] of agent a; return their number."""
     n = 0
     for m in range(count):
         x, y, far = bodies[m].x - a.x, bodies[m].y - a.y, limit + bodies[m].bound + SPARE
