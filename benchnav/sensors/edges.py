@@ -13,7 +13,8 @@ from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel, kernel_without_allocation
-from benchnav.sensors.sight import FEW, in_sight
+from benchnav.sensors import sight
+from benchnav.sensors.sight import in_sight, list_blockers, stand_at
 
 CANDIDATES = 64  # nearest facing edges that are tested for visibility
 _STATIC = int(Kind.STATIC)
@@ -37,10 +38,10 @@ def find_edges(
     """
     best = np.empty(CANDIDATES)  # squared distances, rising
     code = np.empty(CANDIDATES, np.int64)  # 8 (capsule) + side of the octagon, see `_edge`
-    edge = np.empty(10)
     _find_in_rows(
         low, high, chosen, limit, bulge, occlusion, worlds, agents, bodies, shapes, capsules, start,
-        item, first, second, before, after, first_convex, second_convex, count, best, code, edge,
+        item, first, second, before, after, first_convex, second_convex, count, best, code,
+        np.empty(10), np.empty(sight.TABLE), np.empty(bodies.shape[1], np.int64),
     )  # fmt: skip
 
 
@@ -51,25 +52,32 @@ def _find_in_rows(
     agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray,
     item: IntArray, first: FloatArray, second: FloatArray, before: FloatArray, after: FloatArray,
     first_convex: BoolArray, second_convex: BoolArray, count: IntArray,
-    best: FloatArray, code: IntArray, edge: FloatArray,
+    best: FloatArray, code: IntArray, edge: FloatArray, table: FloatArray, blockers: IntArray,
 ) -> None:  # fmt: skip
     width, most = first.shape[1], first.shape[2]
     for b in range(low // width, (high + width - 1) // width):
         world, here, others = worlds[b], agents[b], bodies[b]
+        size, discs = sight.copy_fixed(world, capsules, table)
         for k in range(max(low - b * width, 0), min(high - b * width, width)):
             i, kept = chosen[b, k], 0
             if i < 0 or not here[i].present:
                 continue
             a = here[i]
-            n = _gather(a, limit, bulge, world, others, shapes, capsules, start, item, best, code)
+            stand_at(a.x, a.y, size, table)
+            blocker_count = list_blockers(a, limit, world.bodies, others, blockers)
+            n = _gather(
+                a, limit, bulge, world, others, shapes, capsules, start, item, size, table, best,
+                code,
+            )  # fmt: skip
             for s in range(n):
                 if kept == most:
                     break
                 _edge(code[s], capsules, shapes, others, edge)
                 _clip(a, limit, edge)
                 if occlusion and not _visible(
-                    a, edge, world, capsules, start, item, others, shapes
-                ):
+                    a, edge, world, capsules, start, item, others, shapes, size, discs, table,
+                    blocker_count, blockers,
+                ):  # fmt: skip
                     continue
                 for t in range(2):
                     first[b, k, kept, t], second[b, k, kept, t] = edge[t], edge[2 + t]
@@ -83,19 +91,24 @@ def _find_in_rows(
 @kernel_without_allocation
 def _visible(
     a: Any, edge: FloatArray, world: Any, capsules: AnyArray, start: IntArray, item: IntArray,
-    bodies: AnyArray, shapes: AnyArray,
+    bodies: AnyArray, shapes: AnyArray, size: int, discs: bool, table: FloatArray,
+    blocker_count: int, blockers: IntArray,
 ) -> bool:  # fmt: skip
     """Whether the nearest point of the edge, its middle, or one of its ends is in sight.
 
     The line of sight ends just before the point, so that the edge does not hide itself.
     """
     for point in range(4):
-        x, y = nearest_on_segment(a.x, a.y, edge[0], edge[1], edge[2], edge[3])
-        if point > 0:
+        if point == 0:
+            x, y = nearest_on_segment(a.x, a.y, edge[0], edge[1], edge[2], edge[3])
+        else:
             u = 0.5 if point == 1 else (END if point == 2 else 1.0 - END)
             x, y = edge[0] + u * (edge[2] - edge[0]), edge[1] + u * (edge[3] - edge[1])
         x, y = a.x + (x - a.x) * BEFORE, a.y + (y - a.y) * BEFORE
-        if in_sight(a.x, a.y, x, y, -1, world, capsules, start, item, bodies, shapes):
+        if in_sight(
+            a.x, a.y, x, y, -1, world, capsules, start, item, bodies, shapes, size, discs, table,
+            blocker_count, blockers,
+        ):  # fmt: skip
             return True
     return False
 
@@ -103,15 +116,12 @@ def _visible(
 @kernel_without_allocation
 def _gather(
     a: Any, limit: float, bulge: float, world: Any, bodies: AnyArray, shapes: AnyArray,
-    capsules: AnyArray, start: IntArray, item: IntArray, best: FloatArray, code: IntArray,
+    capsules: AnyArray, start: IntArray, item: IntArray, size: int, table: FloatArray,
+    best: FloatArray, code: IntArray,
 ) -> int:  # fmt: skip
     """Gather the nearest facing edges within ``limit``, sorted; return their number."""
-    n = 0
-    if world.last - world.first <= FEW:
-        for p in range(world.first, world.last):
-            c = capsules[p]
-            if c.nx * (a.x - c.x0) + c.ny * (a.y - c.y0) > 0.0 or c.before < 0:
-                n = _consider(a, 0.0, 0.0, c, p, limit, n, best, code)
+    if size >= 0:
+        n = _gather_few(a, limit, world, capsules, size, table, best, code)
     else:
         n = _gather_cells(a, limit, limit + bulge, world, capsules, start, item, best, code)
     for m in range(world.bodies):
@@ -120,6 +130,45 @@ def _gather(
             for q in range(body.first, body.last):
                 at = len(capsules) + q
                 n = _consider(a, body.x, body.y, shapes[q], at, limit, n, best, code)
+    return n
+
+
+@kernel_without_allocation
+def _gather_few(
+    a: Any, limit: float, world: Any, capsules: AnyArray, size: int, table: FloatArray,
+    best: FloatArray, code: IntArray,
+) -> int:  # fmt: skip
+    """Gather from a table of all fixed capsules."""
+    px, py, reach2 = a.x, a.y, limit * limit
+    for k in range(size):
+        dx, dy = table[sight.DX + k], table[sight.DY + k]
+        along = -(dx * table[sight.FROM_X0 + k] + dy * table[sight.FROM_Y0 + k])
+        length2 = table[sight.LENGTH2 + k]
+        t = along / length2
+        x = table[sight.X0 + k] + t * dx
+        x = (
+            table[sight.X0 + k]
+            if along <= 0.0
+            else (table[sight.X1 + k] if along >= length2 else x)
+        )
+        y = table[sight.Y0 + k] + t * dy
+        y = (
+            table[sight.Y0 + k]
+            if along <= 0.0
+            else (table[sight.Y1 + k] if along >= length2 else y)
+        )
+        table[sight.FREE + k] = (px - x) * (px - x) + (py - y) * (py - y)
+    n = 0
+    for k in range(world.last - world.first):
+        p = world.first + k
+        if table[sight.R + k] > 0.0:
+            n = _consider(a, 0.0, 0.0, capsules[p], p, limit, n, best, code)
+        elif table[sight.SIDE + k] < 0.0 and table[sight.FREE + k] <= reach2:
+            ahead = table[sight.NX + k] * (a.x - table[sight.X0 + k]) + table[sight.NY + k] * (
+                a.y - table[sight.Y0 + k]
+            )
+            if ahead > 0.0:
+                n = _insert(table[sight.FREE + k], 8 * p, n, best, code)
     return n
 
 
@@ -181,7 +230,13 @@ def _offer(
         return n
     qx, qy = nearest_on_segment(a.x, a.y, x0, y0, x1, y1)
     d2 = (a.x - qx) * (a.x - qx) + (a.y - qy) * (a.y - qy)
-    if d2 > limit * limit or (n == len(best) and d2 >= best[n - 1]):
+    return n if d2 > limit * limit else _insert(d2, edge_code, n, best, code)
+
+
+@kernel_without_allocation
+def _insert(d2: float, edge_code: int, n: int, best: FloatArray, code: IntArray) -> int:
+    """Insert an edge into n sorted ones, if it is near enough or there is room; return n."""
+    if n == len(best) and d2 >= best[n - 1]:
         return n
     n = min(n + 1, len(best))
     at = n - 1

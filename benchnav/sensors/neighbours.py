@@ -19,7 +19,7 @@ from benchnav.sensors.nearest import (
     sort_lanes,
     take_from_lane,
 )
-from benchnav.sensors.sight import in_sight
+from benchnav.sensors.sight import TABLE, copy_fixed, in_sight, list_blockers, stand_at
 from benchnav.world.records import LISTED
 from benchnav.world.touch import BRUTE_FORCE
 
@@ -76,6 +76,7 @@ def find_neighbours(
         np.empty((2, most)), np.empty(most, np.int64), np.empty(4, np.int64), best,
         best.view(np.int64), np.empty((LANES, most), np.int64), np.empty(most, np.int64), given,
         given.view(np.int64), smallest, smallest.view(np.int64), np.empty(LANES, np.int64),
+        np.empty(TABLE), np.empty(bodies.shape[1], np.int64),
     )  # fmt: skip
 
 
@@ -88,7 +89,7 @@ def _find_in_rows(
     velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray,
     around: FloatArray, at: IntArray, window: IntArray, best: FloatArray, exact: IntArray,
     place: IntArray, ranked: IntArray, given: FloatArray, given_bits: IntArray,
-    smallest: FloatArray, bits: IntArray, sizes: IntArray,
+    smallest: FloatArray, bits: IntArray, sizes: IntArray, fixed: FloatArray, blockers: IntArray,
 ) -> None:  # fmt: skip
     """Sort the candidates of `LANES` agents together, or those of one agent by insertion.
 
@@ -99,6 +100,7 @@ def _find_in_rows(
     for b in range(low // total, (high + total - 1) // total):
         world, things, table, crowd = worlds[b], bodies[b], hashed[b], spots[b]
         hidden = occlusion and (world.bodies > 0 or world.last > world.first)
+        size, discs = copy_fixed(world, capsules, fixed) if hidden else (-1, False)
         everyone = _all_seen(sees[b])
         window[:], given[:] = -1, math.inf
         if few:
@@ -142,7 +144,7 @@ def _find_in_rows(
                     kept = _find_one(
                         own, most, limit, side, few, hidden, everyone, sees[b], a, world, things,
                         shapes, capsules, start, item, table, crowd, near[b], listed[b], beyond[b],
-                        window, x, y, at, best, place[lane], ranked,
+                        window, x, y, at, best, place[lane], ranked, size, discs, fixed, blockers,
                     )  # fmt: skip
                 _write(
                     kept, crowd, things, ranked, position[b, k], velocity[b, k], radius[b, k],
@@ -157,7 +159,8 @@ def _find_one(
     seen: BoolArray, a: Any, world: Any, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray,
     start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray, near: FloatArray,
     listed: IntArray, beyond: FloatArray, window: IntArray, x: FloatArray, y: FloatArray,
-    at: IntArray, best: FloatArray, place: IntArray, ranked: IntArray,
+    at: IntArray, best: FloatArray, place: IntArray, ranked: IntArray, size: int, discs: bool,
+    fixed: FloatArray, blockers: IntArray,
 ) -> int:  # fmt: skip
     """Write the places of the neighbours of agent a into ``ranked``; return their number.
 
@@ -179,8 +182,9 @@ def _find_one(
             beyond[i] = _list(a, n, n < room, limit, spots, ranked, listed[i])
         if hidden:
             kept = _keep_visible(
-                a, n, most, spots, world, capsules, start, item, bodies, shapes, ranked
-            )
+                a, n, most, limit, spots, world, capsules, start, item, bodies, shapes, ranked,
+                size, discs, fixed, blockers,
+            )  # fmt: skip
         if kept == most or n < room:
             return kept
         room *= 2
@@ -251,10 +255,13 @@ def _list(
 
 @kernel_without_allocation
 def _keep_visible(
-    a: Any, n: int, most: int, spots: AnyArray, world: Any, capsules: AnyArray, start: IntArray,
-    item: IntArray, bodies: AnyArray, shapes: AnyArray, ranked: IntArray,
+    a: Any, n: int, most: int, limit: float, spots: AnyArray, world: Any, capsules: AnyArray,
+    start: IntArray, item: IntArray, bodies: AnyArray, shapes: AnyArray, ranked: IntArray,
+    size: int, discs: bool, fixed: FloatArray, blockers: IntArray,
 ) -> int:  # fmt: skip
     """Move up to ``most`` visible candidates to the front of ``ranked``; return their number."""
+    stand_at(a.x, a.y, size, fixed)
+    blocker_count = list_blockers(a, limit, world.bodies, bodies, blockers)
     kept = 0
     for s in range(n):
         m = -1 - ranked[s]
@@ -264,8 +271,9 @@ def _keep_visible(
         else:
             x, y = bodies[m].x, bodies[m].y
         if kept < most and in_sight(
-            a.x, a.y, x, y, max(m, -1), world, capsules, start, item, bodies, shapes
-        ):
+            a.x, a.y, x, y, max(m, -1), world, capsules, start, item, bodies, shapes, size, discs,
+            fixed, blocker_count, blockers,
+        ):  # fmt: skip
             ranked[kept] = ranked[s]
             kept += 1
     return kept

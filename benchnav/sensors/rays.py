@@ -16,7 +16,7 @@ from benchnav.geometry.capsule import capsule_time, disc_time
 from benchnav.geometry.hash_grid import bucket
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import inlined, kernel, kernel_without_allocation
-from benchnav.sensors.sight import FEW
+from benchnav.sensors import sight
 from benchnav.world.fixed import walk
 from benchnav.world.touch import BRUTE_FORCE
 
@@ -43,13 +43,12 @@ def cast_rays(
     multiple of 8; ``side`` [m] of the hashed cells; ``widest`` radius of an agent;
     ``most_shapes``: capsules of the bodies of one world; ``sees`` (B, teams, teams).
     """
-    things = np.empty((FEW + agents.shape[1] + most_shapes, 11))  # room for everything
-    best = np.empty(len(fan_x))
-    hit = np.empty(len(fan_x), np.int64)
+    things = np.empty((sight.FEW + agents.shape[1] + most_shapes, 11))  # room for everything
+    best, hit = np.empty(len(fan_x)), np.empty(len(fan_x), np.int64)
     _cast_in_rows(
         low, high, chosen, fan_x, fan_y, limit, thick, side, widest, most_shapes, sees, worlds,
         agents, bodies, shapes, capsules, start, item, hashed, spots, distance, kind, approach,
-        goal, things, best, hit,
+        goal, things, best, hit, np.empty(sight.TABLE),
     )  # fmt: skip
 
 
@@ -61,6 +60,7 @@ def _cast_in_rows(
     shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
     spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
     goal: FloatArray, things: FloatArray, best: FloatArray, hit: IntArray,
+    fixed: FloatArray,
 ) -> None:  # fmt: skip
     width = chosen.shape[1]
     rays = distance.shape[2]
@@ -68,7 +68,8 @@ def _cast_in_rows(
     for b in range(low // width, (high + width - 1) // width):
         world, here, others = worlds[b], agents[b], bodies[b]
         seen, table, crowd = sees[b], hashed[b], spots[b]
-        few = world.last - world.first <= FEW
+        size, _ = sight.copy_fixed(world, capsules, fixed)
+        few = size >= 0
         for k in range(max(low - b * width, 0), min(high - b * width, width)):
             i = chosen[b, k]
             if i < 0 or not here[i].present:
@@ -81,7 +82,8 @@ def _cast_in_rows(
                 i, ca, sa, own, limit, rear, side, widest, seen, here, table, crowd, things, n
             )
             if few:
-                n = _list_fixed(a, ca, sa, own, limit, rear, world, capsules, things, n)
+                _mark_reachable(a.x, a.y, ca, sa, own, limit, rear, size, fixed)
+                n = _list_marked(a, ca, sa, own, world, capsules, fixed, things, n)
             gx, gy = a.x - a.goal_x, a.y - a.goal_y
             gx, gy = ca * gx + sa * gy, ca * gy - sa * gx
             best[:] = limit
@@ -146,15 +148,38 @@ def _is_reachable(c: Any, x0: float, y0: float, far: float) -> bool:
     return not (min(y0, y1) > far + c.r or max(y0, y1) < -far - c.r)
 
 
+@kernel_without_allocation
+def _mark_reachable(
+    px: float, py: float, ca: float, sa: float, own: float, limit: float, rear: float, size: int,
+    table: FloatArray,
+) -> None:  # fmt: skip
+    """Mark the fixed capsules that an agent at p can reach and that are not too far back.
+
+    The tests are those of `_is_reachable` and `_list`, and vary in no bit.
+    """
+    for k in range(size):
+        x0, y0 = table[sight.X0 + k] - px, table[sight.Y0 + k] - py
+        x1, y1 = x0 + table[sight.DX + k], y0 + table[sight.DY + k]
+        r = table[sight.R + k]
+        far = limit + own + r
+        low_x, high_x = (x0, x1) if x0 < x1 else (x1, x0)
+        low_y, high_y = (y0, y1) if y0 < y1 else (y1, y0)
+        beside = (low_x > far) | (high_x < -far) | (low_y > far) | (high_y < -far)
+        turned_away = table[sight.NX + k] * x0 + table[sight.NY + k] * y0 > 0.0
+        ahead_0, ahead_1 = ca * x0 + sa * y0, ca * x1 + sa * y1
+        ahead = ahead_0 if ahead_0 > ahead_1 else ahead_1
+        table[sight.FREE + k] = 0.0 if beside | turned_away | (ahead + own + r < rear) else 1.0
+
+
 @inlined
-def _list_fixed(
-    a: Any, ca: float, sa: float, own: float, limit: float, rear: float, world: Any,
-    capsules: AnyArray, things: FloatArray, n: int,
+def _list_marked(
+    a: Any, ca: float, sa: float, own: float, world: Any, capsules: AnyArray, table: FloatArray,
+    things: FloatArray, n: int,
 ) -> int:  # fmt: skip
-    for p in range(world.first, world.last):
-        c = capsules[p]
-        if _is_reachable(c, c.x0 - a.x, c.y0 - a.y, limit + own):
-            n = _list(a, ca, sa, own, rear, c, c.x0 - a.x, c.y0 - a.y, 0.0, 0.0, things, n)
+    for k in range(world.last - world.first):
+        if table[sight.FREE + k] > 0.0:
+            c = capsules[world.first + k]
+            n = _list(a, ca, sa, own, -math.inf, c, c.x0 - a.x, c.y0 - a.y, 0.0, 0.0, things, n)
     return n
 
 

@@ -8,9 +8,18 @@ import pytest
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arena.solid import Kind, Solid
 from benchnav.sensors.sense import sense
-from benchnav.sensors.sight import _clear_along, _clear_of_all
+from benchnav.sensors.sight import (
+    TABLE,
+    _clear_along,
+    _clear_of_discs,
+    _clear_of_edges,
+    copy_fixed,
+    hides,
+    list_blockers,
+    stand_at,
+)
 from benchnav.world.simulation import Simulation
-from tests.worlds import agents, box, disc, walls, world
+from tests.worlds import agents, back_and_forth, box, disc, walls, world
 
 
 def first_agent(simulation, *needs):
@@ -76,10 +85,44 @@ def test_lines_of_sight_do_not_leak_through_small_things():
         aim = places[rng.integers(150)] + rng.normal(0, 0.02, 2)
         p = rng.uniform(0.0, 60.0, 2)
         q = p + (aim - p) * rng.uniform(0.9, 1.5)
-        plain = _clear_of_all(*p, *q, row, s.capsules)
+        plain = not any(hides(capsule, *p, *q) for capsule in s.capsules)
         assert _clear_along(*p, *q, row, s.capsules, s.start, s.item) == plain
         cut += not plain
     assert 1000 < cut < 5900
+
+
+def test_a_table_of_few_capsules_hides_the_same_points():
+    """Edges and discs of worlds of several sizes, one after another in the same table."""
+    rng, table, cut = np.random.default_rng(4), np.full(TABLE, np.nan), 0
+    crew = agents([10.0, 10.0], [1.0, 1.0], radius=0.05)
+    for boxes, posts in ((12, 16), (1, 0), (3, 1), (0, 2), (0, 0), (16, 0)):
+        solids = [box(Kind.WALL, *rng.uniform(1, 19, 2), 1, 0.5, 0.3 * k) for k in range(boxes)]
+        solids += [disc(Kind.STATIC, *rng.uniform(1, 19, 2), 0.4) for _ in range(posts)]
+        s = Simulation([world(crew, solids)])
+        size, discs = copy_fixed(s.records[0], s.capsules, table)
+        assert discs == (posts > 0)
+        for _ in range(300):
+            p, q = rng.uniform(0, 20, (2, 2)).round(rng.integers(0, 4))
+            stand_at(*p, size, table)
+            edges_clear = _clear_of_edges(*p, *q, size, table)
+            discs_clear = _clear_of_discs(*p, *q, size, table)
+            for is_disc, clear in ((False, edges_clear), (True, discs_clear)):
+                some = [c for c in s.capsules if (c["r"] > 0.0) == is_disc]
+                plain = not any(hides(c, *p, *q) for c in some)
+                assert clear == plain
+                cut += not plain
+    assert cut > 500
+    many = Simulation([world(crew, [disc(Kind.STATIC, 2.0, 2.0, 0.1)] * 65)])
+    assert copy_fixed(many.records[0], many.capsules, table) == (-1, False)
+
+
+def test_bodies_that_cannot_hide_a_point_in_range_are_left_out():
+    carts = [back_and_forth(box(Kind.DYNAMIC, 0, 0, 1, 1), [x, 5], [x, 9], 1.0) for x in (8, 13)]
+    s = Simulation([world(agents([5.0, 5.0], [1.0, 1.0]), bodies=carts)])
+    blockers = np.full(2, -1)
+    assert list_blockers(s.agents[0, 0], 4.0, 2, s.bodies[0], blockers) == 1
+    assert blockers.tolist() == [0, -1]
+    assert list_blockers(s.agents[0, 0], 8.0, 2, s.bodies[0], blockers) == 2
 
 
 def test_a_wide_agent_at_the_rim_of_the_range_is_met():
