@@ -101,6 +101,35 @@ def test_arrays_are_of_plain_numbers(tools):
     assert from_json(bool, "true") is True
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"dt":', '"dx":', r"^clock\.dt must be given; got"),
+        (
+            '"substeps":',
+            '"substeps":"x","y":',
+            r"^clock\.substeps must be a whole number; got 'x'$",
+        ),
+        ('"radius":0.0', '"radius":"0"', r"^solids\.0\.radius must be a number; got '0'$"),
+        ('"kind":2', '"kind":33', r"^solids\.0\.kind must be 0, 1, 2, 3, 4 or 5; got 33$"),
+        ('"teams":["', '"teams":[7,"', r"^teams\.0 must be text; got 7$"),
+        ('"teams":["', '"teams":["\\ud800', r"^its text must be JSON; got"),
+        ('"clock":{', '"clock":' + "[" * 100_000, r"^its text must be JSON; got"),
+    ],
+)
+def test_a_broken_world_is_named_in_few_words(tools, old, new, message):
+    text = world_to_json(tools.world(np.random.default_rng(0))).decode()
+    assert old in text
+    with pytest.raises(ValueError, match=message) as raised:
+        world_from_json(text.replace(old, new, 1))
+    assert len(str(raised.value)) < 500
+
+
+def test_many_strange_values_are_one_error():
+    with pytest.raises(ValueError, match=r"^0 must be a whole number; got None$"):
+        from_json(tuple[int, ...], json.dumps([None] * 1_000_000))
+
+
 def test_a_small_file_that_would_fill_memory_is_refused(tools, run, monkeypatch):
     folder = RunFolder.start(run, tools.manifest())
     episodes = [tools.episode(np.random.default_rng(0), 0)]

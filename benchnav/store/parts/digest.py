@@ -39,5 +39,5 @@ def digest(episode: Episode) -> str:
     ):
         fixed = np.ascontiguousarray(array, dtype=_DTYPES[dtype])
         hashed.update(f"{name} {dtype} {fixed.shape}\n".encode())
-        hashed.update(fixed)
+        hashed.update(fixed.data)
     return hashed.hexdigest()
