@@ -21,7 +21,8 @@ _MUST_BE = {
     "string_type": "must be text", "path_type": "must be a path",
     "dict_type": "must be a mapping", "model_type": "must be a mapping",
     "model_attributes_type": "must be a mapping", "list_type": "must be a list",
-    "tuple_type": "must be a list",
+    "tuple_type": "must be a list", "dataclass_type": "must be a mapping",
+    "json_invalid": "must be JSON",
 }  # fmt: skip
 _BOUND = {
     "greater_than": "must be > {gt}", "greater_than_equal": "must be ≥ {ge}",

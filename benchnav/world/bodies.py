@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -38,12 +39,12 @@ def law_records(bodies: Sequence[Body]) -> tuple[AnyArray, AnyArray]:
     Raises ValueError if a law has more times than points.
     """
     laws = [body.law for body in bodies]
-    points = np.vstack([np.zeros((0, 2)), *(law.points for law in laws)])
+    points = np.concatenate([np.zeros((0, 2)), *(law.points for law in laws)])
     knots, rows = np.zeros(len(points), KNOT), np.zeros(len(laws), BODY)
     knots["x"], knots["y"] = points[:, 0], points[:, 1]
-    rows["law_last"] = np.cumsum([len(law.points) for law in laws])
-    rows["law_first"][1:] = rows["law_last"][:-1]
-    for law, first in zip(laws, rows["law_first"].tolist(), strict=True):
+    ends = [0, *accumulate(len(law.points) for law in laws)]
+    rows["law_first"], rows["law_last"] = ends[:-1], ends[1:]
+    for law, first in zip(laws, ends, strict=False):
         if len(law.times) > len(law.points):
             raise ValueError("a law of motion must not have more times than points")
         knots["t"][first : first + len(law.times)] = law.times

@@ -123,6 +123,8 @@ class Simulation:
     def contacts(self, b: int) -> Contacts:
         """Return the collision events of world b so far; open ones end now."""
         rows = self._events(b)
+        if not len(rows):
+            return _NO_CONTACTS
         kind, partner = partners(self.worlds[b], rows["code"])
         return Contacts(
             rows["agent"].copy(), kind, partner, rows["start"].copy(), rows["end"].copy(),
@@ -137,6 +139,8 @@ class Simulation:
         """Return CONTACT records of world b, sorted like `Contacts`."""
         self._drain(0)
         agent, slot = np.nonzero(self._opened["code"][b] >= 0)
+        if not (len(agent) or self._kept[b]):
+            return np.zeros(0, CONTACT)
         going_on = self._opened[b, agent, slot]
         going_on["agent"] = agent
         going_on["end"] = self.records["steps_done"][b] * self.records["dt"][b]
@@ -149,6 +153,12 @@ class Simulation:
         for b in np.flatnonzero(self.records["closed"] > above):
             self._kept[b].append(self._closed[b, : self.records["closed"][b]].copy())
             self.records["closed"][b] = 0
+
+
+_NO_CONTACTS = Contacts(
+    np.zeros(0, np.int64), np.zeros(0, np.int8), np.zeros(0, np.int64), np.zeros(0),
+    np.zeros(0), np.zeros(0), np.zeros(0), np.zeros(0, np.bool_),
+)  # fmt: skip
 
 
 def partners(world: World, codes: IntArray) -> tuple[ByteArray, IntArray]:

@@ -1,8 +1,8 @@
 """The measurer process: measures and seals the episodes of workers, and never runs a navigator.
 
-Messages to the parent: {"kind": "episodes"} for each measured episode, {"kind": "done", …} with an
-Outcome, {"kind": "strange", "text"} for invalid files of a worker, {"kind": "refused", "name",
-"text"} for any other BenchnavError, {"kind": "crashed", "text"} for any other exception.
+Messages to the parent: {"kind": "episodes", "count"} for newly measured episodes, {"kind": "done",
+…} with an Outcome, {"kind": "strange", "text"} for invalid files of a worker, {"kind": "refused",
+"name", "text"} for any other BenchnavError, {"kind": "crashed", "text"} for any other exception.
 """
 
 import pickle
@@ -10,6 +10,7 @@ import signal
 import traceback
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import asdict
+from time import monotonic
 from typing import Any
 
 import pyarrow as pa
@@ -24,6 +25,8 @@ from benchnav.runner.execute.measurement import measured
 from benchnav.runner.execute.plugin_metrics import plugin_rows
 from benchnav.runner.plan.task import Measuring, Played, Task, measure_part
 from benchnav.store.parts.results import RESULTS
+
+_REPORT_INTERVAL = 0.1  # [s]
 
 
 def serve(channel: Channel, notes: Notes) -> None:
@@ -41,13 +44,13 @@ def serve(channel: Channel, notes: Notes) -> None:
 def _answer(
     task: Task, played: Played, measuring: Measuring, channel: Channel, notes: Notes
 ) -> dict[str, Any]:
-    def tick() -> None:
-        notes[0] += 1
-        channel.send({"kind": "episodes"})
-
+    ticks = _Ticks(channel, notes)
     notes[0] += 1
     try:
-        outcome = measure_part(task, played, lambda es: measured_isolated(es, measuring, tick))
+        outcome = measure_part(
+            task, played, lambda es: measured_isolated(es, measuring, ticks.count)
+        )
+        ticks.report()
     except CorruptPartError as error:
         return {"kind": "strange", "text": str(error)}
     except BenchnavError as error:
@@ -55,6 +58,26 @@ def _answer(
     except Exception:
         return {"kind": "crashed", "text": traceback.format_exc()}
     return {"kind": "done", **asdict(outcome)}
+
+
+class _Ticks:
+    """Counts measured episodes. Reports them now and then: each report wakes the parent."""
+
+    def __init__(self, channel: Channel, notes: Notes) -> None:
+        self._channel, self._notes = channel, notes
+        self._new, self._reported = 0, monotonic()
+
+    def count(self) -> None:
+        """Count an episode, and report all new ones if the last report is some time ago."""
+        self._notes[0] += 1
+        self._new += 1
+        if monotonic() - self._reported >= _REPORT_INTERVAL:
+            self.report()
+
+    def report(self) -> None:
+        """Report all new episodes."""
+        self._channel.send({"kind": "episodes", "count": self._new})
+        self._new, self._reported = 0, monotonic()
 
 
 def measured_isolated(

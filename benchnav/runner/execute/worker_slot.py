@@ -175,8 +175,9 @@ class WorkerSlot:
         fields = {key: value for key, value in message.items() if key != "kind"} if kind else {}
         try:
             if measuring and kind == "episodes":
-                self._measuring_time, self.reported = 0.0, self.reported + 1
-                yield 1
+                count = int(fields["count"])
+                self._measuring_time, self.reported = 0.0, self.reported + count
+                yield count
             elif measuring and kind == "done":
                 yield _OUTCOME.validate_python(fields)
             elif measuring and kind == "strange":

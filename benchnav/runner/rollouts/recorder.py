@@ -70,7 +70,7 @@ class Recorder:
         shape = (0, *self.simulation.position.shape)
         requested = np.stack(self._requested) if self._requested else np.zeros(shape)
         executed = np.stack(self._executed) if self._executed else np.zeros(shape)
-        share = planning / len(identities)
+        share, seconds = planning / len(identities), self.seconds
         episodes = []
         for b, identity in enumerate(identities):
             world, steps = self.simulation.world(b), int(self.simulation.steps_done[b])
@@ -86,7 +86,7 @@ class Recorder:
                 executed=executed[:steps, b, :agents].copy(),
                 arrival=self.simulation.arrival[b, :agents].copy(),
                 contacts=self.simulation.contacts(b),
-                timings=Timings(self.seconds[:steps], share, len(identities)),
+                timings=Timings(seconds[:steps], share, len(identities)),
                 failure=failure,
                 reproducible=reproducible,
                 remarks=remarks[b],

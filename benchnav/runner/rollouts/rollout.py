@@ -157,7 +157,7 @@ def _lockstep(
     remarks = [drivers[0].remarks(row) if drivers else () for row in range(len(batch))]
     identities = [assignment.identity(seed) for seed, _ in batch]
     episodes = recorder.episodes(identities, planning, failure, reproducible, remarks)
-    return [replace(episode, traceback=traceback) for episode in episodes]
+    return [replace(e, traceback=traceback) for e in episodes] if traceback else episodes
 
 
 def drive(

@@ -6,6 +6,8 @@ import numpy as np
 
 from benchnav.episode.episode import Episode
 
+_DTYPES = {name: np.dtype(name) for name in ("<f8", "<i8", "|i1", "|b1")}
+
 
 def digest(episode: Episode) -> str:
     """Return the sha256 over states, commands and events, as little-endian bytes in C order.
@@ -35,7 +37,7 @@ def digest(episode: Episode) -> str:
         ("contacts.charged", contacts.charged, "|b1"),
         *([("twist", twist, "|b1")] if twist is not None and twist.any() else []),
     ):
-        fixed = np.ascontiguousarray(array, dtype=np.dtype(dtype))
+        fixed = np.ascontiguousarray(array, dtype=_DTYPES[dtype])
         hashed.update(f"{name} {dtype} {fixed.shape}\n".encode())
-        hashed.update(fixed.tobytes())
+        hashed.update(fixed.data)
     return hashed.hexdigest()

@@ -26,6 +26,7 @@ SHAPES = {  # column → its shape in T, A, M
     "body_position": "T+1 M 2",
     "arrival": "A",
 }
+_AXES = {name: shape.split() for name, shape in SHAPES.items()}
 _IDENTITY = ("scenario", "scenario_hash", "split", "track", "navigator")
 _CONTACTS = {
     "agent": pa.int64(), "kind": pa.int8(), "partner": pa.int64(), "start": pa.float64(),
@@ -167,6 +168,7 @@ class _Columns:
             column = batch.column(name)
             if isinstance(column, pa.LargeListArray) and name not in LATER:
                 numbers = column.values.to_numpy(zero_copy_only=False)
+                numbers = numbers.astype(_NUMPY[column.type.value_type], copy=False)
                 self._lists[name] = column.offsets.to_pylist(), numbers
             elif name != "world":
                 self._scalars[name] = column.to_pylist()
@@ -174,28 +176,27 @@ class _Columns:
     def scalar(self, name: str, row: int) -> Any:
         return self._scalars[name][row]
 
-    def values(self, name: str, row: int, dtype: Any) -> AnyArray:
+    def values(self, name: str, row: int) -> AnyArray:
         offsets, numbers = self._lists[name]
-        return np.array(numbers[offsets[row] : offsets[row + 1]], dtype=dtype)
+        return numbers[offsets[row] : offsets[row + 1]].copy()
 
 
 def _episode(batch: _Columns, row: int) -> Episode:
     def scalar(name: str) -> Any:
         return batch.scalar(name, row)
 
-    def values(name: str, dtype: Any) -> AnyArray:
-        return batch.values(name, row, dtype)
+    def values(name: str) -> AnyArray:
+        return batch.values(name, row)
 
     steps, agents, bodies = scalar("steps"), scalar("agents"), scalar("bodies")
     size = {"T": steps, "T+1": steps + 1, "A": agents, "M": bodies, "2": 2}
     arrays = {
-        name: values(name, _NUMPY[_item(name)]).reshape([size[axis] for axis in shape.split()])
-        for name, shape in SHAPES.items()
+        name: values(name).reshape([size[axis] for axis in axes]) for name, axes in _AXES.items()
     }
-    contacts = {name: values(f"contact_{name}", _NUMPY[kind]) for name, kind in _CONTACTS.items()}
+    contacts = {name: values(f"contact_{name}") for name in _CONTACTS}
     latency, twist = scalar("latency_seconds"), scalar("twist")
     timings = Timings(
-        values("decision_seconds", np.float64), scalar("planning_seconds"), scalar("batch"),
+        values("decision_seconds"), scalar("planning_seconds"), scalar("batch"),
         None if latency is None else np.array(latency, np.float64), scalar("memory_bytes"),
         scalar("rehearsal_seconds") or 0.0,
     )  # fmt: skip

@@ -20,7 +20,7 @@ from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
 from benchnav.geometry.rotation import angle_of, wrap
-from benchnav.kernels import kernel
+from benchnav.kernels import kernel_without_allocation
 from benchnav.world.bodies import body_at, law_records
 from benchnav.world.dynamics import limited, planar_velocity
 
@@ -100,7 +100,7 @@ def _bodies(world: World, given: FloatArray, decode: bool) -> FloatArray:
     return result
 
 
-@kernel
+@kernel_without_allocation
 def _code(
     requested: FloatArray, status: ByteArray, twist: BoolArray, unicycle: BoolArray,
     max_speed: FloatArray, max_turn_rate: FloatArray, start: FloatArray, facing: FloatArray,
@@ -149,7 +149,7 @@ def _code(
             heading_bits[t + 1, i] ^= given_heading[t + 1, i]
 
 
-@kernel
+@kernel_without_allocation
 def _code_bodies(
     bodies: AnyArray, knots: AnyArray, h: float, substeps: int, position: FloatArray,
     new: FloatArray, bits: IntArray, given: IntArray,

@@ -1,115 +1,118 @@
-"""World ↔ plain JSON values, exact for floats.
+"""World ↔ JSON, exact for floats.
 
 Every dataclass becomes an object of its fields, every array ``[dtype, shape,
-values]`` in C order, every enum its number. Python writes a float with the fewest
+values]`` in C order, every enum its number. A float is written with the fewest
 digits that read back to the same bits, so a round trip changes nothing.
 """
 
-import json
-from collections.abc import Callable
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache
-from operator import attrgetter
 from types import NoneType, UnionType
 from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
+from pydantic_core import SchemaSerializer, SchemaValidator, ValidationError
+from pydantic_core.core_schema import (
+    CoreConfig,
+    CoreSchema,
+    bool_schema,
+    dataclass_args_schema,
+    dataclass_field,
+    dataclass_schema,
+    enum_schema,
+    float_schema,
+    int_schema,
+    no_info_plain_validator_function,
+    nullable_schema,
+    plain_serializer_function_ser_schema,
+    str_schema,
+    tuple_schema,
+)
 
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
-from benchnav.config.document import shown
+from benchnav.config.model_errors import first_problem
 
 _DTYPES = {name: np.dtype(name) for name in ("<f8", "<i8", "|i1", "|b1")}
-Convert = Callable[[Any], Any]
-_PLAIN = {bool: (bool,), int: (int,), float: (int, float), str: (str,)}  # types of JSON itself
+_PLAIN: dict[type, CoreSchema] = {
+    bool: bool_schema(strict=True),
+    int: int_schema(strict=True),
+    float: float_schema(strict=True),
+    str: str_schema(strict=True),
+}  # types of JSON itself
 MAX_TEXT = 64 << 20  # characters of a world; one of a million triangles takes 50 MB
 _MAX_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of values
 
 
-def world_to_json(world: World) -> str:
-    """Return the world as one line of JSON (infinities as in Python: ``Infinity``)."""
-    return json.dumps(encode(world), separators=(",", ":"))
+def world_to_json(world: World) -> bytes:
+    """Return the world as one line of JSON in UTF-8 (infinities as in Python: ``Infinity``)."""
+    return to_json(World, world)
 
 
 def world_from_json(text: str) -> World:
     """Return the world in a text of `world_to_json`.
 
     Raises:
-        KeyError, TypeError, ValueError: the text is not an encoded world.
+        TypeError, ValueError: the text is not an encoded world.
     """
     if len(text) > MAX_TEXT or text.count("[") + text.count("{") > _MAX_CONTAINERS:
         raise ValueError(f"a world must have at most {MAX_TEXT} characters; it has {len(text)}")
-    world: World = decode(World, json.loads(text))
+    world: World = from_json(World, text)
     agents = world.agents
     if any(len(getattr(agents, f.name)) != len(agents) for f in fields(agents)):
         raise ValueError("the arrays of a world's agents must have equal lengths")
     return world
 
 
-def encode(value: Any) -> Any:
-    """Return plain JSON values of a dataclass, array, enum, tuple or number."""
-    kind: Any = type(value)
-    return _encoder(kind)(value)
+def to_json(kind: Any, value: Any) -> bytes:
+    """Return JSON of a value of type ``kind``: a dataclass, array, enum, tuple or number.
+
+    Raises TypeError if this type cannot be encoded.
+    """
+    return _codec(kind)[0].to_json(value, warnings=False, fallback=_encoded)
 
 
-def decode(kind: Any, value: Any) -> Any:
-    """Return the value of type ``kind`` that `encode` turned into ``value``.
+def from_json(kind: Any, text: str | bytes) -> Any:
+    """Return the value of type ``kind`` that `to_json` turned into ``text``.
 
     Raises:
-        KeyError, TypeError, ValueError: ``value`` is not of this type, or this type
-            cannot be encoded.
+        TypeError, ValueError: ``text`` is not of this type, or this type cannot be encoded.
     """
-    return _decoder(kind)(value)
+    try:
+        return _codec(kind)[1].validate_json(text)
+    except ValidationError as error:
+        problem = first_problem(error)
+        where = problem.key or "its text"
+        raise ValueError(f"{where} {problem.requirement}; got {problem.got}") from None
 
 
 @cache
-def _encoder(kind: type) -> Convert:
-    """Return the function that encodes values of a type; a lookup per value takes far longer."""
-    if issubclass(kind, np.ndarray):
-        return lambda value: [value.dtype.str, list(value.shape), value.ravel().tolist()]
-    if is_dataclass(kind):
-        return _dataclass_encoder([f.name for f in fields(kind)])
-    if issubclass(kind, Enum):
-        return lambda value: value.value
-    if issubclass(kind, tuple | list):
-        return lambda value: [_encoder(item.__class__)(item) for item in value]
-    if issubclass(kind, np.generic):
-        return lambda value: value.item()
-    return lambda value: value
+def _codec(kind: Any) -> tuple[SchemaSerializer, SchemaValidator]:
+    schema = _schema(kind)
+    infinities = CoreConfig(ser_json_inf_nan="constants")
+    return SchemaSerializer(schema, infinities), SchemaValidator(schema)
 
 
-def _dataclass_encoder(names: list[str]) -> Convert:
-    values = attrgetter(*names) if len(names) > 1 else lambda value: (getattr(value, names[0]),)
-
-    def encoded(value: Any) -> dict[str, Any]:
-        return {
-            name: one if one.__class__ in _PLAIN else _encoder(one.__class__)(one)
-            for name, one in zip(names, values(value), strict=True)
-        }
-
-    return encoded
-
-
-@cache
-def _decoder(kind: Any) -> Convert:
-    """Return the function that decodes values of a type."""
+def _schema(kind: Any) -> CoreSchema:
+    """Return the description of a type for pydantic's core, which reads and writes JSON."""
     kind = _unalias(kind)
     origin = get_origin(kind) or kind
     if origin is np.ndarray:
-        return lambda value: _decode_array(*value)
+        return _ARRAY
     if origin in (Union, UnionType):
         (kind,) = (option for option in get_args(kind) if option is not NoneType)
-        known = _decoder(kind)
-        return lambda value: None if value is None else known(value)
+        return nullable_schema(_schema(kind))
     if origin is tuple:
-        return _tuple_decoder(get_args(kind))
+        return _tuple_schema(get_args(kind))
     if isinstance(kind, type) and is_dataclass(kind):
-        return _dataclass_decoder(kind)
+        names, hints = [f.name for f in fields(kind)], get_type_hints(kind)
+        known = [dataclass_field(name, _schema(hints[name])) for name in names]
+        return dataclass_schema(kind, dataclass_args_schema(kind.__name__, known), names)
     if isinstance(kind, type) and issubclass(kind, Enum):
-        return kind
+        return enum_schema(kind, list(kind), sub_type="int")
     if kind in _PLAIN:
-        return _plain_decoder(kind)
+        return _PLAIN[kind]
     raise TypeError(f"a world must not hold values of type {kind}")
 
 
@@ -123,32 +126,29 @@ def _unalias(kind: Any) -> Any:
     return kind
 
 
-def _decode_array(dtype: str, shape: list[int], items: list[Any]) -> AnyArray:
-    if dtype not in _DTYPES:
-        raise ValueError(f"an array must be of {', '.join(_DTYPES)}; got {str(dtype)[:20]!r}")
-    return np.array(items, dtype=_DTYPES[dtype]).reshape(shape)
-
-
-def _tuple_decoder(kinds: tuple[Any, ...]) -> Convert:
+def _tuple_schema(kinds: tuple[Any, ...]) -> CoreSchema:
     if len(kinds) == 2 and kinds[1] is Ellipsis:
-        each = _decoder(kinds[0])
-        return lambda value: tuple([each(item) for item in value])
-    items = [_decoder(kind) for kind in kinds]
-    return lambda value: tuple([one(item) for one, item in zip(items, value, strict=True)])
+        # a strange text of a million items is one error
+        return tuple_schema([_schema(kinds[0])], variadic_item_index=0, fail_fast=True)
+    return tuple_schema([_schema(kind) for kind in kinds])
 
 
-def _dataclass_decoder(kind: Any) -> Convert:
-    hints = get_type_hints(kind)
-    known = [(f.name, _decoder(hints[f.name])) for f in fields(kind)]
-    return lambda value: kind(**{name: one(value[name]) for name, one in known})
+def _encoded(value: Any) -> Any:
+    """Return plain values of an array, or of one of its numbers in place of a plain one."""
+    if isinstance(value, np.ndarray):
+        return value.dtype.str, value.shape, value.ravel().tolist()
+    return value.item()
 
 
-def _plain_decoder(kind: Any) -> Convert:
-    accepted = _PLAIN[kind]
+def _decoded(value: Any) -> AnyArray:
+    try:
+        dtype, shape, items = value
+        return np.array(items, dtype=_DTYPES[dtype]).reshape(shape)
+    except (KeyError, OverflowError, TypeError, ValueError):
+        types = ", ".join(_DTYPES)
+        raise ValueError(f"must be an array [type, shape, values] of {types}") from None
 
-    def decoded(value: Any) -> Any:
-        if type(value) not in accepted:
-            raise TypeError(f"a value must be of type {kind.__name__}; got {shown(value)}")
-        return value
 
-    return decoded
+_ARRAY = no_info_plain_validator_function(
+    _decoded, serialization=plain_serializer_function_ser_schema(_encoded)
+)
