@@ -12,6 +12,7 @@ import signal
 import socket
 import subprocess
 import sys
+from collections.abc import Callable
 from contextlib import suppress
 from mmap import mmap
 from tempfile import TemporaryFile
@@ -32,6 +33,7 @@ ONE_THREAD = {  # a process uses one core: more threads would compete with other
     "MKL_NUM_THREADS": "1",
 }
 _NO_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}  # fork copies one thread only
+_CALL_INTERVAL = 0.2  # [s] between two calls of a function while a process starts
 NOTES = 4096  # bytes of memory shared between a process and its parent
 _START = (
     "import sys, json; sys.path[:] = json.loads(sys.argv[2]);"
@@ -102,12 +104,19 @@ class ForkServer:
         with suppress(OSError):  # `start` reports the cause
             self._socket.sendall(PREPARE)
 
-    def start(self, target: str, main: bool = True, warm: bool = True) -> Child:
+    def start(
+        self,
+        target: str,
+        main: bool = True,
+        warm: bool = True,
+        waiting: Callable[[], None] = lambda: None,
+    ) -> Child:
         """Start ``target``, "module:function", with (channel, notes) in a new process.
 
         The process gets the current environment, folder and module path of this process, and with
         ``main`` also its ``__main__``. With ``warm`` it begins with the modules and kernels of a
         run, otherwise only with the modules that plugins build on.
+        While the server loads or compiles these, ``waiting`` is called several times a second.
         """
         ours, theirs = socket.socketpair()
         with TemporaryFile() as file:
@@ -127,7 +136,9 @@ class ForkServer:
                 self._starting.append(child)
                 self._is_used = True
                 while not child.pid:
-                    self._read_message(None)
+                    with suppress(TimeoutError):
+                        self._read_message(_CALL_INTERVAL)
+                    waiting()
             except (OSError, ChannelError, BenchnavError) as error:
                 child.channel.close()
                 raise self._lost() from error
@@ -205,12 +216,14 @@ def fork_server() -> ForkServer:
     return _servers[0]
 
 
-def start_process(target: str, *, main: bool = True) -> Child:
+def start_process(
+    target: str, *, main: bool = True, waiting: Callable[[], None] = lambda: None
+) -> Child:
     """Start ``target`` like `ForkServer.start`; retry once if a plugin killed the server."""
     try:
-        return fork_server().start(target, main)
+        return fork_server().start(target, main, waiting=waiting)
     except BenchnavError:
-        return fork_server().start(target, main)
+        return fork_server().start(target, main, waiting=waiting)
 
 
 def exit_text(exitcode: int | None) -> str:

@@ -117,6 +117,12 @@ class Sleeps(Walk):
         time.sleep(3600)
 
 
+class Slow(Walk):
+    def act(self, observation):
+        time.sleep(0.03)
+        return super().act(observation)
+
+
 class Spins(Walk):
     """Hangs in C and never lets go of the interpreter."""
 

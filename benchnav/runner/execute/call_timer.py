@@ -13,9 +13,10 @@ from contextlib import contextmanager
 from typing import Literal
 
 Call = Literal["__init__", "reset", "act", "remarks"]
-Notes = MutableSequence[float]  # counter, kind of call, time in the episode [s], returned twice
+Notes = MutableSequence[float]
+"""Counter, kind of call, time in the episode [s], returned twice, number of the drawn world."""
 
-SIZE = 4
+SIZE = 5
 _CALLS: tuple[Call, ...] = ("__init__", "reset", "act", "remarks")
 _MAX_INTERVAL = 1.0  # [s] that one check may add: a longer gap means the parent was suspended
 
@@ -52,6 +53,12 @@ def beat() -> None:
         _notes[0][0] += 2
 
 
+def note_drawing(number: int) -> None:
+    """Note which world of the task is drawn now, counted from 1; 0: none."""
+    _notes[0][4] = number
+    beat()
+
+
 class CallTimer:
     """Measures the calls of one worker."""
 
@@ -70,6 +77,17 @@ class CallTimer:
     def twice(self) -> bool:
         """Whether a call returned in a second process."""
         return self.notes[3] != 0.0
+
+    @property
+    def drawing(self) -> float:
+        """The number of the world that is drawn, from 1; 0: none."""
+        return self.notes[4]
+
+    @property
+    def episode_time(self) -> float | None:
+        """The time in the episode [s] of the last call if it was ``act``, else None."""
+        which, time = self.notes[1], self.notes[2]
+        return time if which == _CALLS.index("act") and 0.0 <= time < math.inf else None
 
     def look(self, elapsed: float) -> None:
         """Read the counter, ``elapsed`` [s] after the last time."""

@@ -83,7 +83,7 @@ class WorkerPool:
         self.checked_at = monotonic()
         known = registrations() if self.registrations is None else self.registrations
         while len(self.slots) < self.size:
-            self.slots.append(WorkerSlot(self.limits, tuple(known)))
+            self.slots.append(WorkerSlot(self.limits, tuple(known), self._look))
         while self.pending or self.exclusive_tasks or self._busy():
             self._assign()
             files = {file: slot for slot in self.slots for file in slot.files()}
@@ -158,6 +158,12 @@ class WorkerPool:
             failure = slot.check_limits(elapsed)
             if failure is not None:
                 self._fail(slot, failure)
+        self._look()
+
+    def _look(self) -> None:
+        """Show the activity of the first worker that has one."""
+        activities = (slot.activity() for slot in self.slots)
+        self.progress.look(next(filter(None, activities), ""))
 
     def _fail(self, slot: WorkerSlot, failure: TaskFailure) -> None:
         """Repeat a failed task seed by seed, and charge the navigator with single seeds only."""

@@ -1,5 +1,6 @@
 """The preloading of modules and kernels in the fork server, before it forks."""
 
+import gc
 import os
 from collections.abc import Callable, Iterable, Iterator
 from functools import cache, partial
@@ -25,6 +26,7 @@ from benchnav.world.simulation import Simulation
 
 Part = Callable[[], None]
 _DECISIONS = 3
+_RARE_COLLECTION = 200_000, 20, 50  # thresholds of the garbage collector while kernels compile
 _SCENARIO = """
 name: warm/crowd
 version: 1
@@ -64,11 +66,15 @@ def warm() -> Iterator[int | None]:
     sensors: list[Part] = [partial(_observe, need) for need in sorted(Need)]
     parts: list[Part] = [_measure, *sensors, _find_path]
     folder = cache_folder("benchnav")
-    if folder is not None and not folder.exists() and core_count() > 1:
-        yield _started(reversed(parts))
+    thresholds = gc.get_threshold()
+    if folder is not None and not folder.exists():
+        gc.set_threshold(*_RARE_COLLECTION)  # a compiler's many objects live until it ends
+        if core_count() > 1:
+            yield _started(reversed(parts))
     for part in parts:
         part()
         yield None
+    gc.set_threshold(*thresholds)
 
 
 def _started(parts: Iterable[Part]) -> int:

@@ -11,6 +11,8 @@ from benchnav.text.plural import counted
 
 UNKNOWN = "estimating the time left"
 _AT_ONCE = 3.0  # [s] in which compiled kernels are loaded
+_PATIENCE = 5.0  # [s] without a finished episode until the activity of a worker is shown
+_LONGEST_PAUSE = 60.0  # [s] between two lines about activities
 EPISODE = "episode"
 
 
@@ -35,6 +37,9 @@ class Progress:
     def advance(self, episodes: int) -> None:
         """Add newly finished ``episodes``; a negative number takes failed ones back."""
 
+    def look(self, activity: str) -> None:
+        """Receive what a worker does now, several times a second; "" if none has begun."""
+
     def end(self) -> None:
         """End the display."""
 
@@ -45,10 +50,12 @@ class _Shown(Progress):
     def __init__(self, noun: str = EPISODE, clock: Callable[[], float] = monotonic) -> None:
         self._noun, self._clock = noun, clock
         self._estimate = Estimate(clock)
+        self._activity = ""
 
     def begin(self, total: int, stored: int) -> None:
         self._total, self._stored, self._done = total, stored, stored
         self._began, self._by_load = self._clock(), False
+        self._advanced = self._began
         self._moment = time()
 
     def expect(self, loads: Iterable[Load]) -> None:
@@ -67,6 +74,10 @@ class _Shown(Progress):
 
     def advance(self, episodes: int) -> None:
         self._done += episodes
+        self._advanced = self._clock()
+
+    def look(self, activity: str) -> None:
+        self._activity = activity
 
     def left(self) -> str:
         """Return a text like ``about 40 s left``, or what is done before that is known."""
@@ -79,7 +90,7 @@ class _Shown(Progress):
         return self._beginning() if seconds is None else f"about {_span(seconds)} left"
 
     def _beginning(self) -> str:
-        if self._clock() - self._began < _AT_ONCE:
+        if self._activity or self._clock() - self._began < _AT_ONCE:
             return UNKNOWN
         compiled = compiled_since(self._moment)
         return f"compiling kernels, once per version: {compiled} so far" if compiled else UNKNOWN
@@ -101,7 +112,15 @@ class Bar(_Shown):
         from rich.text import Text
 
         super().begin(total, stored)
-        left = self.left
+        left, slow_activity = self.left, self._slow_activity
+
+        class BarAndActivity(RichProgress):
+            """The bar, and below it what a worker does."""
+
+            def get_renderables(self) -> Iterable[Any]:
+                yield from super().get_renderables()
+                if text := slow_activity():
+                    yield Text(text, no_wrap=True, overflow="ellipsis")
 
         class Left(ProgressColumn):
             """The column of the remaining time."""
@@ -111,7 +130,7 @@ class Bar(_Shown):
             def render(self, task: Any) -> Text:
                 return Text("" if task.finished else left())
 
-        self._bar = RichProgress(
+        self._bar = BarAndActivity(
             TextColumn(f"{self._noun}s"), BarColumn(), MofNCompleteColumn(), TextColumn("elapsed"),
             TimeElapsedColumn(), Left(), console=Console(stderr=True),
         )  # fmt: skip
@@ -123,19 +142,27 @@ class Bar(_Shown):
         self._bar.advance(self._task, episodes)
 
     def end(self) -> None:
+        self._activity = ""
         self._bar.stop()
+
+    def _slow_activity(self) -> str:
+        return self._activity if self._clock() - self._advanced >= _PATIENCE else ""
 
 
 class Lines(_Shown):
-    """Prints a line after each tenth of the episodes, at most every two seconds."""
+    """Prints a line after each tenth of the episodes, at most every two seconds.
+
+    While no episode ends, it prints what a worker does, at growing intervals.
+    """
 
     def begin(self, total: int, stored: int) -> None:
         super().begin(total, stored)
-        self._reported = self._began
+        self._reported, self._pause = self._began, _PATIENCE
         self._tenth = 10 * stored // total if total else 10
 
     def advance(self, episodes: int) -> None:
         super().advance(episodes)
+        self._pause = _PATIENCE
         now, tenth = self._clock(), 10 * self._done // self._total
         if tenth == self._tenth or (now - self._reported < 2.0 and self._done < self._total):
             return
@@ -143,8 +170,17 @@ class Lines(_Shown):
         text = f"{self._done} of {counted(self._total, self._noun)}"
         if self._done < self._total:
             text += f", {self.left()}"
-        sys.stderr.write(text + "\n")
-        sys.stderr.flush()
+        _print(text)
+
+    def look(self, activity: str) -> None:
+        super().look(activity)
+        now = self._clock()
+        if now - max(self._reported, self._advanced) < self._pause:
+            return
+        text = activity or self._beginning()
+        self._reported, self._pause = now, min(1.5 * self._pause, _LONGEST_PAUSE)
+        if text != UNKNOWN:
+            _print(text)
 
 
 def progress(quiet: bool, noun: str = EPISODE) -> Progress:
@@ -155,6 +191,11 @@ def progress(quiet: bool, noun: str = EPISODE) -> Progress:
     if quiet:
         return Progress()
     return Bar(noun) if sys.stderr.isatty() else Lines(noun)
+
+
+def _print(line: str) -> None:
+    sys.stderr.write(line + "\n")
+    sys.stderr.flush()
 
 
 def _span(seconds: float) -> str:

@@ -1,7 +1,7 @@
 """One core of a run: a worker that plays, a measurer that measures, and the task of both."""
 
 import pickle
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, Literal
 
 from pydantic import TypeAdapter, ValidationError
@@ -13,7 +13,8 @@ from benchnav.processes.channel import ChannelError
 from benchnav.processes.fork_server import Child, exit_text, start_process
 from benchnav.processes.main_module import is_of_main, main_of
 from benchnav.processes.process_tree import resident, tree
-from benchnav.runner.execute.call_timer import CallTimer
+from benchnav.runner.execute.activity import activity
+from benchnav.runner.execute.call_timer import SIZE, CallTimer
 from benchnav.runner.execute.task_failure import TaskFailure
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.task import CHUNK, LARGEST, Measuring, Outcome, Played, Task
@@ -27,12 +28,18 @@ _KILL_SIGNALS = (-9, -15, -2, -1, -19)  # exit codes that another process may ha
 class WorkerSlot:
     """A worker and a measurer, which run and then measure one task at a time."""
 
-    def __init__(self, limits: Limits, registrations: tuple[Registration, ...]) -> None:
+    def __init__(
+        self,
+        limits: Limits,
+        registrations: tuple[Registration, ...],
+        waiting: Callable[[], None] = lambda: None,
+    ) -> None:
         self._limits, self._registrations = limits, registrations
+        self._waiting = waiting  # is called several times a second while a worker starts
         self._plugins = tuple(name for name in METRICS.names() if not is_own(name))
         self._worker: Child | None = None
         self._measurer: Child | None = None
-        self._timer = CallTimer([0.0] * 4)
+        self._timer = CallTimer([0.0] * SIZE)
         self._state: Literal["idle", "playing", "measuring"] = "idle"
         self._tasks = 0  # that the worker has been given
         self._first_count = 0.0  # of the call timer, when the task began
@@ -101,6 +108,12 @@ class WorkerSlot:
             return self._failure(f"held more than {limits.memory:g} GB of memory")
         return None
 
+    def activity(self) -> str:
+        """Return what it does now, as a text; "" if it has no task or starts a process."""
+        if self.task is None:
+            return ""
+        return activity(self.task, self._timer, self._state == "measuring")
+
     def finish(self) -> Task:
         """Return the task, which is stored, and free the slot."""
         return self._free()
@@ -130,7 +143,7 @@ class WorkerSlot:
     def _start_worker(self, task: Task) -> None:
         places = (*task.job.places, *(value for _, _, value in self._registrations))
         self._worker = start_process(
-            "benchnav.runner.execute.worker:serve", main=is_of_main(places)
+            "benchnav.runner.execute.worker:serve", main=is_of_main(places), waiting=self._waiting
         )
         self._timer, self._tasks = CallTimer(self._worker.notes), 0
         self._send(self._worker, self._registrations)

@@ -14,7 +14,7 @@ from benchnav.isolation import sandbox
 from benchnav.metrics.measure import all_metrics
 from benchnav.navigation.command_check import kind_of, one_of_each_kind
 from benchnav.plugins import Registration
-from benchnav.runner.execute.call_timer import beat
+from benchnav.runner.execute.call_timer import beat, note_drawing
 from benchnav.runner.execute.measurement import failed_metrics, measured, tracebacks_of
 from benchnav.runner.plan.estimate import Load
 from benchnav.runner.plan.job import Job
@@ -175,7 +175,8 @@ def _play(task: Task) -> Played:
     job = task.job
     if task.assignment.isolated:
         sandbox.hide_memory()  # before the memory holds salt and seeds
-    worlds = [(seed, _built(job, seed)) for seed in task.seeds]
+    worlds = [(seed, _drawn(job, number, seed)) for number, seed in enumerate(task.seeds, 1)]
+    note_drawing(0)
     unled: list[tuple[int, str]] = []
     with EpisodeFiles(Part(task.folder, task.first, task.stop)) as files:
         for batch in perform(task.assignment, worlds, task.forced_failure):
@@ -187,8 +188,8 @@ def _play(task: Task) -> Played:
     return Played(tuple(sorted(unled)))
 
 
-def _built(job: Job, seed: int) -> World:
-    beat()
+def _drawn(job: Job, number: int, seed: int) -> World:
+    note_drawing(number)
     return build(job.scenario, job.split, seed)
 
 
