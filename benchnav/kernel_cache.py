@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numba
 from llvmlite.binding import parse_assembly
@@ -97,7 +97,7 @@ class _Codec(CompileResultCacheImpl):
         for initialize in again:
             initialize()
         library = InnerLibrary.from_bitcode(target.codegen(), name, bitcode)
-        return CompileResult(
+        return cast(Any, CompileResult)(
             target_context=target, typing_context=target.typing_context, library=library,
             environment=environment, fndesc=function, signature=signature, objectmode=False,
             entry_point=target.get_executable(library, function, environment), lifted=(),

@@ -4,13 +4,15 @@ A kernel within a kernel is linked into its callers as LLVM code. Numba makes ma
 too, which nothing runs, and which takes an eighth of a first compile.
 """
 
+from importlib import import_module
 from typing import Any
 
 from llvmlite.binding import parse_bitcode
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import Compiler
-from numba.core.environment import lookup_environment
 
+# Numba's annotations are incomplete, so its classes are imported as Any
+JITCodeLibrary: Any = import_module("numba.core.codegen").JITCodeLibrary
+Compiler: Any = import_module("numba.core.compiler").Compiler
+lookup_environment: Any = import_module("numba.core.environment").lookup_environment
 _ENVIRONMENT = "_ZN08NumbaEnv"  # the names of global variables of the constants of kernels
 
 
@@ -62,7 +64,7 @@ class OuterLibrary(JITCodeLibrary):  # type: ignore[misc]
 class InnerCompiler(Compiler):  # type: ignore[misc]
     """Compiles kernels for other kernels."""
 
-    library_class = InnerLibrary
+    library_class: type = InnerLibrary
 
     def define_pipelines(self) -> Any:
         """Return Numba's pipelines, and let them fill a library of this kind."""
