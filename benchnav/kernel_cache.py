@@ -15,16 +15,13 @@ from collections.abc import Callable, Iterable
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 import numba
 from llvmlite.binding import parse_assembly
 from numba.core.caching import CompileResultCacheImpl, FunctionCache
-from numba.core.compiler import CompileResult
 from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
-
-from benchnav.kernel_library import InnerLibrary
 
 SUFFIX = ".kernel"
 _TEMPORARY = ".writing-"
@@ -69,11 +66,10 @@ class KernelCache(FunctionCache):
 
 
 class _Codec(CompileResultCacheImpl):
-    """Converts a compiled function to the data that is stored.
+    """Converts a compiled function to the data that Numba stores.
 
     Numba stores machine code, and LLVM code that is linked into callers; to parse the latter takes
-    more time than all else. For a function that only Python calls, the names are enough; one that
-    only kernels call has no machine code.
+    more time than all else. For a function that only Python calls, the names are enough.
     """
 
     def __init__(self, is_linked: bool) -> None:
@@ -88,22 +84,6 @@ class _Codec(CompileResultCacheImpl):
             names = function.llvm_func_name, function.llvm_cpython_wrapper_name
             library = name, kind, (machine_code, _module_of(names))
         return library, function, *rest
-
-    def rebuild(self, target: Any, data: Any) -> Any:
-        """Return the compiled function."""
-        if not self._is_linked:
-            return super().rebuild(target, data)
-        (name, _, bitcode), function, environment, signature, *_, again, environments = data
-        for initialize in again:
-            initialize()
-        library = InnerLibrary.from_bitcode(target.codegen(), name, bitcode)
-        return cast(Any, CompileResult)(
-            target_context=target, typing_context=target.typing_context, library=library,
-            environment=environment, fndesc=function, signature=signature, objectmode=False,
-            entry_point=target.get_executable(library, function, environment), lifted=(),
-            type_annotation="", typing_error=None, call_helper=None, metadata=None,
-            reload_init=again, referenced_envs=environments,
-        )  # fmt: skip
 
     def check_cachable(self, compiled: Any) -> bool:
         """Whether another process can use the compiled code."""

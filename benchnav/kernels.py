@@ -55,18 +55,14 @@ class Kernel:
     @cached_property
     def for_python(self) -> Any:
         """The code that Python calls."""
-        from benchnav.kernel_library import OuterCompiler
-
-        return self._dispatcher("", OuterCompiler)
+        return self._dispatcher("")
 
     @cached_property
     def for_kernels(self) -> Any:
         """The code that other kernels call: a wrapper for Python would take time to compile."""
-        from benchnav.kernel_library import InnerCompiler
+        return self._dispatcher("inner-", no_cpython_wrapper=True)
 
-        return self._dispatcher("inner-", InnerCompiler, no_cpython_wrapper=True)
-
-    def _dispatcher(self, prefix: str, compiler: type, **options: bool) -> Any:
+    def _dispatcher(self, prefix: str, **options: bool) -> Any:
         import numba
 
         from benchnav.kernel_cache import KernelCache
@@ -74,9 +70,8 @@ class Kernel:
         _let_numba_call_kernels()
         function, njit = self.py_func, cast(Any, numba.njit)
         compiled = njit(
-            function, error_model="numpy", no_cfunc_wrapper=True, pipeline_class=compiler,
-            **self._options, **options,
-        )  # fmt: skip
+            function, error_model="numpy", no_cfunc_wrapper=True, **self._options, **options
+        )
         folder = cache_folder(function.__module__.partition(".")[0])
         if folder is not None and Path(function.__code__.co_filename).is_file():
             compiled._cache = KernelCache(function, folder, prefix)

@@ -9,7 +9,6 @@ import numba
 import pytest
 
 from benchnav.kernel_cache import KernelCache, drop_unfinished
-from benchnav.kernel_library import InnerCompiler, OuterCompiler
 
 
 def double(x):
@@ -155,37 +154,21 @@ def test_processes_that_compile_at_once_leave_what_each_of_them_can_load(tmp_pat
     assert hits == ["2", "2"]
 
 
-def test_loaded_code_for_python_runs(tmp_path):
+@pytest.mark.parametrize("prefix", ["", "inner-"])
+def test_loaded_code_runs_and_links_into_callers_where_it_may(prefix, tmp_path):
     def new():
-        dispatcher = numba.njit(double, pipeline_class=OuterCompiler)
-        dispatcher._cache = KernelCache(double, tmp_path)
+        dispatcher = numba.njit(double)
+        dispatcher._cache = KernelCache(double, tmp_path, prefix)
         return dispatcher
 
     assert new()(21) == 42
     loaded = new()
+    if prefix:
+
+        @numba.njit
+        def twice(x):
+            return loaded(loaded(x))
+
+        assert twice(21) == 84
     assert loaded(21) == 42
     assert was_loaded(loaded)
-
-
-def half(x):
-    if x % 2:
-        raise ValueError("an odd number", x)
-    return x // 2
-
-
-def test_inner_code_links_into_its_callers_with_its_constants(tmp_path):
-    def quarter_of():
-        inner = numba.njit(half, pipeline_class=InnerCompiler, no_cpython_wrapper=True)
-        inner._cache = KernelCache(half, tmp_path, "inner-")
-
-        @numba.njit(pipeline_class=OuterCompiler)
-        def quarter(x):
-            return inner(inner(x))
-
-        assert quarter(84) == 21
-        with pytest.raises(ValueError, match="an odd number"):
-            quarter(21)
-        return inner
-
-    assert not was_loaded(quarter_of())
-    assert was_loaded(quarter_of())

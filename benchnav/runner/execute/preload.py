@@ -71,10 +71,12 @@ def warm() -> Iterator[int | None]:
         gc.set_threshold(*_RARE_COLLECTION)  # a compiler's many objects live until it ends
         if core_count() > 1:
             yield _started(reversed(parts))
-    for part in parts:
-        part()
-        yield None
-    gc.set_threshold(*thresholds)
+    try:
+        for part in parts:
+            part()
+            yield None
+    finally:
+        gc.set_threshold(*thresholds)
 
 
 def _started(parts: Iterable[Part]) -> int:
