@@ -7,8 +7,8 @@ by processor and version and cannot be called for several numbers at once; these
 multiplications and divisions only, and have the same bits everywhere.
 """
 
-# The constants and steps of `tanh` are those of fdlibm. Copyright (C) 1993 by Sun Microsystems, Inc.
-# Developed at SunPro, a Sun Microsystems, Inc. business. Permission to use, copy, modify, and
+# The constants and steps of `tanh` are those of fdlibm. Copyright (C) 1993 by Sun Microsystems,
+# Inc. Developed at SunPro, a Sun Microsystems, Inc. business. Permission to use, copy, modify, and
 # distribute this software is freely granted, provided that this notice is preserved.
 # The constants of `exp` are those of Arm's optimized routines, Copyright (c) 2017-2018 Arm Limited,
 # SPDX-License-Identifier: MIT.
