@@ -7,7 +7,7 @@ from pathlib import Path
 from benchmarks import end_to_end, isolation, leader_arena, orca_peers, planning
 from benchmarks.check import failures, report
 from benchmarks.pair import Pair, measured
-from benchmarks.table import keep, kept, page
+from benchmarks.table import KEPT, keep, kept, page
 
 
 def main() -> None:
@@ -18,6 +18,10 @@ def main() -> None:
     parser.add_argument("--check", action="store_true", help="compare with the kept ratios")
     parser.add_argument("--out", type=Path, help="Markdown file to write the table to")
     arguments = parser.parse_args()
+    if arguments.only and arguments.out:
+        parser.error("a table holds all rows, so --out cannot be given with --only")
+    if arguments.check and not KEPT.exists():
+        sys.exit(f"{KEPT} must hold the ratios to compare with. `make bench` writes it.")
     before = kept() if arguments.check else {}
     rows = []
     for pair in pairs(arguments.peers):

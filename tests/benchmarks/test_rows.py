@@ -28,6 +28,7 @@ def command(monkeypatch, tmp_path):
         words = ["--check"] if check else ["--out", str(out)]
         monkeypatch.setattr(sys, "argv", ["benchmarks", *words])
         monkeypatch.setattr(bench, "pairs", lambda peers: list(pairs))
+        monkeypatch.setattr(bench, "KEPT", tmp_path / "kept.json")
         monkeypatch.setattr(bench, "keep", lambda rows: table.keep(rows, tmp_path / "kept.json"))
         monkeypatch.setattr(bench, "kept", lambda: table.kept(tmp_path / "kept.json"))
         out.unlink(missing_ok=True)
@@ -99,6 +100,12 @@ def test_the_check_fails_when_a_ratio_fell(command):
     with pytest.raises(SystemExit) as failed:
         command(pair(lambda: 8e5), check=True)
     assert failed.value.code == "crowd: the ratio is 2.67 [2.67, 2.67], and 3 is kept"
+
+
+def test_a_check_needs_kept_ratios(command):
+    with pytest.raises(SystemExit) as failed:
+        command(pair(lambda: 9e5), check=True)
+    assert "`make bench` writes it" in failed.value.code
 
 
 def test_names_are_unique_because_ratios_are_kept_by_name():
