@@ -5,9 +5,8 @@ from typing import Any, Literal, Protocol, cast
 from weakref import WeakKeyDictionary
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.geometry import CapsuleGrid, is_clear
+from benchnav.geometry import CapsuleGrid, SolidRows, inside_rows, is_clear, solid_rows
 from benchnav.geometry.capsule_grid import capsule_grid
-from benchnav.geometry.solid_rows import SolidRows, inside_rows, solid_rows
 from benchnav.kernels import kernel
 from benchnav.navigation import Map
 

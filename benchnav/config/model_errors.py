@@ -22,9 +22,9 @@ _MUST_BE = {
     "dict_type": "must be a mapping", "model_type": "must be a mapping",
     "model_attributes_type": "must be a mapping", "list_type": "must be a list",
     "tuple_type": "must be a list", "dataclass_type": "must be a mapping",
-    "json_invalid": "must be JSON",
 }  # fmt: skip
 _BOUND = {
+    "json_invalid": "must be JSON: {error}",
     "greater_than": "must be > {gt}", "greater_than_equal": "must be ≥ {ge}",
     "less_than": "must be < {lt}", "less_than_equal": "must be ≤ {le}",
     "literal_error": "must be {expected}", "enum": "must be {expected}",

@@ -8,9 +8,8 @@ from benchnav.geometry import FreeSpace
 
 
 def test_generated_streets_join_most_places_and_are_the_same_again(monkeypatch, tmp_path):
-    monkeypatch.setattr(planning, "_DATA", tmp_path)
-    (name, map, queries), (_, again, _) = planning.city(), planning.city()
-    assert name == "streets of 256 × 256 m"
+    monkeypatch.setattr(planning, "CITY", tmp_path / "none.map")
+    (map, queries), (again, _) = planning.city.__wrapped__(), planning.city.__wrapped__()
     np.testing.assert_array_equal(map.capsules, again.capsules)
     checker, space = PlanarChecker(map, planning.RADIUS), FreeSpace(map.capsules, planning.RADIUS)
     assert len(queries) == 950

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.arena.solid import Kind, Solid
-from benchnav.geometry.solid_rows import inside_rows, solid_rows
+from benchnav.geometry.row_index import inside_rows, solid_rows
 from benchnav.geometry.sweep import (
     clearance,
     inside_solid,

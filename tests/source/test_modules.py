@@ -204,7 +204,7 @@ def test_what_ships_is_told_apart():
     straight = closure_of({"type": "straight-line"})
     assert not any(".orca" in name for name in straight)
     pair = {"type": "hierarchical", "planner": {"type": "navmesh"}, "controller": {"type": "dwa"}}
-    assert {"planners.navmesh.funnel", "controllers.dwa.kernel"} <= closure_of(pair)
+    assert {"planners.navmesh.taut_search", "controllers.dwa.kernel"} <= closure_of(pair)
     assert "learned.recurrent_ppo.actor" in closure_of({"type": "map-orca-ppo"})
     assert not any(name.startswith("benchnav.") for name in closure_of(pair))
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
-from benchnav.geometry.solid_rows import inside_rows, solid_rows
+from benchnav.geometry import inside_rows, solid_rows
 from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Map
 
