@@ -15,6 +15,14 @@ from time import perf_counter
 
 from benchmarks.pair import Pair
 
+EPISODE = (
+    "The largest parts of an episode are its metrics, sensing and the drawing of its world; storing"
+    " and reading it, steps and the guard of benchnav's code share the rest."
+)
+QUICK = (
+    "Half of the time are the learned navigators and q-learning-grid, which learns in each world."
+)
+COMPILING = "Numba and LLVM compile some 270 functions; two processes share them."
 COMMAND = [str(Path(sys.executable).with_name("benchnav"))]
 LONG, SHORT = 20_000, 2_000  # seeds
 WANTED = {"orca": (450.0, 650.0), "straight-line": (500.0, 800.0)}  # episodes per second
@@ -26,17 +34,25 @@ def pairs() -> list[Pair]:
         Pair(
             name=f"{navigator}, leaders/dynamic, {seeds:,} seeds, start included",
             ours=partial(rate, navigator, seeds), wanted=wanted, unit="episodes/s",
-            blocks=1 if seeds == LONG else 2, warm=seeds == SHORT,
+            blocks=1 if seeds == LONG else 2, warm=seeds == SHORT, limit=EPISODE,
         )
         for navigator, both in WANTED.items()
         for seeds, wanted in zip((SHORT, LONG), both, strict=True)
     ]  # fmt: skip
     return [
         *rates,
-        Pair(name="run quick, warm", ours=quick, wanted=12.0, unit="s", blocks=2),
+        Pair(name="run quick, warm", ours=quick, wanted=12.0, unit="s", blocks=2, limit=QUICK),
         Pair(name="two episodes of orca, warm", ours=start, wanted=1.0, unit="s"),
         Pair(name="benchnav --help", ours=partial(whole, "--help"), wanted=0.4, unit="s"),
-        Pair(name="first run: compiling", ours=first, wanted=15.0, unit="s", blocks=1, warm=False),
+        Pair(
+            name="first run: compiling",
+            ours=first,
+            wanted=15.0,
+            unit="s",
+            blocks=1,
+            warm=False,
+            limit=COMPILING,
+        ),
     ]
 
 

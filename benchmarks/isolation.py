@@ -18,6 +18,9 @@ CASES = (  # navigator, scenario, worlds, wanted ratio to the in-process rate
     ("orca", "bottleneck/door", 16, 0.85),
     ("orca", "leaders/dynamic", 1, 0.85),
 )
+LIMIT = (
+    "Each call switches to the process and back, and the process copies and decodes its request."
+)
 
 
 def pairs() -> list[Pair]:
@@ -31,7 +34,7 @@ def case(navigator: str, name: str, count: int, wanted: float) -> Pair:
     return Pair(
         name=f"{navigator} isolated, {name}, {worlds} at once", unit="decisions/s",
         ours=partial(rate, navigator, name, count, True), peer="in-process",
-        theirs=partial(rate, navigator, name, count, False), wanted=wanted,
+        theirs=partial(rate, navigator, name, count, False), wanted=wanted, limit=LIMIT,
     )  # fmt: skip
 
 

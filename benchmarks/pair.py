@@ -55,7 +55,7 @@ class Row:
     @property
     def text(self) -> str:
         """The ratio and its interval."""
-        return f"{self.ratio:.3g} [{self.low:.3g}, {self.high:.3g}]"
+        return f"{number(self.ratio)} [{number(self.low)}, {number(self.high)}]"
 
     @property
     def reached(self) -> bool:
@@ -86,6 +86,13 @@ def measured(pair: Pair) -> Row:
         pair=pair, value=1.0 / best if pair.unit == "s" else best,
         ratio=math.exp(logs.mean()), low=math.exp(low), high=math.exp(high),
     )  # fmt: skip
+
+
+def number(value: float) -> str:
+    """Return a number with three significant digits, with M for millions."""
+    if value >= 1e5:
+        return f"{value / 1e6:.2f} M"
+    return f"{float(f'{value:.3g}'):,.0f}" if value >= 999.5 else f"{value:.3g}"
 
 
 def interval(values: np.ndarray) -> tuple[float, float]:

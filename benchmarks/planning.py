@@ -54,6 +54,7 @@ def pairs() -> list[Pair]:
         Pair(
             name=f"OMPL's RRT-Connect, {name}", unit="motions/s",
             peer=f"callback every {_STEP} m", wanted=10.0, blocks=2,
+            limit="OMPL itself and its call into Python take two thirds of a motion's time.",
             ours=partial(motions, _swept_motions),
             theirs=partial(motions, _state_motions),
         ),

@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from benchmarks.pair import Row
+from benchmarks.pair import Row, number
 from benchnav.threads import thread_count
 
 KEPT = Path(__file__).with_name("kept_ratios.json")
@@ -26,9 +26,9 @@ def page(rows: Sequence[Row]) -> str:
         f" {versions}.",
         "Both sides of a row are measured in turns in the same run; brackets hold the 95 % interval"
         " of their ratio. The docstring of each file in `benchmarks/` describes the timed part."
-        " Rows without a peer (another simulator) are compared with a yardstick: fixed work in"
-        " Python and numpy. `make bench-check` measures again, and fails if a ratio is more than"
-        " 10 % below the kept one.",
+        " Rows without a peer (another simulator) are compared with a yardstick, fixed work in"
+        " Python and numpy; `benchmarks/kept_ratios.json` holds all ratios. `make bench-check`"
+        " measures again, and fails if a ratio is more than 10 % below the kept one.",
         "",
         "| benchmark | measured | compared with | ratio | target | reached |",
         "| --- | ---: | --- | ---: | ---: | --- |",
@@ -46,8 +46,8 @@ def line(row: Row) -> str:
         return f"| {pair.name} | – | – | – | – | {row.note} |"
     goal = f"{pair.wanted:.2g} ×" if pair.peer else f"{number(pair.wanted)} {pair.unit}"
     cells = (
-        pair.name, f"{number(row.value)} {pair.unit}", pair.peer or YARDSTICK, row.text, goal,
-        "yes" if row.reached else "no",
+        pair.name, f"{number(row.value)} {pair.unit}", pair.peer or YARDSTICK,
+        row.text if pair.peer else "–", goal, "yes" if row.reached else "no",
     )  # fmt: skip
     return f"| {' | '.join(cells)} |"
 
@@ -58,13 +58,10 @@ def limits(rows: Sequence[Row]) -> Iterator[str]:
     if short:
         yield "Limits of the rows that fall short:"
         yield ""
-        yield from (f"- *{pair.name}*: {pair.limit}" for pair in short)
+        for limit in dict.fromkeys(pair.limit for pair in short):
+            names = "; ".join(pair.name for pair in short if pair.limit == limit)
+            yield f"- {limit} *{names}*"
         yield ""
-
-
-def number(value: float) -> str:
-    """Return a number with three significant digits, with M for millions."""
-    return f"{value / 1e6:.2f} M" if value >= 1e5 else f"{value:.3g}"
 
 
 def processor() -> str:

@@ -45,8 +45,8 @@ def test_what_was_measured_is_kept(command):
     limited = pair(lambda: 5.0, lambda: 1.0, peer="", unit="s", wanted=0.4)
     text = command(pair(lambda: 9e5, limit="Sorting."), limited)
     assert "| crowd | 0.90 M agent-steps/s | pyrvo 2 | 3 [3, 3] | 4 × | no |" in text
-    assert "| crowd | 0.2 s | yardstick | 5 [5, 5] | 0.4 s | yes |" in text
-    assert "- *crowd*: Sorting." in text
+    assert "| crowd | 0.2 s | yardstick | – | 0.4 s | yes |" in text
+    assert "- Sorting. *crowd*" in text
 
 
 def test_a_row_that_was_not_measured_fails(command):
