@@ -93,7 +93,7 @@ STEP = (
     " 0.1, sorting and Python between the kernels 0.2."
 )
 MANY = "The observation, 410 bytes an agent, is allocated anew at each step."
-THREADS = "Contacts, motion, sorting and Python use one thread, and each hand-off to the other one takes time."
+THREADS = "Contacts, motion, sorting and Python use one thread, and hand-offs take time."
 TOUCHES = "Each of 3,500 touches a step changes the next touches of some 34 agents."
 
 
