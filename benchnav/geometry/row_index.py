@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchnav.arrays import FloatArray, IntArray
-from benchnav.geometry.sweep import Outlined, solid_index
+from benchnav.geometry.sweep import Outlined, solid_index, winding
 from benchnav.kernels import kernel_without_allocation
 
 
@@ -65,17 +65,9 @@ def inside_rows(rows: SolidRows, px: float, py: float) -> bool:
             if turns > 0:
                 endless -= 1
             while k < end and rows.owner[k] == solid:
-                x0, y0, x1, y1 = (
-                    rows.edges[k, 0], rows.edges[k, 1], rows.edges[k, 2], rows.edges[k, 3],
-                )  # fmt: skip
+                edge = rows.edges[k]
+                turns += winding(px, py, edge[0], edge[1], edge[2], edge[3])
                 k += 1
-                if (y0 <= py) == (y1 <= py):
-                    continue
-                left = (x1 - x0) * (py - y0) - (px - x0) * (y1 - y0)
-                if y0 <= py and left > 0.0:
-                    turns += 1
-                elif y1 <= py and left < 0.0:
-                    turns -= 1
             if turns > 0:
                 return True
     return bool(endless > 0)  # a solid without edges in this row is on both sides, or on none

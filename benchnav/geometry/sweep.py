@@ -106,17 +106,21 @@ def inside_solid(
     for s in range(first.shape[0] - 1):
         turns = outside[s]
         for i in range(first[s], first[s + 1]):
-            x0, y0, x1, y1 = capsules[i, 0], capsules[i, 1], capsules[i, 2], capsules[i, 3]
-            if (y0 <= py) == (y1 <= py):
-                continue
-            left = (x1 - x0) * (py - y0) - (px - x0) * (y1 - y0)
-            if y0 <= py and left > 0.0:
-                turns += 1
-            elif y1 <= py and left < 0.0:
-                turns -= 1
+            turns += winding(px, py, capsules[i, 0], capsules[i, 1], capsules[i, 2], capsules[i, 3])
         if turns > 0:
             return True
     return False
+
+
+@kernel_without_allocation
+def winding(px: float, py: float, x0: float, y0: float, x1: float, y1: float) -> int:
+    """Return 1, -1 or 0: what an edge adds to the winding number around a point."""
+    if (y0 <= py) == (y1 <= py):
+        return 0
+    left = (x1 - x0) * (py - y0) - (px - x0) * (y1 - y0)
+    if y0 <= py:
+        return 1 if left > 0.0 else 0
+    return -1 if left < 0.0 else 0
 
 
 class Outlined(Protocol):
