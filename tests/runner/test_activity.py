@@ -53,6 +53,9 @@ def test_drawing_deciding_and_measuring_are_shown(timer):
     beat()
     shown = activity(task(7, 9), timer, False)
     assert shown == "orca in big/map, seeds 7 to 8: 340 of 4,000 decisions"
+    with calling("remarks"):
+        pass
+    assert activity(task(), timer, False) == "storing orca in big/map, seed 0"
     assert activity(task(), timer, True) == "measuring orca in big/map, seed 0"
 
 

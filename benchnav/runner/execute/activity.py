@@ -20,6 +20,6 @@ def activity(task: Task, timer: CallTimer, measuring: bool) -> str:
         return ""
     time, clock = timer.episode_time, scenario.clock
     if time is None:
-        return f"preparing {played}"
+        return f"{'storing' if timer.has_played else 'preparing'} {played}"
     decisions = round(min(time / clock.dt, float(clock.steps)))
     return f"{played}: {decisions:,} of {clock.steps:,} decisions"

@@ -89,6 +89,11 @@ class CallTimer:
         which, time = self.notes[1], self.notes[2]
         return time if which == _CALLS.index("act") and 0.0 <= time < math.inf else None
 
+    @property
+    def has_played(self) -> bool:
+        """Whether the last call was ``remarks``, which follows the last decision."""
+        return self.notes[1] == _CALLS.index("remarks")
+
     def look(self, elapsed: float) -> None:
         """Read the counter, ``elapsed`` [s] after the last time."""
         count = self.notes[0]
