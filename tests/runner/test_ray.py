@@ -81,6 +81,14 @@ def test_a_machine_that_dies_changes_nothing(suite, tmp_path, cluster, monkeypat
         ray_executor._RayJobs, "_replace", lambda *said: (lost.append(said[2]), lose(*said))
     )
     told = Kills(cluster)
+    start = ray_executor._RayJobs._start_actor
+
+    def start_at_once(jobs):  # an actor that is still being placed moves to another machine
+        start(jobs)
+        if not told.done:
+            jobs.ray.wait(list(jobs.waiting), num_returns=len(jobs.waiting), timeout=120)
+
+    monkeypatch.setattr(ray_executor._RayJobs, "_start_actor", start_at_once)
 
     def on_the_cluster(tasks, workers, progress, limits):
         return execute_on_ray(tasks, workers, progress, limits, cluster.address)
