@@ -210,7 +210,7 @@ def settings_of(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
     """
     found, axes = {}, {HORIZON}
     for entry in (e for folder in folders for e in folder.manifest.suite["scenarios"]):
-        declared = entry["config"].get("parameters", {})
+        declared = number_parameters(entry)
         axes |= set(declared)
         if axis in declared:
             base, given = split_parameters(entry["scenario"])
@@ -221,11 +221,21 @@ def settings_of(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
             )
     if not found:
         raise UsageError(
-            f"The axis of a curve must be {HORIZON!r}, or a parameter of a scenario that was run:"
+            f"The axis of a curve must be {HORIZON!r}, or a number that a scenario left open:"
             f" {', '.join(sorted(axes - {HORIZON})) or 'here is none'}. Got {axis!r} instead."
             f"{did_you_mean(axis, sorted(axes))}"
         )
     return found
+
+
+def number_parameters(entry: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the parameters of a manifest's scenario whose values are numbers."""
+    declared = entry["config"].get("parameters", {})
+    return {
+        name: parameter
+        for name, parameter in declared.items()
+        if not isinstance(parameter["default"], bool | str)
+    }
 
 
 def _installed_metrics(notify: Notify) -> dict[str, Metric]:

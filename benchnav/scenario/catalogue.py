@@ -22,10 +22,10 @@ def origin(name: str) -> str:
 def find(name: str, folder: Path = Path()) -> Scenario:
     """Return the scenario ``name`` or ``name@version``, or of a file relative to ``folder``.
 
-    A suffix ``:key=number,key=number`` sets its parameters.
+    A suffix ``:key=value,key=value`` sets its parameters.
 
     Raises:
-        UsageError: an unknown parameter, or a number out of its bounds.
+        UsageError: an unknown parameter, or a value that is not allowed.
         UnknownPluginError: an unknown name, or another version.
         ScenarioError: its file is wrong.
         PluginConflictError: two packages hold a scenario of this name.

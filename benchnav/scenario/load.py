@@ -15,7 +15,7 @@ def load_scenario(path: Path | str, given: Given | None = None) -> Scenario:
     """Return the scenario in the YAML file ``path``, with the parameters ``given``.
 
     Raises:
-        UsageError: an unknown parameter, or a number out of its bounds.
+        UsageError: an unknown parameter, or a value that is not allowed.
         ScenarioError: with ``file:line: key`` of each problem, up to ten.
     """
     return scenario_of(read_yaml(path), Path(path).parent, given)

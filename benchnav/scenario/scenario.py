@@ -16,7 +16,7 @@ from benchnav.scenario.base import MAX_NAME, NAME_PATTERN, Bounds, Spec, inside
 from benchnav.scenario.canonical import canonical
 from benchnav.scenario.law import RecordedTrack
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
-from benchnav.scenario.parameters import Parameters, joined_parameters
+from benchnav.scenario.parameters import Parameters, Value, joined_parameters
 from benchnav.scenario.sampling.packing import lattice, most_that_fit
 from benchnav.scenario.sampling.region import region_problem
 from benchnav.scenario.sampling.sampler import support
@@ -56,7 +56,7 @@ class Scenario(Spec):
     title: str = Field("", max_length=200, description="one line, shown in lists")
     description: str = Field("", max_length=5000, description="purpose and difficulty")
     parameters: Parameters = Field(
-        {}, max_length=20, description="numbers that users can set with `NAME:key=number`"
+        {}, max_length=20, description="values that users can set with `NAME:key=value`"
     )
     bounds: Bounds = Field(description="edges of the arena: [xmin, ymin, xmax, ymax] [m]")
     walled: bool = Field(True, description="whether walls close the arena at its bounds")
@@ -86,7 +86,7 @@ class Scenario(Spec):
     )
 
     _folder: Path = PrivateAttr(default_factory=Path)
-    _chosen: dict[str, float] = PrivateAttr(default_factory=dict)
+    _chosen: dict[str, Value] = PrivateAttr(default_factory=dict)
     _where: dict[tuple[PathKey, ...], str] = PrivateAttr(default_factory=dict)
 
     @property
@@ -97,7 +97,7 @@ class Scenario(Spec):
     def placed_in(
         self,
         folder: Path,
-        chosen: dict[str, float] | None = None,
+        chosen: dict[str, Value] | None = None,
         where: dict[tuple[PathKey, ...], str] | None = None,
     ) -> "Scenario":
         """Return the same scenario, with file names relative to ``folder``.
@@ -126,7 +126,7 @@ class Scenario(Spec):
 
     @property
     def identity(self) -> str:
-        """The text ``name@version``, with ``:key=number`` for parameters off their defaults."""
+        """The text ``name@version``, with ``:key=value`` for parameters off their defaults."""
         return f"{self.name}@{self.version}{joined_parameters(self._chosen)}"
 
     @cached_property

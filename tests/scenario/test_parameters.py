@@ -58,9 +58,12 @@ def test_names_that_ship_and_versions_take_parameters():
         ("walkers=41", "'walkers' of .*s.yaml must be a whole number from 1 to 40; got 41."),
         ("walkers=2.5", "must be a whole number from 1 to 40; got 2.5."),
         ("height=8", "'height' of .*s.yaml must be a number from 2.5 to 7.5; got 8."),
-        ("walkers=many", "must be written NAME:key=number,key=number. Got "),
-        ("walkers=nan", "must be written NAME:key=number,key=number. Got "),
-        ("walkers=3,", "must be written NAME:key=number,key=number. Got "),
+        ("walkers=many", "must be a whole number from 1 to 40; got many."),
+        ("walkers=true", "must be a whole number from 1 to 40; got true."),
+        ("walkers=nan", "must be written NAME:key=value,key=value. Got "),
+        ("walkers=3,", "must be written NAME:key=value,key=value. Got "),
+        ("walkers=", "must be written NAME:key=value,key=value. Got "),
+        ("walkers=a b", "must be written NAME:key=value,key=value. Got "),
     ],
 )
 def test_what_cannot_be_chosen(tmp_path, said, message):
@@ -83,7 +86,6 @@ def test_a_scenario_without_parameters_takes_none(tmp_path):
         ("low: 1, high: 40", "low: 3, high: 40",
          "s.yaml:30: parameters.walkers.default must be from 3 to 40; got 2."),
         ("high: 40", "hgih: 40",
-         "s.yaml:30: parameters.walkers.high must be given.\n"
          "s.yaml:30: parameters.walkers.hgih is not a known key. Did you mean 'high'?"),
         ("default: 2, low: 1", "default: 1.5, low: 1",
          "s.yaml:17: teams[0].count must be a whole number"),
@@ -126,3 +128,64 @@ def test_suites_name_scenarios_with_parameters(tmp_path):
         "tests/small@1",
     ]
     assert len({job.key for job in suite.jobs()}) == 4
+
+
+TYPED = SMALL.replace("- name: walkers", "- name: walkers\n    dynamics: {parameter: drive}") + (
+    "rules: {contact: {parameter: contact}}\n"
+    "sensing: {occlusion: {parameter: hidden}}\n"
+    "parameters:\n"
+    "  drive: {default: unicycle, choices: [unicycle, holonomic]}\n"
+    "  contact: {default: slide}\n"
+    "  hidden: {default: true}\n"
+)
+
+
+def test_a_parameter_may_be_text_or_true_or_false(tmp_path):
+    path = _file(tmp_path, TYPED)
+    default = find(str(path))
+    assert default.identity == "tests/small@1"
+    assert (default.teams[0].dynamics, default.sensing.occlusion) == ("unicycle", True)
+    found = find(f"{path}:drive=holonomic,hidden=false,contact=stop")
+    assert found.identity == "tests/small@1:contact=stop,drive=holonomic,hidden=false"
+    assert (found.teams[0].dynamics, found.sensing.occlusion) == ("holonomic", False)
+    assert found.rules.contact == "stop"
+    again = found.placed_in(tmp_path, split_parameters(found.identity)[1])
+    assert again.identity == found.identity  # as verify rebuilds it
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("drive=unicicle", "'drive' of .*s.yaml must be one of unicycle, holonomic; got unicicle."
+         " Did you mean 'unicycle'?"),
+        ("drive=3", "must be one of unicycle, holonomic; got 3."),
+        ("hidden=no", "'hidden' of .*s.yaml must be true or false; got no."),
+        ("contact=true", "'contact' of .*s.yaml must be text; got true."),
+        ("contact=bounce", "s.yaml:30: rules.contact must be 'slide', 'stop' or 'end'; got"
+         " 'bounce'."),
+    ],
+)  # fmt: skip
+def test_wrong_texts(tmp_path, given, message):
+    with pytest.raises((UsageError, ScenarioError), match=message):
+        find(f"{_file(tmp_path, TYPED)}:{given}")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("{default: true}", "{default: true, low: 0}",
+         "s.yaml:35: parameters.hidden.low must be left out: the default is not a number."),
+        ("{default: slide}", "{default: 1}",
+         "s.yaml:34: parameters.contact.low must be given for a number."),
+        ("choices: [unicycle, holonomic]", "choices: [holonomic]",
+         "s.yaml:33: parameters.drive.default must be one of holonomic; got unicycle."),
+        ("{default: true}", "{default: true, choices: [yes]}",
+         "s.yaml:35: parameters.hidden.choices must be left out: the default is not text."),
+        ("{default: slide}", "{default: [slide]}", "s.yaml:34: parameters.contact.default must be"
+         " a number, or true or false, or text; got a list of 1."),
+    ],
+)  # fmt: skip
+def test_wrong_declarations_of_texts(old, new, message):
+    with pytest.raises(ScenarioError) as caught:
+        scenario_from_text(TYPED.replace(old, new, 1), "s.yaml")
+    assert str(caught.value) == message

@@ -51,9 +51,11 @@ def scenario_page(scenario: "Scenario") -> str:
 
 
 def _parameters(scenario: "Scenario") -> Iterator[str]:
+    from benchnav.scenario.parameters import written
+
     for name, p in scenario.parameters.items():
         note = f" ({p.description})" if p.description else ""
-        yield f"{name} = {p.default:g} by default, from {p.low:g} to {p.high:g}{note}"
+        yield f"{name} = {written(p.default)} by default, {p.allowed}{note}"
 
 
 def _line(key: str, value: str) -> str:

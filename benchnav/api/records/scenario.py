@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from benchnav.api.output.text_table import key_value_html
 from benchnav.scenario.catalogue import find
-from benchnav.scenario.parameters import joined_parameters, split_parameters
+from benchnav.scenario.parameters import Value, joined_parameters, split_parameters, written
 from benchnav.scenario.scenario import Scenario as Record
 from benchnav.text.plural import counted
 
@@ -13,14 +13,14 @@ if TYPE_CHECKING:
     from benchnav.api.records.world import World
 
 
-def load_scenario(name: "str | PathLike[str]", **parameters: float) -> "Scenario":
+def load_scenario(name: "str | PathLike[str]", **parameters: Value) -> "Scenario":
     """Load a scenario by name or from a YAML file, with parameters other than the default.
 
     For example ``load_scenario("trap/u", mouth=2)``, which is ``trap/u:mouth=2`` elsewhere.
 
     Raises:
         UnknownPluginError: there is no scenario of this name.
-        UsageError: it has no such parameter, or the value is out of bounds.
+        UsageError: it has no such parameter, or the value is not allowed.
         ScenarioError: the file is wrong; each line begins with file:line: key.
     """
     base, given = split_parameters(str(name))
@@ -55,7 +55,7 @@ class Scenario:
         return self.record.granted_tracks
 
     @property
-    def parameters(self) -> dict[str, float]:
+    def parameters(self) -> dict[str, Value]:
         """The parameters and their values."""
         chosen = split_parameters(self.identity)[1]
         return {name: chosen.get(name, p.default) for name, p in self.record.parameters.items()}
@@ -74,7 +74,7 @@ class Scenario:
     def _facts(self) -> list[tuple[str, str]]:
         x0, y0, x1, y1 = self.record.bounds
         ranges = (
-            f"{name} = {value:g} ({p.low:g} to {p.high:g})"
+            f"{name} = {written(value)} ({p.allowed})"
             for (name, value), p in zip(
                 self.parameters.items(), self.record.parameters.values(), strict=True
             )

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from benchnav.leaderboard.from_runs import StoredValues, settings_of
+from benchnav.leaderboard.from_runs import StoredValues, number_parameters, settings_of
 from benchnav.leaderboard.statistics.curve import Point, Setting, parameter_curves
 from benchnav.metrics.success import success
 from benchnav.report.analysis.view import View
@@ -39,9 +39,9 @@ class ParameterCurves:
 
 
 def _axes(folders: Sequence[RunFolder]) -> list[str]:
-    """Return every parameter that a scenario of the runs declares."""
+    """Return every parameter with numbers that a scenario of the runs declares."""
     entries = (e for folder in folders for e in folder.manifest.suite["scenarios"])
-    return list(dict.fromkeys(axis for e in entries for axis in e["config"].get("parameters", {})))
+    return list(dict.fromkeys(axis for e in entries for axis in number_parameters(e)))
 
 
 def _several(settings: dict[str, Setting]) -> dict[str, Setting]:
