@@ -268,8 +268,9 @@ METRICS = Registry(
     "benchnav.metrics", "metric", "benchnav.metrics.contract:metric_rule",
     "benchnav.metrics.metric:metrics_in",
 )  # fmt: skip
-SCENARIOS = Registry("benchnav.scenarios", "scenario")  # packages of YAML files, as are suites
+SCENARIOS = Registry("benchnav.scenarios", "scenario")  # packages of YAML files, as below
 SUITES = Registry("benchnav.suites", "suite")
+ROBOTS = Registry("benchnav.robots", "robot")
 TRAINERS = Registry("benchnav.trainers", "trainer", "benchnav.envs.trainer:trainer_rule")
 
 Registration = tuple[str, str, str]

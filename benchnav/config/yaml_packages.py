@@ -1,8 +1,9 @@
-"""Scenario and suite files of installed packages.
+"""Scenario, suite and robot files of installed packages.
 
 A package is named by an entry point, ``mine = "my_scenarios"``, in the group
-`benchnav.scenarios` or `benchnav.suites`. Its folder holds ``<family>/<name>.yaml`` and
-``suites/<name>.yaml``. The folder is found without importing the package: only data is read.
+`benchnav.scenarios`, `benchnav.suites` or `benchnav.robots`. Its folder holds
+``<family>/<name>.yaml``, ``suites/<name>.yaml`` and ``<robot>.yaml``. The folder is found without
+importing the package: only data is read.
 """
 
 from collections.abc import Iterator
@@ -11,7 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from benchnav.errors import PluginConflictError
-from benchnav.plugins import SCENARIOS, SUITES, Registry
+from benchnav.plugins import ROBOTS, SCENARIOS, SUITES, Registry
 
 SUFFIXES = (".yaml", ".yml")
 _SUITES = "suites"  # the folder that is no family of scenarios
@@ -21,7 +22,7 @@ _SUITES = "suites"  # the folder that is no family of scenarios
 class YamlFile:
     """A file of an installed package."""
 
-    name: str  # "trap/u", or "quick"
+    name: str  # "trap/u", "quick" or "jackal"
     path: Path
     distribution: str  # "benchnav 0.1.0"
 
@@ -44,6 +45,15 @@ def suite_files() -> dict[str, list[YamlFile]]:
         for folder, distribution in _folders(SUITES)
         if (folder / _SUITES).is_dir()
         for file in _yaml(folder / _SUITES)
+    )
+
+
+def robot_files() -> dict[str, list[YamlFile]]:
+    """Return name → files of every installed robot; more than one file is a conflict."""
+    return _by_name(
+        YamlFile(file.stem, file, distribution)
+        for folder, distribution in _folders(ROBOTS)
+        for file in _yaml(folder)
     )
 
 

@@ -9,7 +9,8 @@ from typing import Any
 
 from pydantic import BaseModel, Field
 
-ADDED, OLD_NAME = "added_in", "name_in_0_1"  # in the JSON schema of a field
+# in the JSON schema of a field
+ADDED, OLD_NAME, LABEL = "added_in", "name_in_0_1", "is_label"
 
 
 def added_field(default: Any, version: str, **options: Any) -> Any:
@@ -20,6 +21,16 @@ def added_field(default: Any, version: str, **options: Any) -> Any:
 def renamed_field(old_name: str, *default: Any, **options: Any) -> Any:
     """Return a pydantic field that was called ``old_name`` in 0.1.0."""
     return Field(*default, json_schema_extra={OLD_NAME: old_name}, **options)
+
+
+def label_field(**options: Any) -> Any:
+    """Return an optional pydantic field that no hash includes, and that is stored if it is given.
+
+    It names where other keys come from, and has no effect of its own.
+    """
+    return Field(
+        None, json_schema_extra={LABEL: True}, exclude_if=lambda value: value is None, **options
+    )
 
 
 def canonical(model: BaseModel, exclude: set[str] | None = None) -> dict[str, Any]:
@@ -50,6 +61,8 @@ def _members(model: BaseModel, dumped: dict[str, Any]) -> Any:
             yield name, form
             continue
         extra = field.json_schema_extra if isinstance(field.json_schema_extra, dict) else {}
-        if ADDED in extra and value == field.get_default(call_default_factory=True):
+        if LABEL in extra or (
+            ADDED in extra and value == field.get_default(call_default_factory=True)
+        ):
             continue
         yield str(extra.get(OLD_NAME, name)), _canonical(value, form)

@@ -8,6 +8,7 @@ from benchnav.config.validation import validate
 from benchnav.config.yaml_reader import read_yaml, read_yaml_text
 from benchnav.errors import ScenarioError
 from benchnav.scenario.parameters import Given, Reference, resolve
+from benchnav.scenario.robots.team_keys import with_robots
 from benchnav.scenario.scenario import Scenario
 
 
@@ -36,6 +37,7 @@ def scenario_of(document: Document, folder: Path, given: Given | None = None) ->
     Raises what `load_scenario` raises.
     """
     document, chosen = resolve(document, given or {})
+    document = with_robots(document, folder)
     scenario = validate(Scenario, document)
     scenario = scenario.placed_in(folder, chosen, _places_of_teams(document))
     for key, path in scenario.files():

@@ -6,6 +6,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Distance, Length, Name, Point, Spec
+from benchnav.scenario.canonical import label_field
 from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import Count, PositiveScalar, Scalar, support
 
@@ -126,6 +127,17 @@ def _named(value: Any) -> Any:
     return {"type": value} if isinstance(value, str) else value
 
 
+class RobotChoice(Spec):
+    """A robot by name, whose keys the team takes."""
+
+    type: str = Field(
+        min_length=1, max_length=200, description="name of the robot, or its YAML file"
+    )
+    acceleration_limits: bool = Field(
+        True, description="whether the team takes the acceleration limits of the robot"
+    )
+
+
 class Team(Spec):
     """Agents that share a role, a body and a driver (the navigator that controls them).
 
@@ -137,6 +149,13 @@ class Team(Spec):
         "leader", description="metrics are reported for each role separately"
     )
     count: Count = Field(1.0, description="number of agents")
+    robot: (
+        Annotated[RobotChoice, BeforeValidator(_named, json_schema_input_type=str | RobotChoice)]
+        | None
+    ) = label_field(
+        description="name of a robot, which gives the keys of the body and its limits; keys beside"
+        " it replace those of the robot"
+    )
     radius: PositiveScalar = Field(description="radius [m] of the body, a disc")
     max_speed: PositiveScalar = Field(description="largest speed [m/s]")
     preferred_speed: PositiveScalar | None = Field(

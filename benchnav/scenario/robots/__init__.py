@@ -1,0 +1,1 @@
+"""Robots: named bodies with published limits, which a team takes by ``robot: NAME``."""
