@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from benchnav.api.records.training import Training
     from benchnav.api.records.verification import Verification
     from benchnav.api.records.world import World
+    from benchnav.scenario.robots.registry import register_robot
 else:
     __getattr__ = lazy_names(
         __name__,
@@ -62,6 +63,7 @@ else:
             "merge": "benchnav.api.records.run",
             "new_navigator": "benchnav.api.authoring.new_navigator",
             "open_run": "benchnav.api.records.run",
+            "register_robot": "benchnav.scenario.robots.registry",
             "run": "benchnav.api.execution.run",
             "schema": "benchnav.api.authoring.schema",
             "show": "benchnav.api.components.page",
@@ -101,6 +103,7 @@ __all__ = [
     "register_metric",
     "register_navigator",
     "register_planner",
+    "register_robot",
     "run",
     "schema",
     "show",

@@ -79,8 +79,8 @@ def available(kind: str | None = None) -> Catalogue | dict[str, Catalogue]:
     A name can stand for a plugin that cannot be used, because the names need no import.
 
     Args:
-        kind: navigators, planners, controllers, scenarios, suites, metrics, trainers or recipes;
-            None: all of them, kind → components.
+        kind: navigators, planners, controllers, scenarios, robots, suites, metrics, trainers or
+            recipes; None: all of them, kind → components.
 
     Raises UsageError for another kind.
     """

@@ -12,6 +12,7 @@ class Kind(StrEnum):
     PLANNERS = "planners"
     CONTROLLERS = "controllers"
     SCENARIOS = "scenarios"
+    ROBOTS = "robots"
     SUITES = "suites"
     METRICS = "metrics"
     TRAINERS = "trainers"

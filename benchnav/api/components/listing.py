@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from benchnav.api.components.kind import REGISTRIES, Kind
 from benchnav.errors import BenchnavError
-from benchnav.plugins import SCENARIOS, SUITES, Registry
+from benchnav.plugins import ROBOTS, SCENARIOS, SUITES, Registry
 
 BROKEN = "broken"
 
@@ -26,6 +26,10 @@ def names(kind: Kind) -> list[str]:
         from benchnav.envs.recipes import recipe_files
 
         return list(recipe_files()[0])
+    if kind == Kind.ROBOTS:
+        from benchnav.scenario.robots import registry
+
+        return registry.names()
     if kind == Kind.SUITES:
         from benchnav.runner.plan.suite_file import suite_names
 
@@ -39,6 +43,8 @@ def entries(kind: Kind) -> Iterator[Entry]:
     """Yield the entries of a kind. Plugins of other packages are loaded in other processes."""
     if kind == Kind.SCENARIOS:
         yield from _scenarios()
+    elif kind == Kind.ROBOTS:
+        yield from _robots()
     elif kind == Kind.SUITES:
         yield from _suites()
     elif kind == Kind.RECIPES:
@@ -68,6 +74,19 @@ def _scenarios() -> Iterator[Entry]:
         except BenchnavError as error:
             yield Entry(name, BROKEN, str(error))
     for package, cause in missing_packages(SCENARIOS):
+        yield Entry(package, BROKEN, cause)
+
+
+def _robots() -> Iterator[Entry]:
+    from benchnav.config.yaml_packages import missing_packages
+    from benchnav.scenario.robots import registry
+
+    for name in registry.names():
+        try:
+            yield Entry(name, registry.origin(name), registry.find_robot(name).title)
+        except BenchnavError as error:
+            yield Entry(name, BROKEN, str(error))
+    for package, cause in missing_packages(ROBOTS):
         yield Entry(package, BROKEN, cause)
 
 

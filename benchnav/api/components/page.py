@@ -7,6 +7,7 @@ from os import PathLike
 from benchnav.api.components.inspection import PAGE, PAIR, inspect_plugins
 from benchnav.api.components.kind import REGISTRIES, Kind
 from benchnav.api.components.listing import names
+from benchnav.api.components.robot_page import describes_robot, robot_page
 from benchnav.api.components.scenario_page import scenario_page
 from benchnav.errors import BenchnavError, UsageError, did_you_mean
 from benchnav.navigation.hierarchy.composition import is_pair
@@ -34,7 +35,7 @@ def show(name: "str | PathLike[str]") -> Page:
 
     Args:
         name: of any component that ``benchnav.available()`` has, ``PLANNER+CONTROLLER``,
-            ``module:Class``, or the file of a scenario. Components of different kinds that
+            ``module:Class``, or the file of a scenario or robot. Components of different kinds that
             share a name are described one after another.
 
     Raises UsageError where there is no such component, and BrokenPluginError where it cannot be
@@ -48,7 +49,7 @@ def show(name: "str | PathLike[str]") -> Page:
         if name in registry.names()
         or (kind == Kind.NAVIGATORS and _is_class(name) and not is_pair(name))
     ]
-    blocks += [*_pair(name), *_scenario(name), *_suite(name)]
+    blocks += [*_pair(name), *_scenario(name), *_robot(name), *_suite(name)]
     blocks = blocks or [*_recipe(name)]
     if not blocks:
         known = dict.fromkeys(each for kind in Kind for each in names(kind))
@@ -79,8 +80,15 @@ def _is_class(name: str) -> bool:
 def _scenario(name: str) -> Iterator[str]:
     from benchnav.scenario.catalogue import find, is_named
 
-    if is_named(name):
+    if is_named(name) and not describes_robot(name):
         yield scenario_page(find(name))
+
+
+def _robot(name: str) -> Iterator[str]:
+    from benchnav.scenario.robots.registry import names
+
+    if name in names() or describes_robot(name):
+        yield robot_page(name)
 
 
 def _suite(name: str) -> Iterator[str]:

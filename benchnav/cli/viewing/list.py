@@ -12,8 +12,8 @@ def list_(
         str | None,
         typer.Argument(
             metavar="KIND",
-            help="navigators, planners, controllers, scenarios, suites, metrics, trainers or"
-            " recipes. [default: all]",
+            help="navigators, planners, controllers, scenarios, robots, suites, metrics, trainers"
+            " or recipes. [default: all]",
         ),
     ] = None,
 ) -> None:

@@ -108,3 +108,8 @@ def _as_team(document: Document) -> Document:
     place = document.place.children.get("team", Place(1))
     team = {"name": "robot", "start": _ANY_PLACE, "goal": _ANY_PLACE, **document.data["team"]}
     return replace(document, data=team, place=place)
+
+
+def is_robot(data: Any) -> bool:
+    """Whether the content of a YAML file is that of a robot rather than a scenario or suite."""
+    return isinstance(data, dict) and "team" in data and "teams" not in data
