@@ -8,6 +8,8 @@ from benchnav.config.validation import validate
 from benchnav.config.yaml_reader import read_yaml, read_yaml_text
 from benchnav.errors import ScenarioError
 from benchnav.scenario.parameters import Given, Reference, resolve
+from benchnav.scenario.robots.registry import names as robot_names
+from benchnav.scenario.robots.robot import KEYS as BODY_KEYS
 from benchnav.scenario.robots.team_keys import with_robots
 from benchnav.scenario.scenario import Scenario
 
@@ -71,6 +73,7 @@ def json_schema() -> dict[str, Any]:
     schema = Scenario.model_json_schema()
     _allow_references({key: part for key, part in schema.items() if key != "$defs"})
     _allow_references({k: part for k, part in schema["$defs"].items() if k != "Parameter"})
+    _offer_robots(schema["$defs"]["Team"], schema["$defs"]["RobotChoice"])
     schema["$defs"]["Reference"] = Reference.model_json_schema()
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
@@ -79,10 +82,21 @@ _OF_NUMBERS = ("type", "minimum", "maximum", "exclusiveMinimum", "exclusiveMaxim
 
 
 def _allow_references(node: Any) -> None:
-    """Allow a parameter wherever a number is allowed."""
+    """Allow a parameter wherever a number, or true or false, is allowed."""
     for child in list(node.values() if isinstance(node, dict) else node):
         if isinstance(child, dict | list):
             _allow_references(child)
-    if isinstance(node, dict) and node.get("type") in ("number", "integer"):
+    if isinstance(node, dict) and node.get("type") in ("number", "integer", "boolean"):
         number = {key: node.pop(key) for key in _OF_NUMBERS if key in node}
         node["anyOf"] = [number, {"$ref": "#/$defs/Reference"}]
+
+
+def _offer_robots(team: dict[str, Any], choice: dict[str, Any]) -> None:
+    """Offer the names of robots, which give a team the keys that it must have otherwise."""
+    name = [{"enum": robot_names()}, {"type": "string"}, {"$ref": "#/$defs/Reference"}]
+    choice["properties"]["type"] = {**choice["properties"]["type"], "anyOf": name}
+    del choice["properties"]["type"]["type"]
+    team["properties"]["robot"]["anyOf"] += name
+    body = [key for key in team["required"] if key in BODY_KEYS]
+    team["required"] = [key for key in team["required"] if key not in BODY_KEYS]
+    team["anyOf"] = [{"required": ["robot"]}, {"required": body}]

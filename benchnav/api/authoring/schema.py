@@ -1,29 +1,31 @@
-"""The JSON Schema of scenario and suite files."""
+"""The JSON Schema of scenario, suite and robot files."""
 
 from typing import Any
 
 from benchnav.errors import UsageError, did_you_mean
 
-KINDS = ("scenario", "suite")
+KINDS = ("scenario", "suite", "robot")
 
 
 def schema(kind: str = "scenario") -> dict[str, Any]:
-    """Return the JSON Schema (2020-12) of scenario files or suite files, as plain data.
+    """Return the JSON Schema (2020-12) of scenario, suite or robot files, as plain data.
 
     Editors use it to complete and check files.
 
     Args:
-        kind: "scenario" or "suite".
+        kind: "scenario", "suite" or "robot".
 
     Raises UsageError for another kind.
     """
     if kind not in KINDS:
         raise UsageError(
-            f"A schema must be that of a {' or '.join(KINDS)} file. Got {kind!r} instead."
+            "A schema must be that of a scenario, suite or robot file. Got {kind!r} instead."
             f"{did_you_mean(str(kind), KINDS)}"
         )
     if kind == "suite":
         from benchnav.runner.plan.suite_file import json_schema
+    elif kind == "robot":
+        from benchnav.scenario.robots.robot import json_schema
     else:
         from benchnav.scenario.load import json_schema
     return json_schema()

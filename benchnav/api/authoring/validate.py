@@ -1,4 +1,4 @@
-"""Check a scenario or suite before it is run."""
+"""Check a scenario, suite or robot before it is used."""
 
 from collections.abc import Iterator, Mapping
 from html import escape
@@ -22,7 +22,7 @@ Checkable = str | PathLike[str] | Mapping[str, Any]
 
 
 class Validation:
-    """The result of checking a scenario or suite; true in a condition if it has no problems."""
+    """The result of a check of a file; true in a condition if it has no problems."""
 
     def __init__(self, facts: str, error: BenchnavError | None) -> None:
         self.facts = facts  # what was found, in sentences
@@ -53,7 +53,7 @@ class Validation:
 
 
 def validate(content: Checkable, *, draw: bool = True) -> Validation:
-    """Check a scenario or suite, and return its problems.
+    """Check a scenario, suite or robot, and return its problems.
 
     Args:
         content: a YAML file, or its content as a dict, as `benchnav.run` takes it. Files that a
@@ -72,18 +72,34 @@ def validate(content: Checkable, *, draw: bool = True) -> Validation:
 
 def _facts(content: Checkable, draw: bool) -> Iterator[str]:
     from benchnav.runner.plan.suite_file import describes_scenario
+    from benchnav.scenario.robots.robot import is_robot
 
     if isinstance(content, Mapping):
-        if describes_scenario(dict(content)):
+        if is_robot(content):
+            yield _robot(document_of(content, "robot"), "It")
+        elif describes_scenario(dict(content)):
             yield from _scenario(document_of(content, "scenario"), Path(), draw, "It")
         else:
             yield _suite(suite_source(content), "It")
         return
     document = read_yaml(Path(content))
-    if describes_scenario(document.data):
+    if is_robot(document.data):
+        yield _robot(document, str(content))
+    elif describes_scenario(document.data):
         yield from _scenario(document, Path(content).parent, draw, str(content))
     else:
         yield _suite(str(content), str(content))
+
+
+def _robot(document: "Document", name: str) -> str:
+    from benchnav.scenario.robots.robot import ESTIMATE, robot_of
+
+    robot = robot_of(document)
+    published = [s for s in robot.sources.values() if not s.startswith(ESTIMATE)]
+    return (
+        f"{name} is a robot, {robot.title}: {counted(len(robot.keys), 'key')} of a team,"
+        f" {len(published)} with a published source"
+    )
 
 
 def _suite(source: "str | Document", name: str) -> str:

@@ -8,6 +8,8 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+from benchnav.api.components.kind import Kind
+from benchnav.api.components.listing import BROKEN, entries
 from benchnav.api.execution.warm import compile_kernels
 from benchnav.api.output.text_table import table_html
 from benchnav.errors import BenchnavError, MissingExtraError
@@ -165,3 +167,8 @@ def _plugins() -> Iterator[Check]:
         for name, error in errors.items():
             if name not in incomplete:
                 yield Check(WRONG, registry.kind, str(error))
+    robots = list(entries(Kind.ROBOTS))
+    wrong = [each for each in robots if each.origin == BROKEN]
+    yield Check(OK, "robots", f"{len(robots) - len(wrong)} can be used")
+    for each in wrong:
+        yield Check(WRONG, "robot", f"{each.name}: {each.description}")

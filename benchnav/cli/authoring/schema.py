@@ -1,4 +1,4 @@
-"""`benchnav schema`: the JSON Schema of a scenario or suite file."""
+"""`benchnav schema`: the JSON Schema of a scenario, suite or robot file."""
 
 import json
 from typing import Annotated
@@ -9,9 +9,9 @@ from benchnav.cli.console import put
 
 
 def schema(
-    of: Annotated[str, typer.Argument(metavar="OF", help="scenario or suite.")] = "scenario",
+    of: Annotated[str, typer.Argument(metavar="OF", help="scenario, suite or robot.")] = "scenario",
 ) -> None:
-    """Print the JSON Schema of scenario files or suite files.
+    """Print the JSON Schema of scenario, suite or robot files.
 
     Editors use it to complete and check files (JSON Schema 2020-12).
     """

@@ -1,4 +1,4 @@
-"""`benchnav validate`: check a scenario or suite file."""
+"""`benchnav validate`: check a scenario, suite or robot file."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,13 +9,13 @@ from benchnav.cli.console import put
 
 
 def validate(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario or suite file.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario, suite or robot file.")],
     draw: Annotated[
         bool,
         typer.Option(help="Also draw worlds of a scenario: are they solvable, do they differ?"),
     ] = True,
 ) -> None:
-    """Check a scenario or suite file.
+    """Check a scenario, suite or robot file.
 
     Each problem is reported as file:line: key.
     """

@@ -11,7 +11,7 @@ from typing import Any
 
 from pydantic import Field, model_validator
 
-from benchnav.config.document import Document, Place
+from benchnav.config.document import Document
 from benchnav.config.validation import FieldError, validate
 from benchnav.config.yaml_reader import read_yaml
 from benchnav.errors import did_you_mean
@@ -64,6 +64,10 @@ class RobotFile(Spec):
         return self
 
 
+class _WithTeam(Spec):
+    team: Team
+
+
 @dataclass(frozen=True)
 class Robot:
     """A robot that was read and checked."""
@@ -99,15 +103,23 @@ def read_robot(path: Path) -> Robot:
 def robot_of(document: Document) -> Robot:
     """Return the robot that ``document`` describes. Raises like `read_robot`."""
     file = validate(RobotFile, document)
-    validate(Team, _as_team(document))
+    validate(_WithTeam, _as_scenario(document))
     return Robot(file.title, file.description.strip(), document.data["team"], file.sources)
 
 
-def _as_team(document: Document) -> Document:
+def _as_scenario(document: Document) -> Document:
     """Return the robot as a team with any start and goal, so that the checks are those of teams."""
-    place = document.place.children.get("team", Place(1))
     team = {"name": "robot", "start": _ANY_PLACE, "goal": _ANY_PLACE, **document.data["team"]}
-    return replace(document, data=team, place=place)
+    return replace(document, data={"team": team})
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON Schema (2020-12) of a robot's file."""
+    schema, team = RobotFile.model_json_schema(), Team.model_json_schema()
+    keys = {key: team["properties"][key] for key in KEYS}
+    schema["properties"]["team"] |= {"properties": keys, "additionalProperties": False}
+    schema["$defs"] = team["$defs"]
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
 
 
 def is_robot(data: Any) -> bool:
