@@ -62,7 +62,7 @@ def test_entry_points_lead_somewhere(value):
     package, _, rest = module.partition(".")
     folder = ROOT / FOLDERS[package] / Path(*rest.split("."))
     if not name:  # a module of metrics, or a package of YAML files
-        found = folder.with_suffix(".py").exists() or list(folder.glob("*/*.yaml"))
+        found = folder.with_suffix(".py").exists() or list(folder.glob("**/*.yaml"))
         assert found, value
         return
     source = (
@@ -129,7 +129,7 @@ def test_the_licence_is_complete():
     assert PROJECT["project"]["license"] == "Apache-2.0"
 
 
-@pytest.mark.parametrize("folder", ["baselines", "scenarios"])
+@pytest.mark.parametrize("folder", ["baselines", "robots", "scenarios"])
 def test_a_folder_is_not_importable_under_its_own_name(folder):
     namespace = {"__name__": folder}
     code = (ROOT / folder / "__init__.py").read_text(encoding="utf-8")
@@ -143,7 +143,7 @@ def test_modules_import_downwards_only(source):
     own = parts[0]
     for name in imports(source):
         root, _, rest = name.partition(".")
-        assert root not in ("benchnav_baselines", "benchnav_scenarios")
+        assert root not in ("benchnav_baselines", "benchnav_robots", "benchnav_scenarios")
         if root != "benchnav" or own in ("__init__", "__main__") or not rest:
             continue
         other = rest.partition(".")[0]

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
+from benchnav.config.document import shown
 from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Distance, Length, Name, Point, Spec
 from benchnav.scenario.canonical import added_field, label_field
@@ -128,6 +129,14 @@ def _named(value: Any) -> Any:
     return {"type": value} if isinstance(value, str) else value
 
 
+def _named_robot(value: Any) -> Any:
+    if not isinstance(value, str | dict):
+        raise ValueError(
+            f"must be the name of a robot, or a mapping with its `type`; got {shown(value)}"
+        )
+    return _named(value)
+
+
 class RobotChoice(Spec):
     """A robot by name, whose keys the team takes."""
 
@@ -151,7 +160,9 @@ class Team(Spec):
     )
     count: Count = Field(1.0, description="number of agents")
     robot: (
-        Annotated[RobotChoice, BeforeValidator(_named, json_schema_input_type=str | RobotChoice)]
+        Annotated[
+            RobotChoice, BeforeValidator(_named_robot, json_schema_input_type=str | RobotChoice)
+        ]
         | None
     ) = label_field(
         description="name of a robot, which gives the keys of the body and its limits; keys beside"

@@ -76,6 +76,12 @@ def test_its_scenarios_and_suites_are_listed_and_shown_without_importing_it(benc
 
 
 @pytest.mark.slow
+def test_its_robot_is_listed_and_shown_without_importing_it(benchnav):
+    assert "outside-plugin 1.2.3  A cart of another package" in benchnav("list", "robots")
+    assert "radius: 0.4" in benchnav("show", "cart")
+
+
+@pytest.mark.slow
 def test_its_trainer_and_recipe_are_used_and_a_broken_trainer_is_listed(benchnav, tmp_path):
     trainers = benchnav("list", "trainers").splitlines()
     assert any(line.startswith("teacher") and "Writes its seed" in line for line in trainers)

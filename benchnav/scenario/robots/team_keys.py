@@ -24,12 +24,12 @@ def with_robots(document: Document, folder: Path) -> Document:
     """
     data = document.data
     teams = data.get("teams") if isinstance(data, dict) else None
-    if not isinstance(teams, list) or not any("robot" in t for t in teams if isinstance(t, dict)):
+    if not isinstance(teams, list) or not any(map(_names_a_robot, teams)):
         return document
     place = document.place.children["teams"]
     filled, places = list(teams), dict(place.children)
     for i, team in enumerate(teams):
-        if isinstance(team, dict) and "robot" in team:
+        if _names_a_robot(team):
             path = ("teams", i, "robot")
             keys = _keys(team, document.where(path), folder)
             filled[i] = {**keys, **team}
@@ -38,6 +38,10 @@ def with_robots(document: Document, folder: Path) -> Document:
     return replace(
         document, data={**data, "teams": filled}, place=Place(document.place.line, around)
     )
+
+
+def _names_a_robot(team: Any) -> bool:
+    return isinstance(team, dict) and team.get("robot") is not None
 
 
 def _keys(team: Mapping[str, Any], where: str, folder: Path) -> dict[str, Any]:
