@@ -30,7 +30,7 @@ class Agents(MotionLimits):
     start: FloatArray  # (A, 2) [m]
     heading: FloatArray  # (A,) [rad] at the start
     goal: FloatArray  # (A, 2) [m]
-    radius: FloatArray  # (A,) [m]
+    radius: FloatArray  # (A,) [m] of the disc, or of the circle around the footprint
     max_speed: FloatArray  # (A,) [m/s]
     preferred_speed: FloatArray  # (A,) [m/s]
     max_turn_rate: FloatArray  # (A,) [rad/s], not used by planar velocities

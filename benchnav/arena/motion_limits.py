@@ -1,4 +1,4 @@
-"""The limits of agents' motion beside speed and turn rate."""
+"""The limits of agents' motion beside speed and turn rate, and shapes that are not discs."""
 
 import math
 from dataclasses import dataclass
@@ -12,8 +12,9 @@ NO_LIMIT: dict[str, Any] = {
     "max_acceleration": math.inf, "max_deceleration": math.inf, "max_turn_acceleration": math.inf,
     "track_width": 0.0, "max_wheel_speed": math.inf, "wheelbase": 0.0,
     "max_steering_angle": math.inf, "max_steering_rate": math.inf, "reverse": False,
+    "half_length": 0.0, "half_width": 0.0, "rounding": 0.0,
 }  # fmt: skip
-"""The columns of `MotionLimits`, each with the value that limits nothing."""
+"""The columns of `MotionLimits`, each with the value that limits nothing, and that of a disc."""
 _UNSET: Any = None
 
 
@@ -33,6 +34,10 @@ class MotionLimits:
     max_steering_angle: FloatArray = _UNSET  # (A,) [rad] of an Ackermann body, else inf
     max_steering_rate: FloatArray = _UNSET  # (A,) [rad/s] of an Ackermann body, inf: no limit
     reverse: BoolArray = _UNSET  # (A,) whether the body can drive backwards
+    # the footprint: a rectangle with rounded corners; all three are 0 for a disc of `radius`
+    half_length: FloatArray = _UNSET  # (A,) [m] half the extent along the heading
+    half_width: FloatArray = _UNSET  # (A,) [m] half the extent across the heading
+    rounding: FloatArray = _UNSET  # (A,) [m] radius of the corners; of a capsule, the half width
 
     def __len__(self) -> int:
         raise NotImplementedError
@@ -41,6 +46,15 @@ class MotionLimits:
         for name, value in NO_LIMIT.items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, np.full(len(self), value))
+
+    @property
+    def inner_radius(self) -> FloatArray:
+        """(A,) [m] Radius of the circle within the footprint; of a disc, its radius."""
+        radius: FloatArray = self.radius  # type: ignore[attr-defined]
+        inner: FloatArray = np.where(
+            self.rounding > 0.0, np.minimum(self.half_length, self.half_width), radius
+        )
+        return inner
 
     def without_limit(self) -> frozenset[str]:
         """Return the names of the columns that limit no agent."""

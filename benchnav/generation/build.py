@@ -16,6 +16,7 @@ from benchnav.arrays import AnyArray, BoolArray
 from benchnav.errors import UnsolvableError, UsageError, did_you_mean
 from benchnav.generation.clearance import Barrier, barrier, joined
 from benchnav.generation.dynamic_obstacles import check_clear, fixed_bodies, is_fixed, placed_bodies
+from benchnav.generation.footprints import draw_bodies
 from benchnav.generation.motion_law import place_at_start
 from benchnav.generation.placement import Fault, NoPlaceError, Part
 from benchnav.generation.prepared import Prepared, Structure, prepare
@@ -73,7 +74,7 @@ def _team_message(scenario: Scenario, failed: Mapping[tuple[int, Part], Fault]) 
     lines = []
     for (i, part), fault in sorted(failed.items()):
         team = scenario.teams[i]
-        radius = support(team.radius)[0]
+        radius = team.outer_radius[0]
         text = f"\n{scenario.where(('teams', i, part))} of {team.name!r}"
         if fault == "unreachable":
             lines.append(
@@ -187,7 +188,7 @@ class _Draw:
             rng = self.stream(_BODY, i)
             count = int(sample(team.count, rng))
             columns.append(_numbers(team, count, rng))
-            reach = support(team.radius)[1]
+            reach = team.outer_radius[1]
             spaces = [self.prepared.space(structure, now, reach)]
             if later is not None:
                 spaces.append(self.prepared.space(structure, later, reach))
@@ -212,7 +213,7 @@ def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, AnyA
     preferred = team.preferred_speed
     heading = 0.0 if team.heading == "goal" else team.heading
     return {
-        "radius": draw_numbers(team.radius, count, rng),
+        **draw_bodies(team, count, rng),
         "max_speed": top,
         "preferred_speed": top.copy()
         if preferred is None

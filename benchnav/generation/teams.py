@@ -282,7 +282,7 @@ def fixed_places(team: Team, bounds: Extent) -> FloatArray:
         places = np.vstack([places, _bound_goals(team.goal, places)])
     if isinstance(team.goal, PointsGoal):
         places = np.vstack([places, np.array(team.goal.points)[:most]])
-    radius = np.full((len(places), 1), support(team.radius)[1] + shaken)
+    radius = np.full((len(places), 1), team.outer_radius[1] + shaken)
     return np.hstack([places, places, radius])
 
 

@@ -28,7 +28,7 @@ class Briefing(MotionLimits):
     start: FloatArray  # (A, 2) [m]
     heading: FloatArray  # (A,) [rad]
     goal: FloatArray  # (A, 2) [m]
-    radius: FloatArray  # (A,) [m]
+    radius: FloatArray  # (A,) [m] of the disc, or of the circle around the footprint
     max_speed: FloatArray  # (A,) [m/s]
     preferred_speed: FloatArray  # (A,) [m/s]
     max_turn_rate: FloatArray  # (A,) [rad/s]

@@ -274,7 +274,7 @@ def _namesake_problems(before: Sequence[Team], team: Team, i: int) -> Iterator[P
 def _room_problems(scenario: Scenario) -> Iterator[Problem]:
     """Yield teams that are too large for their starts or goals."""
     for i, team in enumerate(scenario.teams):
-        most, radius = int(support(team.count)[1]), support(team.radius)[0]
+        most, radius = int(support(team.count)[1]), team.outer_radius[0]
         margin = radius if scenario.walled else 0.0
         for key, place in (("start", team.start), ("goal", team.goal)):
             gap = 0.0

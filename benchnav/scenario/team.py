@@ -9,6 +9,7 @@ from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Distance, Length, Name, Point, Spec
 from benchnav.scenario.canonical import added_field, label_field
 from benchnav.scenario.dynamics import DynamicsSpec, Holonomic
+from benchnav.scenario.footprint import Footprint, Range
 from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import Count, PositiveScalar, Scalar, support
 
@@ -168,7 +169,12 @@ class Team(Spec):
         description="name of a robot, which gives the keys of the body and its limits; keys beside"
         " it replace those of the robot"
     )
-    radius: PositiveScalar = Field(description="radius [m] of the body, a disc")
+    radius: PositiveScalar | None = Field(
+        None, description="radius [m] of a body that is a disc; else give `footprint`"
+    )
+    footprint: Footprint | None = added_field(
+        None, "0.3.0", description="shape of the body along its heading; default: a disc"
+    )
     max_speed: PositiveScalar = Field(description="largest speed [m/s]")
     preferred_speed: PositiveScalar | None = Field(
         None, description="desired speed [m/s]; default: `max_speed`"
@@ -213,8 +219,21 @@ class Team(Spec):
         """Whether the evaluated navigator drives this team."""
         return self.driver.type == "evaluated"
 
+    @property
+    def outer_radius(self) -> Range:
+        """Return the least and the largest radius [m] of the circle around a body."""
+        return support(self.radius) if self.footprint is None else self.footprint.outer_radius
+
     @model_validator(mode="after")
     def _check(self) -> "Team":
+        if self.radius is None and self.footprint is None:
+            raise FieldError(
+                ("radius",), "must be given, or `footprint` for other shapes, or `robot`"
+            )
+        if self.radius is not None and self.footprint is not None:
+            raise FieldError(
+                ("radius",), "must be left out, because it follows from `footprint`; remove one"
+            )
         most = support(self.count)[1]
         for key, place in (("start", self.start), ("goal", self.goal)):
             if isinstance(place, PointsStart | PointsGoal) and len(place.points) < most:

@@ -13,7 +13,7 @@ from benchnav.world.touch import (
     BODY,
     FIXED,
     GOAL,
-    encloses,
+    body_gap,
     from_agent,
     from_body,
     from_fixed,
@@ -77,6 +77,31 @@ def _touch_agent(
     if active:
         _respond(j, -nx, -ny, give_j, time, world, b, opened[j], closed)
     _respond(i, nx, ny, give_i, time, world, a, opened[i], closed)
+
+
+@kernel_without_allocation
+def touch_in_turn(
+    i: int, time: float, closing: float, nx: float, ny: float, code: int, world: Any,
+    agents: AnyArray, capsules: AnyArray, opened: AnyArray, closed: AnyArray,
+) -> bool:  # fmt: skip
+    """Record a contact of agent i that turns, and respond; return whether it may give way.
+
+    Its velocity stays: only its turn is in the way.
+    """
+    a, k = agents[i], code // 4
+    if code % 4 == AGENT:
+        b = agents[k]
+        active = b.status == _ACTIVE
+        _record(i, code, time, closing, True, world, a, opened[i], closed)
+        charged = active or world.charge_both
+        _record(k, 4 * i + AGENT, time, closing, charged, world, b, opened[k], closed)
+        if active:
+            _respond(k, -nx, -ny, 0.0, time, world, b, opened[k], closed)
+    else:
+        known = 4 * capsules[k].solid + FIXED if code % 4 == FIXED else code
+        _record(i, known, time, closing, True, world, a, opened[i], closed)
+    _respond(i, nx, ny, 0.0, time, world, a, opened[i], closed)
+    return bool(world.contact != _STOP and world.contact != _END)
 
 
 @kernel_without_allocation
@@ -192,9 +217,7 @@ def _gap(
     if code % 4 == AGENT:
         return from_agent(a, agents[k])[2] if agents[k].present else math.inf
     if code % 4 == BODY:
-        body = bodies[k]
-        gap = from_body(a, body, shapes)[2]
-        return -gap - 2.0 * a.radius if encloses(body, shapes, a.x, a.y) else gap
+        return body_gap(a, bodies[k], shapes)
     gap = math.inf
     cell = cell_at(world, a.x, a.y)
     for at in range(start[cell], start[cell + 1]):

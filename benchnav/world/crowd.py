@@ -14,6 +14,7 @@ from benchnav.geometry.hash_grid import bucket, fill, follow
 from benchnav.kernels import kernel_without_allocation
 from benchnav.world.contacts import MAX_HITS, touch
 from benchnav.world.fixed import cell_at
+from benchnav.world.footprint import agents_time
 from benchnav.world.touch import AGENT, WIDER, find_next
 
 X, Y, VX, VY, RADIUS, TAU = range(6)  # rows of the motion: [m], [m/s], [s] until the next touch
@@ -45,8 +46,8 @@ def sort_spots(
 
 @kernel_without_allocation
 def listed_agent(
-    own: int, left: float, way: float, widest: float, spots: AnyArray, listed: IntArray,
-    motion: FloatArray,
+    own: int, left: float, way: float, widest: float, shaped: bool, agents: AnyArray,
+    spots: AnyArray, listed: IntArray, motion: FloatArray,
 ) -> tuple[float, int]:  # fmt: skip
     """Return the same as `next_agent` from a list of the nearest spots.
 
@@ -59,7 +60,7 @@ def listed_agent(
         fx, fy = motion[X, own] - motion[X, at], motion[Y, own] - motion[Y, at]
         if fx * fx + fy * fy > WIDER * far * far:
             break
-        t, j = pair_time(own, at, motion), spots[at].index
+        t, j = pair_time(own, at, left, shaped, agents, spots, motion), spots[at].index
         if t <= left and (t < best or (t == best and j < partner)):
             best, partner = t, j
     return best, partner
@@ -67,14 +68,14 @@ def listed_agent(
 
 @kernel_without_allocation
 def next_agent(
-    own: int, left: float, reach: float, side: float, hashed: IntArray, spots: AnyArray,
-    motion: FloatArray, near: IntArray,
+    own: int, left: float, reach: float, side: float, shaped: bool, agents: AnyArray,
+    hashed: IntArray, spots: AnyArray, motion: FloatArray, near: IntArray,
 ) -> tuple[float, int]:  # fmt: skip
     """Return (time, index) of the agent that spot ``own`` touches first within ``left`` [s].
 
     It is (inf, -1) if there is none. Spots of cells (of ``side`` [m]) within ``reach`` [m] that
     approach and are near enough are listed in ``near`` (scratch), without branches that cannot be
-    predicted.
+    predicted. Long bodies may touch although their centres separate.
     """
     n, size = 0, len(hashed) - 1
     x, y, vx, vy = motion[X, own], motion[Y, own], motion[VX, own], motion[VY, own]
@@ -90,19 +91,30 @@ def next_agent(
                 wx, wy = vx - motion[VX, at], vy - motion[VY, at]
                 far = radius + motion[RADIUS, at] + WIDER * (abs(wx) + abs(wy)) * left
                 near[n] = at
-                within = (fx * fx + fy * fy <= WIDER * far * far) & (fx * wx + fy * wy < 0.0)
+                approach = (shaped & (at != own)) | (fx * wx + fy * wy < 0.0)
+                within = (fx * fx + fy * fy <= WIDER * far * far) & approach
                 n += within & (spots[at].cj == row)
     best, partner = math.inf, -1
     for k in range(n):
-        t, j = pair_time(own, near[k], motion), spots[near[k]].index
+        t, j = pair_time(own, near[k], left, shaped, agents, spots, motion), spots[near[k]].index
         if t <= left and (t < best or (t == best and j < partner)):
             best, partner = t, j
     return best, partner
 
 
 @kernel_without_allocation
-def pair_time(a: int, b: int, motion: FloatArray) -> float:
+def pair_time(
+    a: int, b: int, left: float, shaped: bool, agents: AnyArray, spots: AnyArray,
+    motion: FloatArray,
+) -> float:  # fmt: skip
     """Return the time until the agents at spots a and b touch at their current velocities."""
+    if shaped:
+        own, other = agents[spots[a].index], agents[spots[b].index]
+        if own.shaped or other.shaped:
+            return agents_time(
+                motion[X, a] - motion[X, b], motion[Y, a] - motion[Y, b],
+                motion[VX, a] - motion[VX, b], motion[VY, a] - motion[VY, b], left, own, other,
+            )  # fmt: skip
     return disc_time(
         motion[X, a] - motion[X, b], motion[Y, a] - motion[Y, b],
         motion[VX, a] - motion[VX, b], motion[VY, a] - motion[VY, b],
@@ -127,11 +139,11 @@ def find_all_in_crowd(
             far = a.radius + world.widest + way
             if WIDER * far < beyond[i]:
                 meeting, partner = listed_agent(
-                    own, world.h, way, world.widest, spots, listed[i], motion
+                    own, world.h, way, world.widest, world.shaped, agents, spots, listed[i], motion
                 )  # fmt: skip
             else:
                 meeting, partner = next_agent(
-                    own, world.h, far, world.cells, hashed, spots, motion, near
+                    own, world.h, far, world.cells, world.shaped, agents, hashed, spots, motion, near
                 )  # fmt: skip
             find_next(
                 i, meeting, partner, world.h, world.tolerance, agents, bodies, shapes, capsules,
@@ -179,8 +191,8 @@ def advance_crowd(
                 way = (math.sqrt(a.vx * a.vx + a.vy * a.vy) + fastest) * left
                 way += fastest * (world.h - left)  # since the spots were sorted
                 meeting, partner = next_agent(
-                    own, left, a.radius + world.widest + WIDER * way, world.cells, hashed, spots,
-                    motion, near[affected:],
+                    own, left, a.radius + world.widest + WIDER * way, world.cells, world.shaped,
+                    agents, hashed, spots, motion, near[affected:],
                 )  # fmt: skip
                 find_next(
                     spots[own].index, meeting, partner, left, world.tolerance, agents, bodies,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from benchnav.arena.agents import Dynamics
+from benchnav.arena.agents import Agents, Dynamics
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards, Charge, World
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
@@ -42,6 +42,7 @@ class Simulation:
         self._opened = np.zeros((self.B, self.A, OPEN_CONTACTS), CONTACT)
         self._opened["code"] = -1
         room = 32 + 2 * OPEN_CONTACTS * self.A * (first.clock.substeps + 1)
+        room *= 2 if self.records["shaped"].any() else 1  # turns have contacts of their own
         self._closed = np.zeros((self.B, room), CONTACT)
         self._kept: list[list[AnyArray]] = [[] for _ in self.worlds]
         self.hashed = hash_table(self.B, self.A)
@@ -196,7 +197,18 @@ def _agent_records(worlds: Sequence[World]) -> AnyArray:
             row[name] = getattr(agents, name)
         row["unicycle"] = agents.dynamics == int(Dynamics.UNICYCLE)
         row["evaluated"], row["present"] = agents.evaluated, True
+        _write_footprints(agents, row)
     return records
+
+
+def _write_footprints(agents: Agents, row: AnyArray) -> None:
+    """Write the shapes of bodies; a capsule as long as wide is a disc."""
+    core = agents.rounding > 0.0
+    row["core_length"] = np.where(core, agents.half_length - agents.rounding, 0.0)
+    row["core_width"] = np.where(core, agents.half_width - agents.rounding, 0.0)
+    row["rounding"] = np.where(core, agents.rounding, agents.radius)
+    row["inner_radius"] = agents.inner_radius
+    row["shaped"] = (row["core_length"] > 0.0) | (row["core_width"] > 0.0)
 
 
 def _world_records(
@@ -214,6 +226,7 @@ def _world_records(
         row["charge_both"] = rules.charge == Charge.BOTH
         row["agents"], row["bodies"] = len(world.agents), len(world.bodies)
         row["running"] = bool(world.agents.evaluated.any())
+    records["shaped"] = agents["shaped"].any(axis=1)
     speed, widest = agents["max_speed"].max(axis=1), agents["radius"].max(axis=1)
     top_speeds(bodies, records["bodies"], knots, speed)
     records["widest"] = widest

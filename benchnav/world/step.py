@@ -21,7 +21,9 @@ from benchnav.world.contacts import MAX_HITS, follow_up, touch
 from benchnav.world.crowd import ROWS, advance_crowd, find_all_in_crowd, sort_spots
 from benchnav.world.dynamics import limited, planar_velocity
 from benchnav.world.fixed import cell_at
+from benchnav.world.footprint import set_axes
 from benchnav.world.touch import BRUTE_FORCE, find_next, next_agent
+from benchnav.world.turning import turn_agents
 
 _ACTIVE = int(Status.ACTIVE)
 _STATIC = int(Kind.STATIC)
@@ -73,6 +75,8 @@ def step_world(
     ``driven`` (3, A), ``motion`` (6, A) and ``near`` (2 A + 1,) are scratch.
     """
     relocate(world.steps_done * world.dt, world, agents, bodies, knots)
+    if world.shaped:
+        set_axes(world, agents)
     if obey(command, twist, executed, world, agents, driven):
         find_directions(driven[0], driven[1], driven[2])
     for s in range(world.substeps):
@@ -97,6 +101,11 @@ def step_world(
             )
         land_agents(left, world, agents, driven[2])
         land_bodies(world, bodies)
+        if world.shaped:
+            turn_agents(
+                end, world, agents, bodies, shapes, capsules, start, item, driven[2], opened,
+                closed,
+            )  # fmt: skip
         follow_up(end, world, agents, bodies, shapes, capsules, start, item, opened, closed)
     world.steps_done += 1
     world.running = goes_on(world, agents)
@@ -284,7 +293,7 @@ def land_bodies(world: Any, bodies: AnyArray) -> None:
 
 @inlined
 def land_agents(left: float, world: Any, agents: AnyArray, direction: FloatArray) -> None:
-    """Move agents straight for ``left`` [s], and turn them.
+    """Move agents straight for ``left`` [s], and turn the discs.
 
     A twist turns an agent at its turn rate, and a planar velocity to face its direction.
     """
@@ -292,8 +301,8 @@ def land_agents(left: float, world: Any, agents: AnyArray, direction: FloatArray
         a = agents[i]
         a.x += a.vx * left
         a.y += a.vy * left
-        if a.status != _ACTIVE or not a.present:
-            continue
+        if a.status != _ACTIVE or not a.present or a.shaped:
+            continue  # `turn_agents` turns bodies that are not discs
         if a.turning:
             a.heading = wrap(a.heading + a.drive_1 * world.h)
         elif a.drive_0 != 0.0 or a.drive_1 != 0.0:

@@ -10,6 +10,13 @@ from typing import Any
 from benchnav.arrays import AnyArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
 from benchnav.kernels import inlined, kernel_without_allocation
+from benchnav.world.footprint import (
+    agent_capsule_gap,
+    agent_capsule_time,
+    agents_gap,
+    agents_time,
+    depth_within,
+)
 
 GOAL, AGENT, FIXED, BODY = 0, 1, 2, 3
 BRUTE_FORCE = 24  # up to this many agents, testing all pairs is cheaper than cells
@@ -53,7 +60,10 @@ def body_time(a: Any, body: Any, shapes: AnyArray, left: float) -> float:
     best = math.inf
     for q in range(body.first, body.last):
         c = shapes[q]
-        t = capsule_time(fx, fy, wx, wy, a.radius + c.r, way, c.x0, c.y0, c.x1, c.y1)
+        if a.shaped:
+            t = agent_capsule_time(fx, fy, wx, wy, way, a, c)
+        else:
+            t = capsule_time(fx, fy, wx, wy, a.radius + c.r, way, c.x0, c.y0, c.x1, c.y1)
         best = min(best, t)
     return best
 
@@ -64,7 +74,11 @@ def next_agent(i: int, left: float, agents: AnyArray) -> tuple[float, int]:
     a, best, partner = agents[i], math.inf, -1
     for j in range(len(agents)):
         if j != i and agents[j].present:
-            t = pair_time(a, agents[j])
+            b = agents[j]
+            if a.shaped or b.shaped:
+                t = agents_time(a.x - b.x, a.y - b.y, a.vx - b.vx, a.vy - b.vy, left, a, b)
+            else:
+                t = pair_time(a, b)
             if t <= left and t < best:
                 best, partner = t, j
     return best, partner
@@ -90,7 +104,11 @@ def find_next(
     if a.vx != 0.0 or a.vy != 0.0:
         way = (abs(a.vx) + abs(a.vy)) * left
         for at in range(start[a.home], start[a.home + 1]):
-            t = fixed_time(a, capsules[item[at]], way)
+            c = capsules[item[at]]
+            if a.shaped:
+                t = agent_capsule_time(a.x, a.y, a.vx, a.vy, way, a, c)
+            else:
+                t = fixed_time(a, c, way)
             if t < best and t <= left:
                 best, code = t, 4 * item[at] + FIXED
     for m in range(body_count):
@@ -104,7 +122,9 @@ def find_next(
 
 @kernel_without_allocation
 def from_fixed(a: Any, c: Any) -> tuple[float, float, float]:
-    """Return (dx, dy, gap): from the nearest core point to agent a, and between the surfaces."""
+    """Return (dx, dy, gap): away from the capsule, any length, and between the surfaces."""
+    if a.shaped:
+        return agent_capsule_gap(a.x, a.y, a, c)
     qx, qy = nearest_on_segment(a.x, a.y, c.x0, c.y0, c.x1, c.y1)
     dx, dy = a.x - qx, a.y - qy
     return dx, dy, math.sqrt(dx * dx + dy * dy) - c.r - a.radius
@@ -117,9 +137,12 @@ def from_body(a: Any, body: Any, shapes: AnyArray) -> tuple[float, float, float]
     fx, fy = a.x - body.x, a.y - body.y
     for q in range(body.first, body.last):
         c = shapes[q]
-        qx, qy = nearest_on_segment(fx, fy, c.x0, c.y0, c.x1, c.y1)
-        ex, ey = fx - qx, fy - qy
-        d = math.sqrt(ex * ex + ey * ey) - c.r - a.radius
+        if a.shaped:
+            ex, ey, d = agent_capsule_gap(fx, fy, a, c)
+        else:
+            qx, qy = nearest_on_segment(fx, fy, c.x0, c.y0, c.x1, c.y1)
+            ex, ey = fx - qx, fy - qy
+            d = math.sqrt(ex * ex + ey * ey) - c.r - a.radius
         if d < gap:
             gap, dx, dy = d, ex, ey
     return dx, dy, gap
@@ -140,5 +163,18 @@ def encloses(body: Any, shapes: AnyArray, x: float, y: float) -> bool:
 @kernel_without_allocation
 def from_agent(a: Any, b: Any) -> tuple[float, float, float]:
     """Like `from_fixed`, for another agent."""
+    if a.shaped or b.shaped:
+        return agents_gap(a.x - b.x, a.y - b.y, a, b)
     dx, dy = a.x - b.x, a.y - b.y
     return dx, dy, math.sqrt(dx * dx + dy * dy) - a.radius - b.radius
+
+
+@kernel_without_allocation
+def body_gap(a: Any, body: Any, shapes: AnyArray) -> float:
+    """Return the gap [m] of agent a and a body; minus the depth if its centre is within."""
+    gap = from_body(a, body, shapes)[2]
+    if not encloses(body, shapes, a.x, a.y):
+        return gap
+    if a.shaped:
+        return -depth_within(a, body, shapes)
+    return -gap - 2.0 * a.radius

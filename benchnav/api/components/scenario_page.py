@@ -154,14 +154,21 @@ def _team(team: "Team") -> str:
     )
     many = "" if support(team.count)[1] == 1 else "s"
     text = (
-        f"{team.name}: {number(team.count)} {team.dynamics.type} {team.role}{many}, radius"
-        f" {number(team.radius)} m, {number(speed)} m/s; start {start}, goal {goal}"
+        f"{team.name}: {number(team.count)} {team.dynamics.type} {team.role}{many},"
+        f" {_body(team)}, {number(speed)} m/s; start {start}, goal {goal}"
     )
     if team.goal.type == "region" and team.goal.min_distance:
         text += f" at least {team.goal.min_distance:g} m away"
     if not team.evaluated:
         text += f"; background, driven by {team.driver.type}"
     return text + (f"; does not see {', '.join(team.ignores)}" if team.ignores else "")
+
+
+def _body(team: "Team") -> str:
+    shape = team.footprint
+    if shape is None or shape.type == "disc":
+        return f"radius {number(team.radius if shape is None else shape.radius)} m"
+    return f"{shape.type} of {number(shape.length)} m × {number(shape.width)} m"
 
 
 def _terms(scenario: "Scenario") -> Iterator[Fact]:

@@ -13,6 +13,7 @@ from benchnav.config.document import Document, PathKey, Place, shown
 from benchnav.config.yaml_packages import SUFFIXES
 from benchnav.errors import ScenarioError, UnknownPluginError, did_you_mean
 from benchnav.scenario.robots.registry import find_robot, names
+from benchnav.scenario.robots.robot import Robot
 
 _STUB = {"radius": 1.0, "max_speed": 1.0}  # no complaint but the one about `robot` itself
 
@@ -50,7 +51,7 @@ def _keys(team: Mapping[str, Any], where: str, folder: Path) -> dict[str, Any]:
     fields = choice if isinstance(choice, dict) else {"type": choice}
     name, limits = fields.get("type"), fields.get("acceleration_limits", True)
     if not isinstance(name, str) or not isinstance(limits, bool):
-        return {key: value for key, value in _STUB.items() if key not in team}
+        return Robot("", "", _STUB, {}).keys_beside(team, True)
     try:
         return find_robot(name, folder).keys_beside(team, limits)
     except UnknownPluginError:
