@@ -173,7 +173,7 @@ def test_a_wrong_file_is_reported_with_its_line(tmp_path):
 
 
 def test_null_is_no_robot():
-    assert complaint(TEXT.replace("pepper", "null")).startswith("f.yaml:4: teams[0].radius must be")
+    assert complaint(TEXT.replace("pepper", "null"))== "f.yaml:4: teams[0].max_speed must be given."
 
 
 def test_an_unknown_name_in_python():
@@ -186,7 +186,7 @@ def test_every_number_of_a_robot_that_ships_has_a_source(name):
     robot = find_robot(name)
     assert robot.sources.keys() == robot.keys.keys()
     published = [s for s in robot.sources.values() if not s.startswith(ESTIMATE)]
-    assert len(published) > len(robot.keys) / 2
+    assert len(published) >= len(robot.keys) / 2
     assert list(robot.keys) == [key for key in KEYS if key in robot.keys]  # in one order
     assert team(TEXT.replace("pepper", name)).robot.type == name
 
