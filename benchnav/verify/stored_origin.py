@@ -23,6 +23,7 @@ def stored_origin(run: RunFolder, part: Part, episode: Episode) -> Production | 
     assignment = Assignment(
         identity.scenario, identity.scenario_hash, identity.split, identity.track, label,
         dict(spec), salt=run.manifest.salt, rehearsals=int(fields.get("rehearsal", 0)),
+        perception=identity.perception,
     )  # fmt: skip
     if not assignment.rehearsals:
         return Production(assignment)
