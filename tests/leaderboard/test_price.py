@@ -8,9 +8,10 @@ import math
 import pytest
 
 from benchnav.leaderboard import NotApplicable, leaderboard, render
-from benchnav.leaderboard.record import NO_MAP, PRICE
+from benchnav.leaderboard.record import IGNORANCE, NO_MAP
 from tests.leaderboard.tables import METRICS, scores, table
 
+PRICE = IGNORANCE.mark
 SEEDS = 16
 PLANNER = {"known": [1.0] * SEEDS, "unknown": [0.5, 1.0, 0.25, 0.25] * (SEEDS // 4)}
 BLIND = [0.25, 0.75] * (SEEDS // 2)
@@ -38,7 +39,8 @@ def priced(found, navigator, metric="success", scenario="leaders/x@1"):
     (one,) = [
         r
         for r in found.records
-        if (r.track, r.navigator, r.metric, r.scenario) == (PRICE, navigator, metric, scenario)
+        if (r.track, r.navigator, r.metric, r.scenario)
+        == (PRICE, navigator, metric, scenario)
     ]
     return one
 
@@ -128,7 +130,11 @@ def test_tidy_formats_hold_it_in_the_place_of_a_track():
         for s in ("leaders/x@1", "leaders/y@1", "all")
     }
     assert {r["rank_low"] for r in found} == {None}
-    read = [r for r in csv.DictReader(io.StringIO(render(board(), "csv"))) if r["track"] == PRICE]
+    read = [
+        r
+        for r in csv.DictReader(io.StringIO(render(board(), "csv")))
+        if r["track"] == PRICE
+    ]
     assert len(read) == len(found)
 
 
