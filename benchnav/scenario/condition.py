@@ -20,6 +20,11 @@ def described(track: str, perception: str) -> str:
     return f"track {condition(track, perception)}" + ("" if perception == EXACT else " perception")
 
 
+def episode_name(navigator: str, scenario: str, track: str, perception: str, seed: int) -> str:
+    """Return ``orca/trap/u@1/known/3``, or ``orca/trap/u@1/known/noisy/3``."""
+    return f"{navigator}/{scenario}/{condition(track, perception).replace(', ', '/')}/{seed}"
+
+
 def perception_of(cell: Mapping[str, Any]) -> str:
     """Return the perception of a cell of a manifest."""
     return str(cell.get("perception", EXACT))
