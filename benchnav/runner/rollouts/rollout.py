@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from benchnav.arena.noise import Noise
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import Clock, Rules, World
 from benchnav.episode.episode import Episode, Identity
@@ -22,7 +23,7 @@ from benchnav.plugins import NAVIGATORS
 from benchnav.runner.execute.call_timer import calling
 from benchnav.runner.rollouts.navigator_driver import PROPERTIES, Driver
 from benchnav.runner.rollouts.recorder import Recorder
-from benchnav.runner.rollouts.seeding import generator, place
+from benchnav.runner.rollouts.seeding import generator, noise_key, place
 from benchnav.runner.rollouts.tamper_guard import Guard
 from benchnav.world.simulation import Simulation
 
@@ -48,6 +49,7 @@ class Assignment:
     rehearsals: int = 0  # that the navigator asks for
     leader: Spec | None = None  # the navigator of the leaders in rehearsals
     rehearsal: int = 0  # k: this is the k-th rehearsal; 0: the scored episode
+    noise: Noise | None = None  # of the senses; None: the perception track `exact`
     isolated: bool = False  # whether the evaluated navigator runs in its own process
     perception: str = "exact"  # of the evaluated navigator, and of its leaders in rehearsals
 
@@ -190,7 +192,9 @@ def drivers_of(
     simulation: Simulation,
     rehearsals: Sequence[tuple[Rehearsal, ...]] = (),
 ) -> list[Driver]:
-    """Return drivers of the evaluated navigator, then of the background ones, on the known track.
+    """Return drivers of the evaluated navigator, then of the background ones.
+
+    Background navigators are on the known track, and perceive without error.
 
     ``rehearsals`` (B,) of each world are given to the evaluated navigator. Raises CallFailed if a
     navigator cannot be made.
@@ -198,7 +202,12 @@ def drivers_of(
     cell = assignment.cell if assignment.isolated else ()
     guard = None if cell else Guard()  # before code of the navigator is imported
     chosen, track = _made(assignment.navigator, "", cell), assignment.track
-    drivers = [Driver(chosen, simulation, 0, track, rehearsals=rehearsals, guard=guard)]
+    drivers = [
+        Driver(
+            chosen, simulation, 0, track, rehearsals=rehearsals, guard=guard,
+            noise=assignment.noise,
+        )
+    ]  # fmt: skip
     for which, spec in enumerate(assignment.background, start=1):
         blame = f"the scenario's background navigator {split(NAVIGATORS, spec)[0]!r}: "
         drivers.append(Driver(_made(spec, blame), simulation, which, "known", blame))
@@ -228,8 +237,9 @@ def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) 
     """Brief all navigators. Return the duration [s] of the evaluated navigator's reset."""
     about = (assignment.salt, assignment.scenario_hash, assignment.split)
     which = assignment.rehearsal
+    keys = np.array([noise_key(*about, seed, which) for seed in seeds])
     seconds = [
-        d.reset([generator(*about, seed, d.which, which) for seed in seeds]) for d in drivers
+        d.reset([generator(*about, seed, d.which, which) for seed in seeds], keys) for d in drivers
     ]
     return seconds[0]
 
