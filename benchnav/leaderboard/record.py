@@ -30,6 +30,11 @@ class Price:
         """Return the value of the other axis: of a stratum, a record or a cell."""
         return str(of.perception if self.axis == "track" else of.track)
 
+    def place_of(self, of: Any) -> tuple[str, str]:
+        """Return track and perception of its records, one of which is the mark."""
+        other = self.other(of)
+        return (self.mark, other) if self.axis == "track" else (other, self.mark)
+
     def sides(self, of: Any) -> tuple[tuple[str, str], tuple[str, str]]:
         """Return the track and perception of both sides."""
         other = self.other(of)

@@ -8,6 +8,8 @@ from benchnav.scenario.terms import PERCEPTIONS, TRACKS
 
 EXACT = "exact"
 """The perception of runs that name none, such as those of older versions."""
+NOISY = "noisy"
+"""The perception with the noise of the scenario."""
 
 
 def condition(track: str, perception: str) -> str:

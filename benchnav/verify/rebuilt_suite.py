@@ -118,8 +118,10 @@ def _scenario(
 
 
 def _block(fields: Mapping[str, Any]) -> Block:
-    listed = (tuple(map(str, fields[key])) for key in ("scenarios", "tracks", "navigators"))
-    return Block(*listed, perceptions_of(fields))
+    scenarios, tracks, navigators = (
+        tuple(map(str, fields[key])) for key in ("scenarios", "tracks", "navigators")
+    )
+    return Block(scenarios, tracks, navigators, perceptions_of(fields))
 
 
 def _contestant(fields: Mapping[str, Any], source: Mapping[str, Any] = {}) -> Contestant:

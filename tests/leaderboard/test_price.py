@@ -39,8 +39,7 @@ def priced(found, navigator, metric="success", scenario="leaders/x@1"):
     (one,) = [
         r
         for r in found.records
-        if (r.track, r.navigator, r.metric, r.scenario)
-        == (PRICE, navigator, metric, scenario)
+        if (r.track, r.navigator, r.metric, r.scenario) == (PRICE, navigator, metric, scenario)
     ]
     return one
 
@@ -130,11 +129,7 @@ def test_tidy_formats_hold_it_in_the_place_of_a_track():
         for s in ("leaders/x@1", "leaders/y@1", "all")
     }
     assert {r["rank_low"] for r in found} == {None}
-    read = [
-        r
-        for r in csv.DictReader(io.StringIO(render(board(), "csv")))
-        if r["track"] == PRICE
-    ]
+    read = [r for r in csv.DictReader(io.StringIO(render(board(), "csv"))) if r["track"] == PRICE]
     assert len(read) == len(found)
 
 

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav.report.analysis.knowledge import price_sentence, prices_of
 
 import benchnav
 from benchnav.arena.solid import Kind
@@ -19,6 +18,7 @@ from benchnav.report.analysis.failures import outcome_shares, partners
 from benchnav.report.analysis.horizon import HorizonCurves
 from benchnav.report.analysis.outcome import Outcome
 from benchnav.report.analysis.parameter import ParameterCurves
+from benchnav.report.analysis.price import price_sentence, prices_of
 from benchnav.report.analysis.profile import profile
 from benchnav.report.analysis.view import View, title_of, views_of
 from benchnav.report.figures.price import price_figure

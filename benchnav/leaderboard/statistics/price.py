@@ -141,7 +141,7 @@ def _records(
 ) -> Iterator[Record]:
     """Yield the records of one scenario, or of all (None)."""
     s, price = priced[0].one, priced[0].price
-    condition = {"track": s.track, "perception": s.perception, price.axis: price.mark}
+    track, perception = price.place_of(s)
     episodes = np.sum([each.episodes for each in priced], axis=0)
     failures = np.sum([each.failures for each in priced], axis=0)
     nan = float("nan")
@@ -153,7 +153,8 @@ def _records(
             yield Record(
                 navigator=navigator,
                 scenario=of.scenario if of else ALL,
-                **condition,
+                track=track,
+                perception=perception,
                 role=s.role,
                 metric=name,
                 value=0.0 if none else float(found.value[at]),

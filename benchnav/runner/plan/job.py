@@ -6,13 +6,13 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any
 
-from benchnav.generation.build import sensing_of
+from benchnav.generation.build import noise_of, sensing_of
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.contestant import Contestant
 from benchnav.runner.rollouts.rollout import Assignment
-from benchnav.scenario.condition import EXACT, condition
+from benchnav.scenario.condition import EXACT, NOISY, condition
 from benchnav.scenario.sampling.sampler import support
 from benchnav.scenario.scenario import Scenario
 from benchnav.source.parts import places_of
@@ -39,7 +39,8 @@ class Job:
             contestant.spec, scenario.driver_specs, navigator_hash=contestant.hash,
             source_hash=contestant.source_hash, rehearsals=contestant.rehearsal,
             leader=contestant.leader.spec if contestant.leader else None,
-            isolated=contestant.mode == ISOLATED, perception=self.perception,
+            isolated=contestant.mode == ISOLATED,
+            noise=noise_of(scenario) if self.perception == NOISY else None,
         )  # fmt: skip
 
     @property

@@ -25,6 +25,7 @@ from benchnav.runner.rollouts.navigator_driver import PROPERTIES, Driver
 from benchnav.runner.rollouts.recorder import Recorder
 from benchnav.runner.rollouts.seeding import generator, noise_key, place
 from benchnav.runner.rollouts.tamper_guard import Guard
+from benchnav.scenario.condition import EXACT, NOISY
 from benchnav.world.simulation import Simulation
 
 MAX_WORLDS = 256  # of a batch: larger batches are hardly faster and need more memory
@@ -49,9 +50,14 @@ class Assignment:
     rehearsals: int = 0  # that the navigator asks for
     leader: Spec | None = None  # the navigator of the leaders in rehearsals
     rehearsal: int = 0  # k: this is the k-th rehearsal; 0: the scored episode
-    noise: Noise | None = None  # of the senses; None: the perception track `exact`
+    # of the senses of the navigator, and of its leaders in rehearsals; None: perception `exact`
+    noise: Noise | None = None
     isolated: bool = False  # whether the evaluated navigator runs in its own process
-    perception: str = "exact"  # of the evaluated navigator, and of its leaders in rehearsals
+
+    @property
+    def perception(self) -> str:
+        """The perception: exact or noisy."""
+        return EXACT if self.noise is None else NOISY
 
     @property
     def cell(self) -> tuple[str, ...]:
