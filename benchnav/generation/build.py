@@ -10,6 +10,7 @@ import numpy as np
 from benchnav.arena.agents import Agents, Dynamics, Role
 from benchnav.arena.body import Body
 from benchnav.arena.motion_limits import NO_LIMIT
+from benchnav.arena.noise import EdgeNoise, NeighbourNoise, Noise, OdometryNoise, RayNoise
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
 from benchnav.arrays import AnyArray, BoolArray
@@ -311,3 +312,12 @@ def sensing_of(scenario: Scenario) -> Sensing:
         None if s.edges is None else EdgeSensor(**s.edges.model_dump()),
         s.occlusion,
     )
+
+
+def noise_of(scenario: Scenario) -> Noise:
+    """Return the noise of the senses in the perception track `noisy` of ``scenario``."""
+    n = scenario.noise
+    return Noise(
+        RayNoise(**n.rays.numbers), NeighbourNoise(**n.neighbours.numbers),
+        EdgeNoise(**n.edges.numbers), OdometryNoise(**n.odometry.numbers), n.delay,
+    )  # fmt: skip

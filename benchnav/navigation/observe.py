@@ -11,6 +11,7 @@ import numpy as np
 from benchnav.arrays import BoolArray, IntArray
 from benchnav.navigation.map import Map
 from benchnav.navigation.observation import Observation
+from benchnav.sensors.noise.noisy_senses import NoisySenses
 from benchnav.sensors.own_state import copy_own_state, find_deciding
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
@@ -35,6 +36,7 @@ def observe(
     active: BoolArray,
     needs: frozenset[str],
     maps: Sequence[Map | None],
+    senses: NoisySenses | None = None,
 ) -> Observation:
     """Return what some agents perceive now. Its arrays are copies, and zero for padding.
 
@@ -44,14 +46,20 @@ def observe(
         active: (B, An) which of them sense and decide; copied.
         needs: the sensors to compute; the others are None.
         maps: (B,) the map that each world's agents hold now.
+        senses: the noise of the senses of these agents; None: they perceive without error.
 
     `rows` numbers the worlds of the simulation from 0.
     """
-    rays, neighbours, edges = sense(simulation, np.where(active, agents, -1), needs)
+    if senses is None:
+        rays, neighbours, edges = sense(simulation, np.where(active, agents, -1), needs)
+    else:
+        rays, neighbours, edges = senses.sense(active, needs)
     position, velocity, goal = (np.empty((*agents.shape, 2)) for _ in range(3))
     heading = np.empty(agents.shape)
     chosen = np.array(agents, np.int64)
     copy_own_state(0, simulation.B, chosen, simulation.agents, position, heading, velocity, goal)
+    if senses is not None:
+        senses.localise(position, heading, velocity)
     return Observation(
         rows=np.arange(simulation.B),
         time=simulation.steps_done * simulation.records["dt"],

@@ -13,8 +13,9 @@ from benchnav.config.document import PathKey, dotted
 from benchnav.config.validation import FieldError
 from benchnav.errors import did_you_mean
 from benchnav.scenario.base import MAX_NAME, NAME_PATTERN, Bounds, Spec, inside
-from benchnav.scenario.canonical import canonical
+from benchnav.scenario.canonical import added_field, canonical
 from benchnav.scenario.law import RecordedTrack
+from benchnav.scenario.noise import NoiseSpec
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
 from benchnav.scenario.parameters import Parameters, Value, joined_parameters
 from benchnav.scenario.sampling.packing import lattice, most_that_fit
@@ -76,6 +77,12 @@ class Scenario(Spec):
     clock: Clock = Field(Clock(), description="time step, horizon and decision budget")
     rules: Rules = Field(Rules(), description="condition of arrival, and effects of contacts")
     sensing: Sensing = Field(Sensing(), description="sensors of every agent")
+    noise: NoiseSpec = added_field(
+        NoiseSpec(),
+        "0.3.0",
+        description="errors of the sensors in the perception track `noisy`; the track `exact` has"
+        " none",
+    )
     tracks: Annotated[tuple[Track, ...], Field(min_length=1, max_length=4)] | None = Field(
         None,
         description="knowledge tracks of the scenario; default: `known`, `partial` and `unknown`,"
@@ -243,6 +250,12 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
     tracks = scenario.tracks
     if tracks is not None and len(set(tracks)) < len(tracks):
         yield ("tracks",), "must not name a track twice"
+    delay, steps = scenario.noise.delay, scenario.clock.steps
+    if delay >= steps:
+        yield (
+            ("noise", "delay"),
+            f"must be shorter than the horizon, which is {steps} decisions; got {delay}",
+        )
     yield from _room_problems(scenario)
 
 

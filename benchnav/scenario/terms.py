@@ -10,6 +10,8 @@ from benchnav.scenario.base import Length, Spec
 
 Track = Literal["known", "stale", "partial", "unknown"]
 TRACKS: tuple[Track, ...] = get_args(Track)
+Perception = Literal["exact", "noisy"]
+PERCEPTIONS: tuple[Perception, ...] = get_args(Perception)
 SPLITS = ("train", "validation", "test")
 MAX_STEPS = 100_000
 

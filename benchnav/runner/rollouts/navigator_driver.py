@@ -6,8 +6,9 @@ from typing import Any, get_args
 
 import numpy as np
 
+from benchnav.arena.noise import Noise
 from benchnav.arena.world import World
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.errors import MissingExtraError
 from benchnav.navigation.briefing import Briefing, brief
 from benchnav.navigation.command_check import CallFailed, checked, exception_text, remarks_of
@@ -19,6 +20,7 @@ from benchnav.navigation.plugin.trace import trace
 from benchnav.navigation.rehearsal import Rehearsal, copied
 from benchnav.runner.execute.call_timer import Call, calling
 from benchnav.runner.rollouts.tamper_guard import Guard
+from benchnav.sensors.noise.noisy_senses import NoisySenses
 from benchnav.world.command import give_commands
 from benchnav.world.simulation import Simulation
 
@@ -44,6 +46,7 @@ class Driver:
         blame: str = "",
         rehearsals: Sequence[tuple[Rehearsal, ...]] = (),
         guard: Guard | None = None,
+        noise: Noise | None = None,
     ) -> None:
         self.navigator = navigator
         self.simulation = simulation
@@ -54,18 +57,24 @@ class Driver:
         worlds = simulation.worlds
         self._rehearsals = rehearsals or [()] * len(worlds)
         self.chosen = _chosen(worlds, which)  # (B, An) agent index, -1: padding
+        self._senses = NoisySenses(simulation, self.chosen, noise) if noise is not None else None
         with calling("__init__"):
             properties = [_property_of(navigator, name, blame) for name in PROPERTIES]
         needs, self._command, self.reproducible = properties
         self._needs = frozenset(needs)
         self._maps = HeldMaps(simulation, track)
 
-    def reset(self, generators: Sequence[np.random.Generator]) -> float:
+    def reset(
+        self, generators: Sequence[np.random.Generator], noise_keys: AnyArray | None = None
+    ) -> float:
         """Brief the navigator for all worlds. Return the duration of its call [s].
 
-        Raises CallFailed if the call raises.
+        ``noise_keys`` (B, 2) of uint64 are those of `NoisySenses`. Raises CallFailed if the call
+        raises.
         """
         worlds = self.simulation.worlds
+        if self._senses is not None and noise_keys is not None:
+            self._senses.begin(np.arange(len(worlds)), noise_keys)
         briefings = [
             self._briefing(b, world, rng)
             for b, (world, rng) in enumerate(zip(worlds, generators, strict=True))
@@ -120,6 +129,8 @@ class Driver:
         except (Exception, SystemExit) as error:
             reason, traceback = _raised("act", error, time)
             raise CallFailed(self._at(reason, time), traceback=traceback) from error
+        if self._senses is not None and self._command == "velocity":
+            commands = self._senses.in_world_frame(rows, commands)
         give_commands(0, len(rows), rows, self.chosen, active, commands, command)
         return seconds
 
@@ -143,7 +154,7 @@ class Driver:
         simulation = self.simulation
         active = deciding(simulation, self.chosen)
         maps = self._maps.now()
-        observation = observe(simulation, self.chosen, active, self._needs, maps)
+        observation = observe(simulation, self.chosen, active, self._needs, maps, self._senses)
         if simulation.running.all():
             return observation
         return observation.select(np.flatnonzero(simulation.running))

@@ -7,6 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
+from benchnav.arena.noise import Noise
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import Clock, Rules, World
 from benchnav.episode.episode import Episode, Identity
@@ -22,8 +23,9 @@ from benchnav.plugins import NAVIGATORS
 from benchnav.runner.execute.call_timer import calling
 from benchnav.runner.rollouts.navigator_driver import PROPERTIES, Driver
 from benchnav.runner.rollouts.recorder import Recorder
-from benchnav.runner.rollouts.seeding import generator, place
+from benchnav.runner.rollouts.seeding import generator, noise_key, place
 from benchnav.runner.rollouts.tamper_guard import Guard
+from benchnav.scenario.condition import EXACT, NOISY
 from benchnav.world.simulation import Simulation
 
 MAX_WORLDS = 256  # of a batch: larger batches are hardly faster and need more memory
@@ -33,7 +35,7 @@ _BYTES = 72  # recorded per agent and decision
 
 @dataclass(frozen=True)
 class Assignment:
-    """The navigator, the scenario and the knowledge of a rollout."""
+    """The navigator, the scenario, the knowledge and the perception of a rollout."""
 
     scenario: str  # "leaders/dynamic@1"
     scenario_hash: str
@@ -48,19 +50,27 @@ class Assignment:
     rehearsals: int = 0  # that the navigator asks for
     leader: Spec | None = None  # the navigator of the leaders in rehearsals
     rehearsal: int = 0  # k: this is the k-th rehearsal; 0: the scored episode
+    # of the senses of the navigator, and of its leaders in rehearsals; None: perception `exact`
+    noise: Noise | None = None
     isolated: bool = False  # whether the evaluated navigator runs in its own process
+
+    @property
+    def perception(self) -> str:
+        """The perception: exact or noisy."""
+        return EXACT if self.noise is None else NOISY
 
     @property
     def cell(self) -> tuple[str, ...]:
         """The key of an isolated process, which serves one role in one cell."""
         role = "rehearsal" if self.rehearsal else "episode"
-        return self.scenario, self.scenario_hash, self.split, self.track, self.label, role
+        condition = self.track, self.perception
+        return self.scenario, self.scenario_hash, self.split, *condition, self.label, role
 
     def identity(self, seed: int) -> Identity:
         """Return the identity of the episode with this seed."""
         return Identity(
             self.scenario, self.scenario_hash, self.split, seed, self.track, self.label,
-            self.navigator_hash, self.rehearsal, self.source_hash,
+            self.navigator_hash, self.rehearsal, self.source_hash, self.perception,
         )  # fmt: skip
 
 
@@ -82,7 +92,7 @@ def rollout(
     until the worlds that fail on their own are found: only these fail.
 
     Args:
-        assignment: the navigator, the scenario and the knowledge.
+        assignment: the navigator, the scenario, the knowledge and the perception.
         worlds: (seed, world) pairs.
         charge: a reason for which every episode fails without running (its navigator
             killed the process, for example); "" runs them.
@@ -188,7 +198,9 @@ def drivers_of(
     simulation: Simulation,
     rehearsals: Sequence[tuple[Rehearsal, ...]] = (),
 ) -> list[Driver]:
-    """Return drivers of the evaluated navigator, then of the background ones, on the known track.
+    """Return drivers of the evaluated navigator, then of the background ones.
+
+    Background navigators are on the known track, and perceive without error.
 
     ``rehearsals`` (B,) of each world are given to the evaluated navigator. Raises CallFailed if a
     navigator cannot be made.
@@ -196,7 +208,12 @@ def drivers_of(
     cell = assignment.cell if assignment.isolated else ()
     guard = None if cell else Guard()  # before code of the navigator is imported
     chosen, track = _made(assignment.navigator, "", cell), assignment.track
-    drivers = [Driver(chosen, simulation, 0, track, rehearsals=rehearsals, guard=guard)]
+    drivers = [
+        Driver(
+            chosen, simulation, 0, track, rehearsals=rehearsals, guard=guard,
+            noise=assignment.noise,
+        )
+    ]  # fmt: skip
     for which, spec in enumerate(assignment.background, start=1):
         blame = f"the scenario's background navigator {split(NAVIGATORS, spec)[0]!r}: "
         drivers.append(Driver(_made(spec, blame), simulation, which, "known", blame))
@@ -226,8 +243,9 @@ def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) 
     """Brief all navigators. Return the duration [s] of the evaluated navigator's reset."""
     about = (assignment.salt, assignment.scenario_hash, assignment.split)
     which = assignment.rehearsal
+    keys = np.array([noise_key(*about, seed, which) for seed in seeds])
     seconds = [
-        d.reset([generator(*about, seed, d.which, which) for seed in seeds]) for d in drivers
+        d.reset([generator(*about, seed, d.which, which) for seed in seeds], keys) for d in drivers
     ]
     return seconds[0]
 

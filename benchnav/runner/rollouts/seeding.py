@@ -1,6 +1,6 @@
-"""The random generator of a navigator, and the order of its worlds.
+"""The random generator of a navigator, the key of its noise, and the order of its worlds.
 
-Both follow from a salt, which is drawn for each run, stored in its manifest and given to no
+All follow from a salt, which is drawn for each run, stored in its manifest and given to no
 navigator. Code that knows only the public rules therefore cannot find scenario, split and seed by
 trying which of them gives the same generator. This protects only the generator: code that reads
 the run folder or the memory of its process learns the salt, and a world that occurs again is
@@ -14,6 +14,7 @@ import secrets
 
 import numpy as np
 
+from benchnav.arrays import AnyArray
 from benchnav.navigation.randomness.briefing_seed import hashed_generator
 
 _SALT = re.compile(r"(?:[0-9a-f]{2}){1,64}")  # the key of blake2b has at most 64 bytes
@@ -55,6 +56,16 @@ def phases(
 ) -> np.random.Generator:
     """Return the generator of the movers' phases in the k-th rehearsal, equal for all entries."""
     return hashed_generator(_hashed(salt, "phases", scenario_hash, split, seed, rehearsal))
+
+
+def noise_key(salt: str, scenario_hash: str, split: str, seed: int, rehearsal: int = 0) -> AnyArray:
+    """Return the key (2,) of uint64 of the noise of the senses in one world.
+
+    Within a run it is the same for every navigator and track, so that all meet the same noise.
+    """
+    which = (rehearsal,) if rehearsal else ()
+    words = np.frombuffer(_hashed(salt, "noise", scenario_hash, split, seed, *which), "<u8")[:2]
+    return words.astype(np.uint64)
 
 
 def place(salt: str, scenario_hash: str, split: str, seed: int) -> bytes:
