@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import IntEnum
 
+from benchnav.arena.motion_limits import MotionLimits
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 
 
@@ -11,6 +12,8 @@ class Dynamics(IntEnum):
 
     HOLONOMIC = 0
     UNICYCLE = 1
+    DIFFERENTIAL_DRIVE = 2
+    ACKERMANN = 3
 
 
 class Role(IntEnum):
@@ -21,7 +24,7 @@ class Role(IntEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Agents:
+class Agents(MotionLimits):
     """Starts, goals, bodies and drivers of the agents."""
 
     start: FloatArray  # (A, 2) [m]
@@ -30,7 +33,7 @@ class Agents:
     radius: FloatArray  # (A,) [m]
     max_speed: FloatArray  # (A,) [m/s]
     preferred_speed: FloatArray  # (A,) [m/s]
-    max_turn_rate: FloatArray  # (A,) [rad/s], used by unicycles
+    max_turn_rate: FloatArray  # (A,) [rad/s], not used by planar velocities
     dynamics: ByteArray  # (A,) of Dynamics
     role: ByteArray  # (A,) of Role
     team: IntArray  # (A,) index into the world's team names

@@ -9,9 +9,10 @@ import numpy as np
 
 from benchnav.arena.agents import Agents, Dynamics, Role
 from benchnav.arena.body import Body
+from benchnav.arena.motion_limits import NO_LIMIT
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import AnyArray, BoolArray
 from benchnav.errors import UnsolvableError, UsageError, did_you_mean
 from benchnav.generation.clearance import Barrier, barrier, joined
 from benchnav.generation.dynamic_obstacles import check_clear, fixed_bodies, is_fixed, placed_bodies
@@ -181,7 +182,7 @@ class _Draw:
         scenario = self.scenario
         there = barrier([body.solid.moved(place_at_start(body.law)) for body in bodies])
         crowd = Crowd()
-        columns: list[dict[str, FloatArray]] = []
+        columns: list[dict[str, AnyArray]] = []
         for i, team in enumerate(scenario.teams):
             rng = self.stream(_BODY, i)
             count = int(sample(team.count, rng))
@@ -205,7 +206,7 @@ def _with(wall: Barrier, solids: Sequence[object]) -> Barrier:
     return joined(wall, barrier(solids)) if solids else wall  # type: ignore[arg-type]
 
 
-def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, FloatArray]:
+def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, AnyArray]:
     """Draw the numbers of a team's agents, each (count,)."""
     top = draw_numbers(team.max_speed, count, rng)
     preferred = team.preferred_speed
@@ -218,24 +219,46 @@ def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, Floa
         else np.minimum(draw_numbers(preferred, count, rng), top),
         "max_turn_rate": draw_numbers(team.max_turn_rate, count, rng),
         "heading": draw_numbers(heading, count, rng),
+        **_limits(team, count, rng),
     }
 
 
-def _assemble(scenario: Scenario, crowd: Crowd, columns: list[dict[str, FloatArray]]) -> Agents:
+def _limits(team: Team, count: int, rng: np.random.Generator) -> dict[str, AnyArray]:
+    """Draw the columns (count,) of `MotionLimits` that the team gives."""
+    drawn: dict[str, AnyArray] = {}
+    for name in NO_LIMIT:
+        limit = getattr(team, name, getattr(team.dynamics, name, None))
+        if isinstance(limit, bool):
+            drawn[name] = np.full(count, limit)
+        elif limit is not None:
+            drawn[name] = draw_numbers(limit, count, rng)
+        elif name == "max_deceleration" and "max_acceleration" in drawn:
+            drawn[name] = drawn["max_acceleration"].copy()
+    return drawn
+
+
+def _assemble(scenario: Scenario, crowd: Crowd, columns: list[dict[str, AnyArray]]) -> Agents:
     sizes = [len(column["radius"]) for column in columns]
     entry = np.repeat(np.arange(len(sizes)), sizes)
     names = _names(scenario.teams)
     team = np.array([names.index(t.name) for t in scenario.teams], np.int64)[entry]
 
-    def column(name: str) -> FloatArray:
-        return np.concatenate([part[name] for part in columns])
+    def column(name: str) -> AnyArray:
+        parts = [part.get(name) for part in columns]
+        missing = NO_LIMIT.get(name)
+        return np.concatenate(
+            [
+                np.full(size, missing) if part is None else part
+                for part, size in zip(parts, sizes, strict=True)
+            ]
+        )
 
     heading = column("heading")
     for a in range(len(entry)):
         if scenario.teams[entry[a]].heading == "goal":
             way = crowd.goal[a] - crowd.start[a]
             heading[a] = angle_of(way[0], way[1])
-    dynamics = [Dynamics[t.dynamics.upper()] for t in scenario.teams]
+    dynamics = [Dynamics[t.dynamics.type.upper().replace("-", "_")] for t in scenario.teams]
     roles = [Role[t.role.upper()] for t in scenario.teams]
     drivers = [0 if t.evaluated else 1 + scenario.drivers.index(t.driver) for t in scenario.teams]
     return Agents(
@@ -245,6 +268,7 @@ def _assemble(scenario: Scenario, crowd: Crowd, columns: list[dict[str, FloatArr
         dynamics=np.repeat(np.array(dynamics, np.int8), sizes),
         role=np.repeat(np.array(roles, np.int8), sizes),
         team=team, driver=np.repeat(np.array(drivers, np.int64), sizes),
+        **{name: column(name) for name in NO_LIMIT},
     )  # fmt: skip
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from benchnav.arena.motion_limits import MotionLimits
 from benchnav.arena.world import World
 from benchnav.generation.build import build
 from benchnav.scenario.scenario import Scenario
@@ -28,8 +29,9 @@ def _chunks(part: Any) -> Iterator[bytes]:
         yield f"{part.dtype.str}{part.shape}".encode()
         yield np.ascontiguousarray(part).tobytes()
     elif is_dataclass(part):
+        out = part.without_limit() if isinstance(part, MotionLimits) else frozenset({"redraws"})
         for item in fields(part):
-            if item.name != "redraws":
+            if item.name not in out:
                 yield item.name.encode()
                 yield from _chunks(getattr(part, item.name))
     elif isinstance(part, tuple):

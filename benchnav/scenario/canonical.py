@@ -33,7 +33,7 @@ def canonical(model: BaseModel, exclude: set[str] | None = None) -> dict[str, An
 
 def _canonical(value: Any, dumped: Any) -> Any:
     """Return ``dumped``, the JSON form of ``value``, with keys named and left out as above."""
-    if isinstance(value, BaseModel):
+    if isinstance(value, BaseModel) and isinstance(dumped, dict):
         return dict(_members(value, dumped))
     if isinstance(value, dict):
         pairs = zip(value.values(), dumped.items(), strict=True)

@@ -6,6 +6,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 
 from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Distance, Length, Name, Point, Spec
+from benchnav.scenario.canonical import added_field
+from benchnav.scenario.dynamics import DynamicsSpec, Holonomic
 from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import Count, PositiveScalar, Scalar, support
 
@@ -143,11 +145,23 @@ class Team(Spec):
         None, description="desired speed [m/s]; default: `max_speed`"
     )
     max_turn_rate: PositiveScalar = Field(
-        2.5, description="largest turn rate [rad/s] of a unicycle"
+        2.5, description="largest turn rate [rad/s] of bodies that turn"
     )
-    dynamics: Literal["holonomic", "unicycle"] = Field(
-        "holonomic",
-        description="`holonomic`: moves in any direction; `unicycle`: along its heading",
+    max_acceleration: PositiveScalar | None = added_field(
+        None, "0.3.0", description="largest increase of speed per time [m/s²]; default: no limit"
+    )
+    max_deceleration: PositiveScalar | None = added_field(
+        None,
+        "0.3.0",
+        description="largest decrease of speed per time [m/s²]; default: `max_acceleration`",
+    )
+    max_turn_acceleration: PositiveScalar | None = added_field(
+        None,
+        "0.3.0",
+        description="largest change of the turn rate per time [rad/s²]; default: no limit",
+    )
+    dynamics: DynamicsSpec = Field(
+        Holonomic(type="holonomic"), description="the motions that a body can make"
     )
     start: Start = Field(description="rule that places the agents")
     goal: Goal = Field(description="rule that sets the goals")

@@ -54,7 +54,7 @@ def _agents(rng: np.random.Generator, start: FloatArray, goal: FloatArray) -> Ag
     return Agents(
         start, rng.uniform(-math.pi, math.pi, count), goal, rng.uniform(0.2, 0.4, count),
         1.5 * speed, speed, rng.uniform(1.0, 3.0, count),
-        rng.choice([int(kind) for kind in Dynamics], count).astype(np.int8),
+        rng.choice([int(Dynamics.HOLONOMIC), int(Dynamics.UNICYCLE)], count).astype(np.int8),
         rng.choice([int(role) for role in Role], count).astype(np.int8),
         np.zeros(count, np.int64), np.zeros(count, np.int64),
     )  # fmt: skip

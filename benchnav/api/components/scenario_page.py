@@ -152,7 +152,7 @@ def _team(team: "Team") -> str:
     )
     many = "" if support(team.count)[1] == 1 else "s"
     text = (
-        f"{team.name}: {number(team.count)} {team.dynamics} {team.role}{many}, radius"
+        f"{team.name}: {number(team.count)} {team.dynamics.type} {team.role}{many}, radius"
         f" {number(team.radius)} m, {number(speed)} m/s; start {start}, goal {goal}"
     )
     if team.goal.type == "region" and team.goal.min_distance:

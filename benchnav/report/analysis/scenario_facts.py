@@ -48,7 +48,7 @@ def _team(worlds: Sequence[World], team: int) -> str:
         return "no agents in the first world"
     one = members[0]
     count = " and ".join(_members(worlds, team, role) for role in _roles(worlds, team))
-    kind = Dynamics(agents.dynamics[one]).name.lower()
+    kind = Dynamics(agents.dynamics[one]).name.lower().replace("_", " ")
     text = f"{count}, {kind}, radius {agents.radius[one]:.3g} m, up to {agents.max_speed[one]:.3g}"
     return f"{text} m/s" if agents.evaluated[one] else f"{text} m/s; background, not evaluated"
 

@@ -16,6 +16,7 @@ from pydantic_core import SchemaSerializer, SchemaValidator, ValidationError
 from pydantic_core.core_schema import (
     CoreConfig,
     CoreSchema,
+    DataclassField,
     bool_schema,
     dataclass_args_schema,
     dataclass_field,
@@ -28,8 +29,10 @@ from pydantic_core.core_schema import (
     plain_serializer_function_ser_schema,
     str_schema,
     tuple_schema,
+    with_default_schema,
 )
 
+from benchnav.arena.motion_limits import NO_LIMIT, MotionLimits
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
 from benchnav.config.model_errors import first_problem
@@ -47,7 +50,7 @@ _MAX_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of 
 
 def world_to_json(world: World) -> bytes:
     """Return the world as one line of JSON in UTF-8 (infinities as in Python: ``Infinity``)."""
-    return to_json(World, world)
+    return to_json(World, world, {"agents": world.agents.without_limit()})
 
 
 def world_from_json(text: str) -> World:
@@ -65,12 +68,13 @@ def world_from_json(text: str) -> World:
     return world
 
 
-def to_json(kind: Any, value: Any) -> bytes:
+def to_json(kind: Any, value: Any, exclude: Any = None) -> bytes:
     """Return JSON of a value of type ``kind``: a dataclass, array, enum, tuple or number.
 
+    ``exclude`` names the fields that are left out: {field: {field of its value}}.
     Raises TypeError if this type cannot be encoded.
     """
-    return _codec(kind)[0].to_json(value, warnings=False, fallback=_encoded)
+    return _codec(kind)[0].to_json(value, exclude=exclude, warnings=False, fallback=_encoded)
 
 
 def from_json(kind: Any, text: str | bytes) -> Any:
@@ -107,13 +111,22 @@ def _schema(kind: Any) -> CoreSchema:
         return _tuple_schema(get_args(kind))
     if isinstance(kind, type) and is_dataclass(kind):
         names, hints = [f.name for f in fields(kind)], get_type_hints(kind)
-        known = [dataclass_field(name, _schema(hints[name])) for name in names]
-        return dataclass_schema(kind, dataclass_args_schema(kind.__name__, known), names)
+        known = [_field_schema(kind, name, hints[name]) for name in names]
+        arguments = dataclass_args_schema(kind.__name__, known)
+        return dataclass_schema(kind, arguments, names, post_init=issubclass(kind, MotionLimits))
     if isinstance(kind, type) and issubclass(kind, Enum):
         return enum_schema(kind, list(kind), sub_type="int")
     if kind in _PLAIN:
         return _PLAIN[kind]
     raise TypeError(f"a world must not hold values of type {kind}")
+
+
+def _field_schema(kind: type, name: str, hint: Any) -> DataclassField:
+    """Return the description of a field; a column of `MotionLimits` may be missing."""
+    schema = _schema(hint)
+    if issubclass(kind, MotionLimits) and name in NO_LIMIT:
+        schema = with_default_schema(schema, default=None)
+    return dataclass_field(name, schema)
 
 
 def _unalias(kind: Any) -> Any:
