@@ -20,7 +20,7 @@ from benchnav.isolation.observation_codec import encode_observation
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.command_check import CallFailed
 from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import CommandKind, Navigator, Need, Training
+from benchnav.navigation.navigator import CommandKind, DynamicsName, Navigator, Need, Training
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.plugin.capabilities import Capabilities
 from benchnav.navigation.plugin.configure import Spec
@@ -73,6 +73,10 @@ class Remote(Navigator):
     @property
     def command(self) -> CommandKind:
         return self.capabilities.command
+
+    @property
+    def drives(self) -> frozenset[DynamicsName]:
+        return self.capabilities.drives
 
     @property
     def uses_map(self) -> bool:

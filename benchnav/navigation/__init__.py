@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from benchnav.navigation.navigator import (
         AgentNavigator,
         CommandKind,
+        DynamicsName,
         Navigator,
         Need,
         PluginConfig,
@@ -38,6 +39,7 @@ else:
             "Briefing": "benchnav.navigation.briefing",
             "CommandKind": "benchnav.navigation.navigator",
             "Controller": "benchnav.navigation.controller",
+            "DynamicsName": "benchnav.navigation.navigator",
             "Edges": "benchnav.sensors.readings",
             "Guide": "benchnav.navigation.controller",
             "Hierarchical": "benchnav.navigation.hierarchy.hierarchical",
@@ -68,6 +70,7 @@ __all__ = [
     "Briefing",
     "CommandKind",
     "Controller",
+    "DynamicsName",
     "Edges",
     "Guide",
     "Hierarchical",

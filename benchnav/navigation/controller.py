@@ -8,7 +8,14 @@ from typing import Any, ClassVar
 from benchnav.arena.sensing import Sensing
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
-from benchnav.navigation.navigator import CommandKind, Need, PluginConfig, Training
+from benchnav.navigation.navigator import (
+    ALL_DYNAMICS,
+    CommandKind,
+    DynamicsName,
+    Need,
+    PluginConfig,
+    Training,
+)
 from benchnav.navigation.observation import Observation
 
 
@@ -30,6 +37,7 @@ class Controller(ABC):
 
     Config: ClassVar[type[PluginConfig]] = PluginConfig
     needs: ClassVar[frozenset[Need]] = frozenset()
+    drives: ClassVar[frozenset[DynamicsName]] = ALL_DYNAMICS  # see `Navigator.drives`
     command: ClassVar[CommandKind] = "velocity"
     lookahead: ClassVar[float] = 1.0  # [m] of path to the target, at most; a default
     adapts_clearance: ClassVar[bool] = False  # whether `Guide.clearance` bounds its wall distance

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
-from typing import Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
@@ -36,6 +36,8 @@ class Need(StrEnum):
 
 
 CommandKind = Literal["velocity", "twist"]
+DynamicsName = Literal["holonomic", "unicycle", "differential-drive", "ackermann"]
+ALL_DYNAMICS: frozenset[DynamicsName] = frozenset(get_args(DynamicsName))
 
 
 class PluginConfig(BaseModel):
@@ -73,6 +75,16 @@ class Navigator(ABC):
         A class may declare it: ``command = "twist"``.
         """
         return "velocity"
+
+    @property
+    def drives(self) -> frozenset[DynamicsName]:
+        """The dynamics of the bodies that it can drive, by their names in scenarios; default: all.
+
+        The simulator limits every command to what the body can do, so any navigator runs with any
+        body. Leave out the dynamics for which the limited commands are meaningless: a cell with
+        such a body is then n/a. A class may declare it: ``drives = frozenset({"holonomic"})``.
+        """
+        return ALL_DYNAMICS
 
     @property
     def uses_map(self) -> bool:

@@ -8,7 +8,7 @@ from benchnav.arena.sensing import Sensing
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.controller import Controller, Guide
-from benchnav.navigation.navigator import CommandKind, Navigator, Need
+from benchnav.navigation.navigator import CommandKind, DynamicsName, Navigator, Need
 from benchnav.navigation.observation import Observation
 from benchnav.plugins import CONTROLLERS
 from benchnav.testing.check_navigator import check_navigator
@@ -51,6 +51,10 @@ class _Guided(Navigator):
     @property
     def command(self) -> CommandKind:
         return self.controller.command
+
+    @property
+    def drives(self) -> frozenset[DynamicsName]:
+        return self.controller.drives
 
     def unfit(self, sensing: Sensing) -> str:
         return self.controller.unfit(sensing)

@@ -14,7 +14,7 @@ import numpy as np
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import World
 from benchnav.navigation.command_check import exception_text, short
-from benchnav.navigation.navigator import Navigator, Need
+from benchnav.navigation.navigator import ALL_DYNAMICS, Navigator, Need
 from benchnav.plugins import NAVIGATORS
 from benchnav.testing.observations import (
     answers_of,
@@ -59,7 +59,7 @@ def check_navigator(navigator: Subject, sensing: Sensing | None = None) -> None:
 
 
 def check_declaration(make: Make) -> None:
-    """Check that Config, needs, command and rehearsals are declared correctly."""
+    """Check that Config, needs, command, bodies and rehearsals are declared correctly."""
     navigator = make()
     name = type(navigator).__name__
     require(isinstance(navigator, Navigator), f"{name} must derive from Navigator.")
@@ -70,6 +70,13 @@ def check_declaration(make: Make) -> None:
     require(
         navigator.command in ("velocity", "twist"),
         f"{name}.command must be 'velocity' or 'twist'. Got {navigator.command!r} instead.",
+    )
+    drives = navigator.drives
+    known = isinstance(drives, frozenset) and drives and drives <= ALL_DYNAMICS
+    require(
+        bool(known),
+        f"{name}.drives must be a frozenset of {sorted(ALL_DYNAMICS)} that is not empty."
+        f" Got {drives!r}.",
     )
     count = navigator.rehearsal
     whole = isinstance(count, int) and not isinstance(count, bool) and count >= 0

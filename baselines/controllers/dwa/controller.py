@@ -20,6 +20,13 @@ from benchnav.navigation import (
 from benchnav.threads import run_rows
 
 from ...common.kernel_inputs import bodies_of, flat, sensed
+from ...common.motion_limits import (
+    BACKWARDS,
+    has_limits,
+    limits_of,
+    signed_speed,
+    steered_all,
+)
 from .kernel import Search, choose
 
 
@@ -27,10 +34,14 @@ class DynamicWindowConfig(PluginConfig):
     """Parameters of the dynamic window approach."""
 
     acceleration: float = Field(
-        10.0, gt=0, description="[m/s²] largest acceleration and deceleration"
+        10.0,
+        gt=0,
+        description="[m/s²] largest acceleration and deceleration; less if the body's are less",
     )
     turn_acceleration: float = Field(
-        20.0, gt=0, description="[rad/s²] largest change of the turn rate"
+        20.0,
+        gt=0,
+        description="[rad/s²] largest change of the turn rate; less if the body's is less",
     )
     heading: float = Field(0.8, ge=0, description="α, weight of the direction to the target")
     distance: float = Field(3.0, ge=0, description="β, weight of the free distance")
@@ -57,7 +68,9 @@ class DynamicWindow(Controller):
     """Drives the best arc that is reachable within a step and allows a stop before obstacles.
 
     It commands twists, so that the checked motion is the executed one; holonomic bodies follow
-    twists too.
+    twists too. The window holds what the body can execute within a step: its accelerations, the
+    speeds of its wheels, and the steering of a car, which tries curves instead of turns on the
+    spot. A body that can drive backwards tries that too.
     """
 
     Config = DynamicWindowConfig
@@ -76,24 +89,33 @@ class DynamicWindow(Controller):
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):
-            body = bodies_of(briefing)
-            self._table.put(int(row), body=body, turn=np.zeros(len(body)))
+            limits = limits_of(briefing)
+            self._table.put(
+                int(row), body=bodies_of(briefing), limits=limits, limited=has_limits(limits),
+                last=np.zeros((len(briefing), 2)),
+            )  # fmt: skip
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
         worlds, agents = observation.active.shape
         rows = worlds * agents
-        body, turn = (self._table.take(name, observation.rows, agents) for name in ("body", "turn"))
-        speed = np.sqrt(
-            np.sum(observation.velocity**2, axis=-1)
-        )  # forward: twists drive forward only
+        body, last, limits, limited = (
+            self._table.take(name, observation.rows, agents)
+            for name in ("body", "last", "limits", "limited")
+        )
+        speed = np.sqrt(np.sum(observation.velocity**2, axis=-1))
+        if limits[..., BACKWARDS].any():
+            speed = signed_speed(observation.velocity, observation.heading)
         position, velocity, radius, _, count, start, end, _, _, edges = sensed(observation)
         arrays = (
             observation.active, observation.position, observation.heading,
-            np.stack([speed, turn], axis=-1), guide.target, guide.remaining, body,
-            position, velocity, radius, count, start, end, edges,
+            np.concatenate([speed[..., None], last], axis=-1), guide.target, guide.remaining, body,
+            limited, limits, position, velocity, radius, count, start, end, edges,
         )  # fmt: skip
         answer = np.zeros((rows, 2))
         run_rows(choose, rows, *flat(rows, arrays), self._search, answer)
         twist = answer.reshape(worlds, agents, 2)
-        self._table.write("turn", observation.rows, twist[..., 1])
+        steering = np.zeros(rows)
+        steered_all(answer, last[..., 1].ravel(), limits.reshape(rows, -1), steering)
+        now = np.stack([twist[..., 1], steering.reshape(worlds, agents)], axis=-1)
+        self._table.write("last", observation.rows, now)
         return twist

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benchnav.api.components.kind import REGISTRIES, Kind
-from benchnav.api.components.parameter_text import answers, needs, parameters
+from benchnav.api.components.parameter_text import answers, drives, needs, parameters
 from benchnav.api.components.plugin_page import sentence
 from benchnav.plugins import Registry
 
@@ -61,7 +61,8 @@ def _page(registry: Registry, name: str) -> Iterator[str]:
     yield from _background(thing)
     facts = [f"Source: `{registry.source(name).value}`."]
     if registry.kind != "planner":
-        facts.append(f"Needs {needs(registry, name)}; returns {answers(registry, name)}.")
+        facts.append(f"Needs {needs(registry, name)}; returns {answers(registry, name)};")
+        facts.append(f"drives {drives(registry, name)}.")
     yield " ".join(facts)
     rows = parameters(thing)
     if rows:

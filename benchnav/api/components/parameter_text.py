@@ -1,10 +1,13 @@
 """The parameters and the needs of a plugin, as text."""
 
 import re
-from typing import Any
+from collections.abc import Collection
+from typing import Any, get_args
 
 from benchnav.errors import BenchnavError
+from benchnav.navigation.navigator import ALL_DYNAMICS, DynamicsName
 from benchnav.plugins import Registry
+from benchnav.text.plural import listed
 
 WIDEST = 40  # characters of a type
 UNKNOWN_BEFORE_CONSTRUCTION = "inputs that depend on its parameters"
@@ -30,6 +33,20 @@ def answers(registry: Registry, name: str) -> str:
     """Return the command kind of the plugin with its default parameters."""
     made = _made(registry, name)
     return f"a {'command' if isinstance(made, str) else made.command} per agent"
+
+
+def drives(registry: Registry, name: str) -> str:
+    """Return the bodies that the plugin can drive with its default parameters."""
+    made = _made(registry, name)
+    return "bodies that depend on its parameters" if isinstance(made, str) else bodies(made.drives)
+
+
+def bodies(dynamics: Collection[str]) -> str:
+    """Return the dynamics of bodies as text."""
+    if set(dynamics) == ALL_DYNAMICS:
+        return "all bodies"
+    names = [name for name in get_args(DynamicsName) if name in dynamics]
+    return f"{listed(names)} bodies"
 
 
 def _made(registry: Registry, name: str) -> Any:

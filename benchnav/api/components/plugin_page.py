@@ -3,7 +3,7 @@
 import inspect
 from typing import Any
 
-from benchnav.api.components.parameter_text import answers, needs, parameters
+from benchnav.api.components.parameter_text import answers, bodies, drives, needs, parameters
 from benchnav.navigation.hierarchy.composition import MAPPING, NO_PLANNER
 from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import CONTROLLERS, METRICS, NAVIGATORS, PLANNERS, TRAINERS, Registry
@@ -22,6 +22,7 @@ def plugin_page(registry: Registry, name: str) -> str:
         facts.append(("recipes", recipes or "none"))
     if registry in (NAVIGATORS, CONTROLLERS):
         facts.append(("needs", needs(registry, name)))
+        facts.append(("drives", drives(registry, name)))
         facts.append(("answers", answers(registry, name)))
     text = f"{name}\n" + columns([("  " + key, value) for key, value in facts])
     return f"{text}\n  parameters\n{_parameters(thing)}" if hasattr(thing, "Config") else text
@@ -35,6 +36,7 @@ def pair_page(name: str) -> str:
         ("is", f"a navigator: {sentence(type(navigator))}"),
         ("comes from", ", ".join(distributions)),
         ("needs", needs(NAVIGATORS, name)),
+        ("drives", bodies(navigator.drives)),
         ("answers", f"a {navigator.command} per agent"),
     ]
     head = f"{name}\n" + columns([("  " + key, value) for key, value in facts])

@@ -20,7 +20,14 @@ from benchnav.navigation.hierarchy.plan_log import PlanLog, checked_plan
 from benchnav.navigation.hierarchy.replanning import Policies, Replan, Watch
 from benchnav.navigation.hierarchy.retreat import Retreat
 from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import CommandKind, Navigator, Need, PluginConfig, Training
+from benchnav.navigation.navigator import (
+    CommandKind,
+    DynamicsName,
+    Navigator,
+    Need,
+    PluginConfig,
+    Training,
+)
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.planner import UNSOLVED, Plan, Planner
 from benchnav.navigation.plugin.configure import make
@@ -88,6 +95,10 @@ class Hierarchical(Navigator):
     @property
     def command(self) -> CommandKind:
         return self.controller.command
+
+    @property
+    def drives(self) -> frozenset[DynamicsName]:
+        return self.controller.drives
 
     @property
     def uses_map(self) -> bool:

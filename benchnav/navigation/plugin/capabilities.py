@@ -1,9 +1,9 @@
 """The properties that a navigator reports before it runs."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args
 
 from pydantic import (
     AfterValidator,
@@ -18,11 +18,19 @@ from benchnav.arena.sensing import Sensing
 from benchnav.config.model_errors import first_problem
 from benchnav.errors import BenchnavError, BrokenPluginError, MissingExtraError, PluginError
 from benchnav.navigation.command_check import exception_text, short
-from benchnav.navigation.navigator import CommandKind, Navigator, Need, Training
+from benchnav.navigation.navigator import (
+    ALL_DYNAMICS,
+    CommandKind,
+    DynamicsName,
+    Navigator,
+    Need,
+    Training,
+)
 from benchnav.navigation.plugin.configure import Spec, configure, make, split
 from benchnav.navigation.plugin.plugin_process import CONFIG, IMPORT, StepCallback
 from benchnav.navigation.plugin.trace import class_name
 from benchnav.plugins import NAVIGATORS, Source
+from benchnav.text.plural import listed
 
 Line = Annotated[str, AfterValidator(short)]
 
@@ -35,6 +43,9 @@ class Capabilities(BaseModel):
     needs: frozenset[Need] = Field(frozenset(), description="The inputs that it requires.")
     command: CommandKind = Field(
         "velocity", description="The kind of its commands: velocity or twist."
+    )
+    drives: frozenset[DynamicsName] = Field(
+        ALL_DYNAMICS, description="The dynamics of the bodies that it can drive."
     )
     uses_map: StrictBool = Field(True, description="Whether the map can affect its commands.")
     reproducible: StrictBool = Field(True, description="False if a clock affects its commands.")
@@ -104,8 +115,9 @@ def inspect_navigator(
     parts = reader.get("parts", _parts)
     try:
         return navigator, Capabilities(
-            needs=reader.get("required", _needs),
+            needs=reader.get("required", _names),
             command=reader.get("command"),
+            drives=reader.get("drives", _names),
             uses_map=reader.get("uses_map"),
             reproducible=reader.get("reproducible"),
             remarks=reader.get("remarks", lambda _: _has_remarks(navigator)),
@@ -150,9 +162,9 @@ def _has_remarks(navigator: Navigator) -> bool:
     return type(navigator).remarks is not Navigator.remarks
 
 
-def _needs(value: Any) -> frozenset[Any]:
+def _names(value: Any) -> frozenset[Any]:
     if isinstance(value, str):
-        raise TypeError(f"a set of needs, and not {value!r}")
+        raise TypeError(f"a set of names, and not {value!r}")
     return frozenset(value)
 
 
@@ -173,6 +185,17 @@ def invalid_property(error: ValidationError) -> str:
     name = problem.key.partition(".")[0] or "answer"
     key = {"needs": "required"}.get(name, name)
     return f"its {key} {problem.requirement}. Got {problem.got} instead."
+
+
+def undriven(drives: Collection[str], dynamics: Collection[str]) -> str:
+    """Return why a navigator that ``drives`` some dynamics cannot drive all of ``dynamics``.
+
+    "" if it can.
+    """
+    if set(dynamics) <= set(drives):
+        return ""
+    names = [name for name in get_args(DynamicsName) if name in drives]
+    return f"drives {listed(names)} bodies only" if names else "drives no bodies"
 
 
 def unfit(navigator: Navigator, sensing: Sensing) -> str:

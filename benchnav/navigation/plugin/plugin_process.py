@@ -21,8 +21,8 @@ _IMPORTING = 10.0  # [s] smallest limit for an import, because large libraries l
 _MEMORY = 4e9  # [bytes]
 IMPORT, CONFIG, MEASURING = "import", "Config", "measuring"
 _STEPS = (
-    IMPORT, CONFIG, "__init__", "required", "command", "uses_map", "reproducible", "rehearsal",
-    "leader", "training", "fingerprint", "parts", "unfit", "remarks", MEASURING,
+    IMPORT, CONFIG, "__init__", "required", "command", "drives", "uses_map", "reproducible",
+    "rehearsal", "leader", "training", "fingerprint", "parts", "unfit", "remarks", MEASURING,
 )  # fmt: skip
 StepCallback = Callable[[str], None]
 """Called with the step of `_STEPS` that begins."""

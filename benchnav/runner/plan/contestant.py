@@ -8,7 +8,7 @@ from benchnav.arena.sensing import Sensing
 from benchnav.errors import BenchnavError, BrokenPluginError, NavigatorError, ScenarioError
 from benchnav.isolation import isolated
 from benchnav.isolation.subprocess_host import PROCESS
-from benchnav.navigation.navigator import Need, Training
+from benchnav.navigation.navigator import ALL_DYNAMICS, DynamicsName, Need, Training
 from benchnav.navigation.plugin.capabilities import Capabilities, read_capabilities
 from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.navigation.plugin.guarded_capabilities import read_guarded_capabilities
@@ -34,6 +34,7 @@ class Contestant:
     rehearsal: int = 0  # rehearsals before each episode
     leader: "Contestant | None" = None  # the navigator of the leaders in rehearsals
     uses_map: bool = True
+    drives: frozenset[DynamicsName] = ALL_DYNAMICS  # the dynamics of the bodies that it can drive
     unfit: Mapping[Sensing, str] = field(default_factory=dict)  # why it cannot use these sensors
     mode: Mode = IN_PROCESS
     places: tuple[str, ...] = ()  # module:attribute of its class, its parts and its leader
@@ -114,7 +115,7 @@ class ContestantFactory:
             training=reported.training or (led.training if led else None),
             fingerprint=reported.fingerprint, rehearsal=reported.rehearsal, leader=led,
             unfit=dict(zip(self.sensings, reported.unfit, strict=False)),
-            uses_map=reported.uses_map, mode=ISOLATED if separate else IN_PROCESS, places=places,
+            drives=reported.drives, uses_map=reported.uses_map, mode=ISOLATED if separate else IN_PROCESS, places=places,
         )  # fmt: skip
         if contestant.missing_extra:
             return contestant

@@ -8,6 +8,7 @@ from typing import Any
 
 from benchnav.generation.build import noise_of, sensing_of
 from benchnav.navigation.navigator import Need
+from benchnav.navigation.plugin.capabilities import undriven
 from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.contestant import Contestant
@@ -94,10 +95,18 @@ class Job:
         return f"its leaders' {led.label} {why}" if why else ""
 
     def _unfit(self, contestant: Contestant) -> str:
-        """Return why a navigator cannot use the map and the sensors; "" if it can."""
+        """Return why a navigator cannot use the map, the sensors or the bodies; "" if it can."""
         if Need.MAP in contestant.required and self.track == "unknown":
             return "needs a map"
+        if why := undriven(contestant.drives, self._dynamics):
+            return why
         return contestant.unfit.get(sensing_of(self.scenario), "")
+
+    @property
+    def _dynamics(self) -> frozenset[str]:
+        """The names of the dynamics of all evaluated agents."""
+        teams = self.scenario.teams
+        return frozenset(team.dynamics.type for team in teams if team.evaluated)
 
     @property
     def effort(self) -> float:
