@@ -15,6 +15,7 @@ NO_LIMIT: dict[str, Any] = {
     "half_length": 0.0, "half_width": 0.0, "rounding": 0.0,
 }  # fmt: skip
 """The columns of `MotionLimits`, each with the value that limits nothing, and that of a disc."""
+SHAPE = frozenset({"half_length", "half_width", "rounding"})  # the columns of the footprint
 _UNSET: Any = None
 
 
@@ -55,6 +56,11 @@ class MotionLimits:
             self.rounding > 0.0, np.minimum(self.half_length, self.half_width), radius
         )
         return inner
+
+    @property
+    def limited(self) -> bool:
+        """Whether any column limits an agent's motion."""
+        return not self.without_limit().issuperset(NO_LIMIT.keys() - SHAPE)
 
     def without_limit(self) -> frozenset[str]:
         """Return the names of the columns that limit no agent."""

@@ -9,7 +9,7 @@ import numpy as np
 from benchnav.isolation.map_codec import decode_maps, encode_maps
 from benchnav.navigation.map import Map
 from benchnav.navigation.observation import Observation
-from benchnav.sensors.readings import Edges, Neighbours, Rays
+from benchnav.sensors.readings import FORM, Edges, Neighbours, Rays
 
 _SENSORS: dict[str, Any] = {"rays": Rays, "neighbours": Neighbours, "edges": Edges}
 _READINGS = {  # of a sensor: (attribute, field of the frame) of each array
@@ -27,7 +27,9 @@ def encode_observation(observation: Observation, changed: Sequence[int]) -> dict
         readings = getattr(observation, sensor)
         if readings is not None:
             for attribute, name in names:
-                fields[name] = getattr(readings, attribute)
+                value = getattr(readings, attribute)
+                if attribute not in FORM or value.any():  # left out if all bodies are discs
+                    fields[name] = value
     if changed:
         fields[_CHANGED] = observation.rows[np.array(changed)]
         fields |= encode_maps([observation.maps[b] for b in changed])
@@ -44,7 +46,9 @@ def decode_changed_maps(fields: dict[str, Any]) -> dict[int, Map | None]:
 def decode_observation(fields: dict[str, Any], maps: dict[int, Map | None]) -> Observation:
     """Return the observation that `encode_observation` encoded; ``maps`` holds the maps by row."""
     readings_by_sensor = {
-        sensor: _SENSORS[sensor](**{attribute: fields[name] for attribute, name in names})
+        sensor: _SENSORS[sensor](
+            **{attribute: fields[name] for attribute, name in names if name in fields}
+        )
         for sensor, names in _READINGS.items()
         if names[0][1] in fields
     }

@@ -54,7 +54,8 @@ def find_neighbours(
     sees: BoolArray, worlds: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
-    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, agents: AnyArray,
+    form: FloatArray,
 ) -> None:  # fmt: skip
     """Find neighbours of the agents at spots low:high of the flattened (B, A).
 
@@ -66,6 +67,9 @@ def find_neighbours(
 
     The nearest agents of a crowd are ``listed`` (B, A, …) for the step, which reads the list up to
     the distance ``beyond`` (B, A) [m].
+
+    ``form`` (4, B, An, K) gets heading, half length, half width and rounding of bodies that are not
+    discs; it must be zero before.
     """
     most = spots.shape[1] + bodies.shape[1] + 1
     best, given = np.empty(most), np.empty(SLOTS * LANES)  # squared distances
@@ -73,7 +77,7 @@ def find_neighbours(
     _find_in_rows(
         low, high, row, limit, occlusion, side, sees, worlds, bodies, shapes, capsules,
         start, item, hashed, spots, near, listed, beyond, position, velocity, radius, kind, count,
-        np.empty((2, most)), np.empty(most, np.int64), np.empty(4, np.int64), best,
+        agents, form, np.empty((2, most)), np.empty(most, np.int64), np.empty(4, np.int64), best,
         best.view(np.int64), np.empty((LANES, most), np.int64), np.empty(most, np.int64), given,
         given.view(np.int64), smallest, smallest.view(np.int64), np.empty(LANES, np.int64),
         np.empty(TABLE), np.empty(bodies.shape[1], np.int64),
@@ -86,8 +90,8 @@ def _find_in_rows(
     sees: BoolArray, worlds: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
-    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray,
-    around: FloatArray, at: IntArray, window: IntArray, best: FloatArray, exact: IntArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, agents: AnyArray,
+    form: FloatArray, around: FloatArray, at: IntArray, window: IntArray, best: FloatArray, exact: IntArray,
     place: IntArray, ranked: IntArray, given: FloatArray, given_bits: IntArray,
     smallest: FloatArray, bits: IntArray, sizes: IntArray, fixed: FloatArray, blockers: IntArray,
 ) -> None:  # fmt: skip
@@ -151,6 +155,8 @@ def _find_in_rows(
                     kind[b, k],
                 )  # fmt: skip
                 count[b, k] = kept
+                if world.shaped:
+                    _write_forms(kept, crowd, ranked, agents[b], form[:, b, k])
 
 
 @kernel_without_allocation
@@ -208,6 +214,19 @@ def _write(
             velocity[s, 0], velocity[s, 1] = body.vx, body.vy
             radius[s], kind[s] = body.bound, _DYNAMIC
     _clear(kept, position, velocity, radius, kind)
+
+
+@kernel_without_allocation
+def _write_forms(
+    kept: int, spots: AnyArray, ranked: IntArray, agents: AnyArray, form: FloatArray
+) -> None:
+    """Write the shapes (4, K) of the ranked agents that are not discs."""
+    for s in range(kept):
+        if ranked[s] >= 0:
+            a = agents[spots[ranked[s]].index]
+            if a.shaped:
+                form[0, s], form[3, s] = a.heading, a.rounding
+                form[1, s], form[2, s] = a.core_length + a.rounding, a.core_width + a.rounding
 
 
 @kernel_without_allocation

@@ -1,6 +1,7 @@
 """Rays: the first object that each ray hits, and the goal on a separate layer.
 
-A thick ray is a cast of the agent's own disc: it stops where the body would stop. All
+A thick ray is a cast of the agent's own disc: it stops where the body would stop. Of a body that
+is not a disc, it is the circle within its footprint; it hits the footprints of others. All
 objects in reach are listed once per agent, in the agent's frame; then every ray is
 tested against the list. Capsules of a large map are found by walking its grid.
 """
@@ -43,7 +44,7 @@ def cast_rays(
     multiple of 8; ``side`` [m] of the hashed cells; ``widest`` radius of an agent;
     ``most_shapes``: capsules of the bodies of one world; ``sees`` (B, teams, teams).
     """
-    things = np.empty((sight.FEW + agents.shape[1] + most_shapes, 11))  # room for everything
+    things = np.empty((sight.FEW + 2 * agents.shape[1] + most_shapes, 11))  # room for everything
     best, hit = np.empty(len(fan_x)), np.empty(len(fan_x), np.int64)
     _cast_in_rows(
         low, high, chosen, fan_x, fan_y, limit, thick, side, widest, most_shapes, sees, worlds,
@@ -75,7 +76,7 @@ def _cast_in_rows(
             if i < 0 or not here[i].present:
                 continue
             a = here[i]
-            own = a.radius if thick else 0.0
+            own = a.inner_radius if thick else 0.0
             ca, sa = cos_sin(a.heading)
             n = _list_bodies(a, ca, sa, own, limit, rear, world.bodies, others, shapes, things, 0)
             n = _list_agents(
@@ -239,11 +240,47 @@ def _list_agent(
     ahead = ca * x + sa * y
     if ahead + reach < rear:
         return n
+    if other.shaped:
+        return _list_shape(x, y, ca, sa, own, other, things, n)
     row = things[n]
     row[X0], row[Y0] = ahead, ca * y - sa * x
     row[X1], row[Y1] = row[X0], row[Y0]
     row[OFF], row[REACH], row[KIND] = -1.0, reach, _AGENT
     return n + 1
+
+
+@kernel_without_allocation
+def _list_shape(
+    x: float, y: float, ca: float, sa: float, own: float, other: Any, things: FloatArray, n: int
+) -> int:
+    """List the edges of another agent's core, at (x, y) from the agent, that face the agent.
+
+    There are at most two. A core that is a segment is one edge.
+    """
+    c, s = cos_sin(other.heading)
+    ux, uy = ca * c + sa * s, ca * s - sa * c  # the other's axis in the agent's frame
+    px, py = ca * x + sa * y, ca * y - sa * x
+    for k in range(2):
+        # the edge along the axis, or across it, lies ``away`` in the direction (nx, ny)
+        nx, ny = (-uy, ux) if k == 0 else (ux, uy)
+        half, away = other.core_length, other.core_width
+        if k == 1:
+            half, away = away, half
+        if half == 0.0:
+            continue
+        if nx * px + ny * py > 0.0:
+            nx, ny = -nx, -ny
+        off = -(nx * (px + away * nx) + ny * (py + away * ny))
+        if off < 0.0:
+            continue
+        mx, my = px + away * nx, py + away * ny
+        row = things[n]
+        row[X0], row[Y0] = mx + half * ny, my - half * nx
+        row[X1], row[Y1] = mx - half * ny, my + half * nx
+        row[NX], row[NY], row[OFF] = nx, ny, off
+        row[REACH], row[KIND] = own + other.rounding, _AGENT
+        n += 1
+    return n
 
 
 @inlined

@@ -12,6 +12,10 @@ import numpy as np
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 
 
+FORM = ("heading", "half_length", "half_width", "rounding")  # of `Neighbours`
+_ZERO: Any = None
+
+
 class Rows:
     """Arrays with first axis B, from which a subset of worlds can be selected."""
 
@@ -49,6 +53,17 @@ class Neighbours(Rows):
     radius: FloatArray  # (B, A, K) [m]; dynamic obstacle: radius of the circumscribed circle
     kind: ByteArray  # (B, A, K) Kind.AGENT or Kind.DYNAMIC
     count: IntArray  # (B, A) valid entries
+    # the shape of an agent that is not a disc: a rectangle with rounded corners; else all are zero,
+    # and the body is a disc of `radius`
+    heading: FloatArray = _ZERO  # (B, A, K) [rad]
+    half_length: FloatArray = _ZERO  # (B, A, K) [m] half the extent along the heading
+    half_width: FloatArray = _ZERO  # (B, A, K) [m] half the extent across the heading
+    rounding: FloatArray = _ZERO  # (B, A, K) [m] radius of the corners
+
+    def __post_init__(self) -> None:
+        for name in FORM:
+            if getattr(self, name) is None:
+                object.__setattr__(self, name, np.zeros(self.radius.shape))
 
 
 @dataclass(frozen=True, eq=False)

@@ -106,18 +106,19 @@ def _neighbours(
     simulation: Simulation, chosen: IntArray, sensor: NeighbourSensor, occlusion: bool, side: float
 ) -> Neighbours:
     shape = (*chosen.shape, sensor.count)
+    s = simulation
+    form = np.zeros((4, *shape))
     out = Neighbours(
         np.empty((*shape, 2)), np.empty((*shape, 2)), np.empty(shape), np.empty(shape, np.int8),
-        np.empty(chosen.shape, np.int64),
+        np.empty(chosen.shape, np.int64), *form,
     )  # fmt: skip
-    s = simulation
     row = np.empty((s.B, s.A), np.int64)
     readings = (out.position, out.velocity, out.radius, out.kind, out.count)
     number_rows(0, s.B, chosen, s.agents, row, *readings)
     run_rows(
         find_neighbours, row.size, row, float(sensor.range), occlusion, side, s.sees,
         s.records, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
-        s.near, s.listed, s.beyond, *readings, least=LEAST,
+        s.near, s.listed, s.beyond, *readings, s.agents, form, least=LEAST,
     )  # fmt: skip
     return out
 

@@ -82,7 +82,7 @@ def _touch_agent(
 @kernel_without_allocation
 def touch_in_turn(
     i: int, time: float, closing: float, nx: float, ny: float, code: int, world: Any,
-    agents: AnyArray, capsules: AnyArray, opened: AnyArray, closed: AnyArray,
+    agents: AnyArray, opened: AnyArray, closed: AnyArray,
 ) -> bool:  # fmt: skip
     """Record a contact of agent i that turns, and respond; return whether it may give way.
 
@@ -98,8 +98,7 @@ def touch_in_turn(
         if active:
             _respond(k, -nx, -ny, 0.0, time, world, b, opened[k], closed)
     else:
-        known = 4 * capsules[k].solid + FIXED if code % 4 == FIXED else code
-        _record(i, known, time, closing, True, world, a, opened[i], closed)
+        _record(i, code, time, closing, True, world, a, opened[i], closed)
     _respond(i, nx, ny, 0.0, time, world, a, opened[i], closed)
     return bool(world.contact != _STOP and world.contact != _END)
 

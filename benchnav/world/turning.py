@@ -86,7 +86,7 @@ def _turn(
                 touched, touches = code, touches + 1
                 closing = deficit * pieces / world.h
                 slides = touch_in_turn(
-                    i, time, closing, nx, ny, code, world, agents, capsules, opened, closed
+                    i, time, closing, nx, ny, code, world, agents, opened, closed
                 )
                 gives = gives and slides
             if not gives:
@@ -105,7 +105,8 @@ def _worst(
     """Compare agent i with its earlier pose at (x, y).
 
     Return the least gap [m] to anything within ``reach`` [m], and of the partner whose overlap grew
-    most: the growth [m], the unit normal towards the agent, and the code, -1 if there is none.
+    most: the growth [m], the unit normal towards the agent, and the code as recorded (of
+    a fixed capsule, that of its solid), -1 if there is none.
     """
     a = agents[i]
     least, most, nx, ny, code = math.inf, SLACK, 0.0, 0.0, -1
@@ -122,7 +123,7 @@ def _worst(
             growth = min(from_fixed(a, c)[2], 0.0) - gap
             _take_pose(a, pose[0], pose[1], pose[2], pose[3])
             if growth > most:
-                most, nx, ny, code = growth, ex, ey, 4 * item[at] + FIXED
+                most, nx, ny, code = growth, ex, ey, 4 * c.solid + FIXED
     for m in range(world.bodies):
         body = bodies[m]
         if not _within(a.x - body.x, a.y - body.y, a.radius + body.bound + reach):

@@ -17,9 +17,13 @@ from benchnav.arena.world import Afterwards, Charge, ContactRule, World
 from benchnav.arrays import BoolArray, ByteArray, FloatArray
 from benchnav.episode.episode import Status
 from benchnav.verify.reference.reference_contacts import Event, Ledger, Partner
+from benchnav.verify.reference.reference_dynamics import Drive
+from benchnav.verify.reference.reference_footprint import Footprints, difference, touch_time
 from benchnav.verify.reference.reference_geometry import first_touch, inside, law_position, nearest
+from benchnav.verify.reference.reference_turning import gap_to, turn
 
 MAX_HITS = 8  # after this many touches within a substep, an agent is wedged
+TIGHT = 1e-6  # [m] wider than any rounding
 CLOSE = 1e-9  # [s] touches closer in time than this may come in either order
 _NO_AGENTS: Partner = ("goal", 0)
 
@@ -47,6 +51,9 @@ class Twin:
         self.halted = np.zeros(len(members), np.bool_)
         self.placed = [False] * len(world.bodies)
         self.bodies = np.array([law_position(b, 0.0, False) for b in world.bodies]).reshape(-1, 2)
+        self.shapes = Footprints(members)
+        rest = np.zeros(2)
+        self.drives = [Drive(members, i, world.clock.dt, rest) for i in range(len(members))]
         self.ledger = Ledger()
         self.doubtful = False  # rounding may decide the outcome of this decision
         self.touches = 0  # so far
@@ -61,6 +68,28 @@ class Twin:
         carried = [body.solid.capsules for body in self.world.bodies]
         self._carried = np.vstack([none, *carried])
         self._owner = np.array([m for m, c in enumerate(carried) for _ in c], np.int64)
+
+    def capsule(self, p: int) -> FloatArray:
+        """Return the capsule (5,) number p of the immobile solids."""
+        one: FloatArray = self._fixed[p]
+        return one
+
+    def solid_of(self, p: int) -> int:
+        """Return the solid of an immobile capsule."""
+        return self._solid[p]
+
+    def carried(self, m: int) -> FloatArray:
+        """Return the capsules (P, 5) of body m where it is."""
+        moved = self._carried[self._owner == m].copy()
+        moved[:, :4] += np.tile(self.bodies[m], 2)
+        return moved
+
+    def fixed_distance(self, i: int) -> FloatArray:
+        """Return the distances (P,) [m] of agent i's centre and the immobile capsules."""
+        f = self._fixed
+        away = self.position[i] - nearest(self.position[i], f[:, :2], f[:, 2:4])
+        apart: FloatArray = np.hypot(*away.T) - f[:, 4]
+        return apart
 
     @property
     def present(self) -> BoolArray:
@@ -84,10 +113,12 @@ class Twin:
         self._relocate(self.steps * clock.dt)
         self.halted[:] = False
         self.doubtful = False
-        self._turning = (self.world.agents.dynamics == int(Dynamics.UNICYCLE)) | twist
+        self._turning = (self.world.agents.dynamics != int(Dynamics.HOLONOMIC)) | twist
         drive = np.zeros_like(self.position)
         for i in np.flatnonzero(self.active):
-            drive[i] = self._limited(int(i), command[i], bool(twist[i]))
+            body = self.drives[i]
+            drive[i] = body.executed(command[i], bool(twist[i]), float(self.heading[i]))
+            self.doubtful |= body.doubtful
         for s in range(clock.substeps):
             self._substep(drive, (self.steps * clock.substeps + s) * h, h)
         self.steps += 1
@@ -110,21 +141,6 @@ class Twin:
                 self.placed[m] = True
                 self.bodies[m] = there
 
-    def _limited(self, i: int, command: FloatArray, twist: bool) -> FloatArray:
-        members, heading = self.world.agents, self.heading[i]
-        top, turn = members.max_speed[i], members.max_turn_rate[i]
-        if not self._turning[i]:
-            speed = math.hypot(*command)
-            limited: FloatArray = command * (min(1.0, top / speed) if speed > 0.0 else 1.0)
-            return limited
-        forward, rate = command
-        if not twist:
-            aim = math.atan2(command[1], command[0]) - heading
-            speed = math.hypot(*command)
-            forward = max(0.0, speed * math.cos(aim))
-            rate = math.remainder(aim, 2.0 * math.pi) / self.world.clock.dt if speed else 0.0
-        return np.array([min(max(forward, 0.0), top), min(max(rate, -turn), turn)])
-
     def _substep(self, drive: FloatArray, begin: float, h: float) -> None:
         self.hits[:] = 0
         moving = self.active & ~self.halted
@@ -144,19 +160,31 @@ class Twin:
             self._meet(touch, begin + h - left)
         self._drift(left)
         self.bodies = target
-        self._turn(drive, h)
+        self._turn(drive, begin + h, h)
         self._follow_up(begin + h)
 
     def _drift(self, time: float) -> None:
         self.position = self.position + self.velocity * time
         self.bodies = self.bodies + self._carry * time
 
-    def _turn(self, drive: FloatArray, h: float) -> None:
+    def _turn(self, drive: FloatArray, time: float, h: float) -> None:
         for i in np.flatnonzero(self.active):
-            if self._turning[i]:
+            if self.shapes.shaped[i]:
+                if self.active[i]:  # an earlier turn may have ended its attempt
+                    self._turn_shape(int(i), drive[i], time, h)
+            elif self._turning[i]:
                 self.heading[i] += drive[i, 1] * h
             elif drive[i].any():
                 self.heading[i] = math.atan2(drive[i, 1], drive[i, 0])
+
+    def _turn_shape(self, i: int, drive: FloatArray, time: float, h: float) -> None:
+        angle = drive[1] * h
+        if not self._turning[i]:
+            most = float(self.world.agents.max_turn_rate[i]) * h
+            aim = math.atan2(drive[1], drive[0]) - self.heading[i] if drive.any() else 0.0
+            angle = min(max(math.remainder(aim, 2.0 * math.pi), -most), most)
+        if angle != 0.0:
+            turn(self, i, angle, time, h)
 
     def _earliest(self) -> _Touch | None:
         """Return the next touch; of simultaneous touches that of the first agent."""
@@ -194,6 +222,7 @@ class Twin:
         home = np.where(away <= tolerance, 0.0, home[:, 0])
         others[np.arange(many), agents] = math.inf
         others[:, ~self.present] = math.inf
+        self._refine(agents, fixed, bodies, others)
         found = []
         for row, i in enumerate(agents):
             touch = _Touch(float(home[row]), int(i), _NO_AGENTS)
@@ -203,6 +232,40 @@ class Twin:
                     touch = self._named(name, k, float(times[row, k]), int(i))
             found.append(touch)
         return found
+
+    def _refine(
+        self, agents: np.ndarray, fixed: FloatArray, bodies: FloatArray, others: FloatArray
+    ) -> None:
+        """Replace the times (N, …) of circles by those of bodies that are not discs."""
+        h = self.world.clock.dt / self.world.clock.substeps
+        shapes, radius = self.shapes, self.world.agents.radius
+        for row, i in enumerate(agents):
+            core = shapes.core(int(i), float(self.heading[i]))
+            p, v = self.position[i], self.velocity[i]
+            if shapes.shaped[i]:
+                near = self.fixed_distance(int(i)) < radius[i] + math.hypot(*v) * h + TIGHT
+                fixed[row] = math.inf
+                for k in np.flatnonzero(near):
+                    c = self._fixed[k]
+                    hull = difference(core, c[:4].reshape(2, 2))
+                    fixed[row, k] = touch_time(p, v, hull, float(c[4] + shapes.rounding[i]))
+                for k, c in enumerate(self._carried):
+                    m = self._owner[k]
+                    hull = difference(core, c[:4].reshape(2, 2))
+                    reach = float(c[4] + shapes.rounding[i])
+                    moved = p - self.bodies[m], v - self._carry[m]
+                    bodies[row, k] = touch_time(*moved, hull, reach)
+            pairs = self.present & (shapes.shaped | shapes.shaped[i])
+            for j in np.flatnonzero(pairs):
+                if j == i:
+                    continue
+                w = v - self.velocity[j]
+                apart = math.hypot(*(p - self.position[j]))
+                others[row, j] = math.inf
+                if apart <= radius[i] + radius[j] + math.hypot(*w) * h + TIGHT:
+                    hull = difference(core, shapes.core(int(j), float(self.heading[j])))
+                    reach = float(shapes.rounding[i] + shapes.rounding[j])
+                    others[row, j] = touch_time(p - self.position[j], w, hull, reach)
 
     def _named(self, name: str, k: int, time: float, i: int) -> _Touch:
         if name == "solid":
@@ -224,13 +287,17 @@ class Twin:
         normal = _unit(away)
         closing = float((carried - self.velocity[i]) @ normal)
         self.ledger.record(i, touch.partner, time, closing, True)
-        self._respond(i, normal, closing, time)
+        self.respond(i, normal, closing, time)
 
     def _away(self, i: int, name: str, k: int, capsule: int) -> tuple[FloatArray, FloatArray]:
         """Return (vector from the partner's nearest point to agent i, the partner's velocity)."""
         if name == "solid":
             c = self._fixed[capsule]
+            if self.shapes.shaped[i]:
+                return gap_to(self, i, (("solid", capsule), capsule))[0], np.zeros(2)
             return self.position[i] - nearest(self.position[i], c[:2], c[2:4]), np.zeros(2)
+        if self.shapes.shaped[i]:
+            return gap_to(self, i, (("body", k), -1))[0], self._carry[k]
         shapes = self._carried[self._owner == k]
         local = self.position[i] - self.bodies[k]
         away = local - nearest(local, shapes[:, :2], shapes[:, 2:4])
@@ -241,16 +308,19 @@ class Twin:
         """Remove each agent's own motion towards the other."""
         self.hits[j] += 1
         normal = _unit(self.position[i] - self.position[j])
+        if self.shapes.shaped[i] or self.shapes.shaped[j]:
+            normal = gap_to(self, i, (("agent", j), -1))[0]
         own, other = float(self.velocity[i] @ normal), float(self.velocity[j] @ normal)
         active = bool(self.active[j])
         self.ledger.record(i, ("agent", j), time, other - own, True)
         charged = active or self.world.rules.charge == Charge.BOTH
         self.ledger.record(j, ("agent", i), time, other - own, charged)
         if active:
-            self._respond(j, -normal, max(other - max(own, 0.0), 0.0), time)
-        self._respond(i, normal, max(min(other, 0.0) - own, 0.0), time)
+            self.respond(j, -normal, max(other - max(own, 0.0), 0.0), time)
+        self.respond(i, normal, max(min(other, 0.0) - own, 0.0), time)
 
-    def _respond(self, i: int, normal: FloatArray, give: float, time: float) -> None:
+    def respond(self, i: int, normal: FloatArray, give: float, time: float) -> None:
+        """Apply the contact rule to agent i; SLIDE adds ``give`` [m/s] along the normal."""
         rule = self.world.rules.contact
         if rule == ContactRule.END:
             self._finish(i, Status.ENDED, time)
@@ -278,14 +348,34 @@ class Twin:
         if name == "agent":
             if not self.present[k]:
                 return math.inf
+            if self.shapes.shaped[i] or self.shapes.shaped[k]:
+                return gap_to(self, i, (("agent", k), -1))[1]
             return math.hypot(*(p - self.position[k])) - r - float(self.world.agents.radius[k])
         solid = self.world.solids[k] if name == "solid" else self.world.bodies[k].solid
         local = p if name == "solid" else p - self.bodies[k]
         c = solid.capsules
+        if self.shapes.shaped[i]:
+            return self._shape_gap(i, name, k, local)
         away = local - nearest(local, c[:, :2], c[:, 2:4])
         gap = float((np.hypot(*away.T) - c[:, 4]).min()) - r
         within = name == "body" and not solid.is_disc and inside(local, solid.loops)
         return -gap - 2.0 * r if within else gap
+
+
+    def _shape_gap(self, i: int, name: str, k: int, local: FloatArray) -> float:
+        """Return the gap [m] of a body that is not a disc; local: its centre in the partner's frame."""
+        if name == "solid":
+            numbers = [p for p, solid in enumerate(self._solid) if solid == k]
+            return min(gap_to(self, i, (("solid", p), p))[1] for p in numbers)
+        solid = self.world.bodies[k].solid
+        if solid.is_disc or not inside(local, solid.loops):
+            return gap_to(self, i, (("body", k), -1))[1]
+        c = solid.capsules
+        away = local - nearest(local, c[:, :2], c[:, 2:4])
+        apart = np.hypot(*away.T)
+        core = self.shapes.core(i, float(self.heading[i]))
+        extent = (core @ (away / np.where(apart > 0.0, apart, 1.0)[:, None]).T).max(axis=0)
+        return -float((apart + extent).min()) - float(self.shapes.rounding[i])
 
 
 def _unit(vector: FloatArray) -> FloatArray:
