@@ -31,6 +31,7 @@ class Identity:
     navigator_hash: str = ""  # of the navigator: configuration, distributions, mode
     rehearsal: int = 0  # k: the k-th rehearsal before the episode of this seed; 0: that episode
     source_hash: str = ""  # of the code and data files of the navigator; "" if unknown
+    perception: str = "exact"  # exact, noisy
 
 
 @dataclass(frozen=True, eq=False)

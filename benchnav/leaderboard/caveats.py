@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 _SHOWN = 5  # names in a sentence
-_KEYS = ["navigator", "scenario", "track", "split", "metric"]
+_KEYS = ["navigator", "scenario", "track", "perception", "split", "metric"]
 
 
 def table_caveats(folders: Sequence[RunFolder], tables: Sequence[pa.Table]) -> Iterator[Caveat]:

@@ -27,6 +27,7 @@ from benchnav.leaderboard.table import leaderboard
 from benchnav.metrics.declared import declared_metrics
 from benchnav.metrics.metric import Metric
 from benchnav.runner.plan.installed_differences import Caveat
+from benchnav.scenario.condition import perception_of
 from benchnav.scenario.parameters import joined_parameters, split_parameters
 from benchnav.store.runs.manifest import IN_PROCESS
 from benchnav.store.runs.reading import encoded_results_of, episodes_in_every_track
@@ -286,5 +287,5 @@ def _not_applicable(folder: RunFolder) -> Iterator[NotApplicable]:
         if cell["reason"]:
             yield NotApplicable(
                 cell["navigator"], cell["scenario"], cell["track"], cell["reason"],
-                asked.get(cell["navigator"], 0),
+                asked.get(cell["navigator"], 0), perception_of(cell),
             )  # fmt: skip

@@ -13,7 +13,7 @@ from benchnav.text.plural import counted
 if TYPE_CHECKING:
     import pyarrow as pa
 
-KEYS = ("split", "track", "role", "navigator", "metric")
+KEYS = ("split", "track", "perception", "role", "navigator", "metric")
 Faults = Mapping[tuple[str, ...], Mapping[tuple[str, int], str]]
 """By `KEYS` and scenario, or `ALL`: (scenario, seed) → the reason why the metric failed."""
 

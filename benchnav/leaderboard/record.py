@@ -2,16 +2,50 @@
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 ALL = "all"
 """Replaces a scenario: the mean over scenarios."""
 ALL_INTERQUARTILE = "all (interquartile mean)"
 """Replaces a scenario: the interquartile mean over scenarios."""
-PRICE = "known - unknown"
-"""Replaces a track: the price of ignorance, a paired difference. It never ranks."""
 NO_MAP = "uses no map"
 """The note of a price that is 0 because the navigator uses no map."""
+
+
+@dataclass(frozen=True)
+class Price:
+    """What the same navigators lose in the same worlds: a paired difference, which never ranks."""
+
+    name: str
+    axis: Literal["track", "perception"]
+    first: str  # a value of the axis: the difference is first − second
+    second: str
+
+    @property
+    def mark(self) -> str:
+        """The text that replaces the value of the axis in a record."""
+        return f"{self.first} - {self.second}"
+
+    def other(self, of: Any) -> str:
+        """Return the value of the other axis: of a stratum, a record or a cell."""
+        return str(of.perception if self.axis == "track" else of.track)
+
+    def place_of(self, of: Any) -> tuple[str, str]:
+        """Return track and perception of its records, one of which is the mark."""
+        other = self.other(of)
+        return (self.mark, other) if self.axis == "track" else (other, self.mark)
+
+    def sides(self, of: Any) -> tuple[tuple[str, str], tuple[str, str]]:
+        """Return the track and perception of both sides."""
+        other = self.other(of)
+        if self.axis == "track":
+            return (self.first, other), (self.second, other)
+        return (other, self.first), (other, self.second)
+
+
+IGNORANCE = Price("price of ignorance", "track", "known", "unknown")
+NOISE = Price("price of noise", "perception", "exact", "noisy")
+PRICES = (IGNORANCE, NOISE)
 
 
 @dataclass(frozen=True)
@@ -23,15 +57,17 @@ class NotApplicable:
     track: str
     reason: str  # "needs a map"
     rehearsal: int = 0  # rehearsals that it requests
+    perception: str = "exact"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Record:
-    """One navigator × scenario × track × role × metric."""
+    """One navigator × scenario × track × perception × role × metric."""
 
     navigator: str
     scenario: str  # "leaders/dynamic@1", ALL, or ALL_INTERQUARTILE
-    track: str
+    track: str  # or the mark of `IGNORANCE`
+    perception: str = "exact"  # or the mark of `NOISE`
     role: str
     metric: str
     value: float  # mean over episodes; NaN if no episode defines it
@@ -61,6 +97,11 @@ class Record:
     remark: str = ""  # the navigator's remarks, and their number of episodes; "" for none
     verified: bool = False  # its runs were verified here, and it is not a timing
     caveat: str = ""  # caveats about its runs; "" for none
+
+    @property
+    def price(self) -> Price | None:
+        """The price that it is a value of; None for a result."""
+        return next((p for p in PRICES if getattr(self, p.axis) == p.mark), None)
 
 
 @dataclass(frozen=True)

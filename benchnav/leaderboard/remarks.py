@@ -13,7 +13,7 @@ from benchnav.navigation.command_check import grouped, one_of_each_kind
 if TYPE_CHECKING:
     import pyarrow as pa
 
-KEYS = ("split", "track", "role", "navigator")
+KEYS = ("split", "track", "perception", "role", "navigator")
 SHOWN = 3  # texts of one navigator
 Texts = Mapping[tuple[str, ...], Counter[str]]
 """By `KEYS` and scenario, or `ALL`: text → the worlds that it is about."""

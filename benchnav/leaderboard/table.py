@@ -16,7 +16,7 @@ from benchnav.leaderboard.metric_faults import faults, with_fault
 from benchnav.leaderboard.record import (
     ALL,
     ALL_INTERQUARTILE,
-    PRICE,
+    PRICES,
     Leaderboard,
     NotApplicable,
     Record,
@@ -31,7 +31,7 @@ from benchnav.leaderboard.statistics.estimate import (
     mean_over,
 )
 from benchnav.leaderboard.statistics.interval import resample
-from benchnav.leaderboard.statistics.knowledge_gap import prices
+from benchnav.leaderboard.statistics.price import prices
 from benchnav.leaderboard.statistics.ranking import Standing, standings
 from benchnav.leaderboard.statistics.strata import Stratum, align, strata
 from benchnav.metrics.metric import Metric
@@ -53,7 +53,7 @@ def leaderboard(
     modes: Mapping[str, str] = {},
     caveats: Sequence[Caveat] = (),
 ) -> Leaderboard:
-    """Return every navigator × scenario × track × role × metric, with interval and rank.
+    """Return every navigator × scenario × track × perception × role × metric, with rank.
 
     Entries that were granted different numbers of rehearsals are never ranked together.
     ``results`` has the schema `benchnav.store.parts.results.RESULTS` and may join several
@@ -61,9 +61,9 @@ def leaderboard(
     a metric without a definition is shown but not ranked. ``not_applicable`` are cells that
     were not run. ``training`` maps labels to the decisions and seconds of their training;
     ``verified`` are the labels whose runs were verified here, ``mapless`` those of navigators that
-    use no map. If there are results of the tracks known and unknown, the paired difference between
-    them is a record too, with `PRICE` as its track. ``modes`` maps labels to the mode in which they
-    ran; ``caveats`` are attached to the records that they are about.
+    use no map. If there are results of both sides of a price (`PRICES`), such as the tracks known
+    and unknown, it is a record too. ``modes`` maps labels to the mode in which they ran;
+    ``caveats`` are attached to the records that they are about.
     Raises UsageError if one label is used for two navigators, or has two values in one world.
     """
     require_one_navigator_per_label({"the results": results})
@@ -103,9 +103,9 @@ def _is_verified(r: Record, verified: Collection[str], metrics: Mapping[str, Met
     return known and r.navigator in verified and r.episodes > 0
 
 
-def _contest(s: Stratum) -> tuple[str, str, str, int]:
+def _contest(s: Stratum) -> tuple[str, str, str, str, int]:
     """Return the key of records that are ranked together, or averaged over scenarios."""
-    return s.split, s.track, s.role, s.rehearsal
+    return s.split, s.track, s.perception, s.role, s.rehearsal
 
 
 def _belonging(
@@ -121,7 +121,7 @@ class _Body:
     """The values of one scenario, or of all: n worlds, N × M columns."""
 
     scenario: str
-    stratum: Stratum  # gives split, track, role and the axes
+    stratum: Stratum  # gives split, condition, role and the axes
     value: FloatArray  # (n, N, M)
     attempted: BoolArray  # (n, N)
     failed: BoolArray  # (n, N)
@@ -132,7 +132,7 @@ class _Body:
 
 
 def _group(group: list[Stratum], metrics: Mapping[str, Metric]) -> Iterator[Record]:
-    """Yield the records of strata that share split, track and role, then those over all of them."""
+    """Yield the records of strata with one split, condition and role, then those over all."""
     known = [metrics.get(name) for name in group[0].metrics]
     column = columns_of(known * len(group[0].navigators))  # navigator by navigator
     samples = [_sample(s) for s in group]
@@ -184,6 +184,7 @@ def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:
                 navigator=navigator,
                 scenario=body.scenario,
                 track=s.track,
+                perception=s.perception,
                 role=s.role,
                 metric=name,
                 value=float(body.found.value[at]),
@@ -222,7 +223,8 @@ def _missing(
     """Yield records of cells that cannot be run, in every stratum that they would be part of."""
     for cell in cells:
         for s in group:
-            if (cell.scenario, cell.track) != (s.scenario, s.track):
+            place = cell.scenario, cell.track, cell.perception
+            if place != (s.scenario, s.track, s.perception):
                 continue
             if (
                 cell.navigator in s.navigators
@@ -235,6 +237,7 @@ def _missing(
                     navigator=cell.navigator,
                     scenario=s.scenario,
                     track=s.track,
+                    perception=s.perception,
                     role=s.role,
                     metric=name,
                     value=float("nan"),
@@ -267,8 +270,9 @@ def _place(names: Sequence[str]) -> Callable[[Record], tuple[Any, ...]]:
         variant = () if last else (r.scenario, r.scenario_hash, r.horizon, r.dt)
         return (
             r.split,
-            r.track == PRICE,
+            0 if r.price is None else 1 + PRICES.index(r.price),
             r.track,
+            r.perception,
             last,
             variant,
             r.role,

@@ -143,6 +143,7 @@ def subjects(episode: Episode) -> list[tuple[dict[str, Any], BoolArray]]:
         common = {
             "navigator": identity.navigator, "scenario": identity.scenario,
             "scenario_hash": identity.scenario_hash, "track": identity.track,
+            "perception": identity.perception,
             "split": identity.split, "seed": identity.seed, "role": name,
             "agents": count,
             "failure": episode.failure, "horizon": clock.horizon, "dt": clock.dt,

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import pyarrow.compute as pc
 
+from benchnav.scenario.condition import condition
+
 if TYPE_CHECKING:
     import pyarrow as pa
 
@@ -18,20 +20,26 @@ CAUSES = {
     "failed": "the navigator failed",
 }  # fmt: skip
 """Metrics that say why agents did not succeed → words."""
-Cell = tuple[str, str, str]  # navigator, scenario, track
+Cell = tuple[str, str, str, str]  # navigator, scenario, track, perception
 
 
 @dataclass(frozen=True)
 class Failures:
-    """The failed episodes of a navigator in a scenario and track."""
+    """The failed episodes of a navigator in a scenario and condition."""
 
     navigator: str
     scenario: str
     track: str
+    perception: str
     failed: int  # episodes in which an evaluated agent did not succeed
     episodes: int
     seed: int  # of the first failed episode
     causes: tuple[str, ...]  # why its agents did not succeed
+
+    @property
+    def cell(self) -> Cell:
+        """Navigator, scenario, track and perception."""
+        return self.navigator, self.scenario, self.track, self.perception
 
 
 def find_failures(results: pa.Table) -> list[Failures]:
@@ -57,9 +65,9 @@ def _worst(results: pa.Table, metric: str, *, lowest: bool) -> defaultdict[Cell,
     rows = results.filter(pc.equal(results["metric"], metric))
     rows = rows.filter(pc.invert(pc.is_nan(rows["value"])))
     found: defaultdict[Cell, dict[int, float]] = defaultdict(dict)
-    names = ("navigator", "scenario", "track", "seed", "value")
+    names = ("navigator", "scenario", "track", "perception", "seed", "value")
     for *cell, seed, value in zip(*(rows[name].to_pylist() for name in names), strict=True):
-        values = found[cell[0], cell[1], cell[2]]
+        values = found[cell[0], cell[1], cell[2], cell[3]]
         held = values.get(seed, value)
         values[seed] = min(held, value) if lowest else max(held, value)
     return found
@@ -68,7 +76,7 @@ def _worst(results: pa.Table, metric: str, *, lowest: bool) -> defaultdict[Cell,
 def choose_replays(failures: Iterable[Failures], most: int) -> list[Failures]:
     """Return at most ``most`` cells whose first failed episode gets a replay.
 
-    They are spread evenly over the navigators, scenarios and tracks that have failures.
+    They are spread evenly over the navigators, scenarios and conditions that have failures.
     """
     left = list(failures)
     count: Counter[tuple[str, str]] = Counter()
@@ -82,9 +90,10 @@ def choose_replays(failures: Iterable[Failures], most: int) -> list[Failures]:
 
 
 def _parts(f: Failures) -> tuple[tuple[str, str], ...]:
-    return ("navigator", f.navigator), ("scenario", f.scenario), ("track", f.track)
+    where = condition(f.track, f.perception)
+    return ("navigator", f.navigator), ("scenario", f.scenario), ("condition", where)
 
 
 def _shares(f: Failures, count: Mapping[tuple[str, str], int]) -> tuple[int, int]:
-    navigator, scenario, track = (count[part] for part in _parts(f))
-    return navigator + scenario, track
+    navigator, scenario, where = (count[part] for part in _parts(f))
+    return navigator + scenario, where

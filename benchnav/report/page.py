@@ -8,6 +8,7 @@ from os.path import relpath
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
+from benchnav.scenario.condition import EXACT, episode_name
 from benchnav.text.file_name import file_name
 
 if TYPE_CHECKING:
@@ -46,9 +47,12 @@ def navigator_path(navigator: str) -> PurePosixPath:
     return PurePosixPath("navigators", _file(navigator))
 
 
-def replay_path(navigator: str, scenario: str, track: str, seed: int) -> PurePosixPath:
+def replay_path(
+    navigator: str, scenario: str, track: str, seed: int, perception: str = EXACT
+) -> PurePosixPath:
     """Return the path of a replay."""
-    return PurePosixPath("replays", _file(f"{navigator}/{scenario}/{track}/{seed}"))
+    name = episode_name(navigator, scenario, track, perception, seed)
+    return PurePosixPath("replays", _file(name))
 
 
 def href(page: PurePosixPath, target: PurePosixPath) -> str:

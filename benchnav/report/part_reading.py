@@ -11,6 +11,7 @@ from benchnav.processes.worker_pool import submitted, worker_pool
 from benchnav.report.analysis.episode_summary import EpisodeSummary, summarise
 from benchnav.report.failed_episodes import Cell
 from benchnav.report.replays import ReplayPlan, write_replay
+from benchnav.scenario.condition import perception_of
 from benchnav.store.parts.part import Part
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.threads import core_count
@@ -29,6 +30,7 @@ class PartReading:
     part: Part
     scenario: str
     tracks: tuple[str, ...]  # for which its episodes stand
+    perception: str
     seeds: frozenset[int]  # to read: no other part of the report holds them
     worlds: frozenset[int] = frozenset()  # seeds whose worlds are kept
     replays: tuple[tuple[str, int], ...] = ()  # track and seed of each replay
@@ -65,12 +67,15 @@ def _cell_readings(
     """Yield how to read the parts of a cell; ``known`` seeds were read before."""
     tracks = (*cell.get("also", ()), cell["track"])
     chosen = {} if plan is None else plan.seeds
-    wanted = [(t, chosen.get((cell["navigator"], cell["scenario"], t))) for t in tracks]
+    perception = perception_of(cell)
+    wanted = [(t, chosen.get((cell["navigator"], cell["scenario"], t, perception))) for t in tracks]
     for part in folder.parts_in(cell):
         seeds = frozenset(part.seeds) - known
         known |= seeds
         replays = tuple((track, seed) for track, seed in wanted if seed in seeds)
-        yield PartReading(part, cell["scenario"], tracks, seeds, replays=replays, plan=plan)
+        yield PartReading(
+            part, cell["scenario"], tracks, perception, seeds, replays=replays, plan=plan
+        )
 
 
 def _with_worlds(readings: Sequence[PartReading]) -> list[PartReading]:
@@ -118,5 +123,6 @@ def read_part(reading: PartReading) -> PartContent:
             if seed == identity.seed and reading.plan is not None:
                 shown = replace(episode, identity=replace(identity, track=track))
                 write_replay(shown, reading.plan.folder)
-                replays.append((identity.navigator, identity.scenario, track))
+                cell = identity.navigator, identity.scenario, track, reading.perception
+                replays.append(cell)
     return PartContent(tuple(summaries), worlds, tuple(replays))

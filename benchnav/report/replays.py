@@ -24,7 +24,9 @@ class ReplayPlan:
 def write_replay(episode: Episode, folder: Path) -> None:
     """Write the replay of an episode into the folder of a report."""
     identity = episode.identity
-    path = replay_path(identity.navigator, identity.scenario, identity.track, identity.seed)
+    path = replay_path(
+        identity.navigator, identity.scenario, identity.track, identity.seed, identity.perception
+    )
     target = folder / path
     target.parent.mkdir(exist_ok=True)
     back = href(path, FAILURES)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from typing import Any
 
 from benchnav.arena.world import World
@@ -16,7 +17,8 @@ from benchnav.report.line_style import LineStyle, line_styles
 from benchnav.report.part_reading import read_parts, readings_of
 from benchnav.report.replays import ReplayPlan
 from benchnav.runner.execute.progress import Progress
-from benchnav.scenario.terms import TRACKS
+from benchnav.scenario.condition import EXACT, perceptions_of
+from benchnav.scenario.terms import PERCEPTIONS, TRACKS
 from benchnav.store.runs.run_folder import RunFolder
 
 MORE = (
@@ -53,10 +55,21 @@ class ReportData:
     navigators: tuple[str, ...]  # labels, in the order of the suites
     scenarios: tuple[StoredScenario, ...]  # in the order of the suites
     tracks: tuple[str, ...]  # in the order of `TRACKS`
+    perceptions: tuple[str, ...]  # in the order of `PERCEPTIONS`
     styles: Mapping[str, LineStyle]  # label → colour, dash and mark
     summaries: tuple[EpisodeSummary, ...]  # of every stored episode
     replays: frozenset[Cell]  # whose first failed episode has a replay
     navigator_configs: Mapping[str, Mapping[str, Any]]  # label → its entry in the manifest
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether all perception is exact: pages then say nothing about perception."""
+        return self.perceptions == (EXACT,)
+
+    @property
+    def conditions(self) -> list[tuple[str, str]]:
+        """Every (track, perception), in the order of tables."""
+        return list(product(self.tracks, self.perceptions))
 
 
 def family_of(scenario: str) -> str:
@@ -101,6 +114,7 @@ def read_runs(
     return ReportData(
         folders=tuple(folders), values=values, board=values.board(shown), metrics=shown,
         navigators=navigators, scenarios=_scenarios(folders, worlds), tracks=_tracks(folders),
+        perceptions=_perceptions(folders),
         styles=line_styles(navigators), summaries=tuple(summaries), replays=frozenset(replays),
         navigator_configs={e["label"]: e for e in reversed(entries)},
     )  # fmt: skip
@@ -134,3 +148,8 @@ def _scenarios(
 def _tracks(folders: Sequence[RunFolder]) -> tuple[str, ...]:
     held = {track for folder in folders for track in folder.manifest.suite["tracks"]}
     return tuple(track for track in TRACKS if track in held)
+
+
+def _perceptions(folders: Sequence[RunFolder]) -> tuple[str, ...]:
+    held = {each for folder in folders for each in perceptions_of(folder.manifest.suite)}
+    return tuple(each for each in PERCEPTIONS if each in held)

@@ -87,7 +87,7 @@ def write_report(
     with replaced_folder(out) as folder:
         write_assets(folder / ASSETS)
         chosen = choose_replays(failures, replays)
-        plan = ReplayPlan({(f.navigator, f.scenario, f.track): f.seed for f in chosen}, folder)
+        plan = ReplayPlan({f.cell: f.seed for f in chosen}, folder)
         data = read_runs(folders, measured, metrics, plan, progress(quiet))
         pages = chain(
             leaderboard_page.pages(data), scenario_page.pages(data), navigator_page.pages(data),

@@ -61,7 +61,7 @@ def _limited(lines: list[str]) -> list[str]:
 def _not_applicable(summary: Summary) -> Iterator[str]:
     reasons = Counter[tuple[str, str]]()
     for job, reason in summary.not_applicable:
-        reasons[job.contestant.label, f"{reason} ({job.track})"] += 1
+        reasons[job.contestant.label, f"{reason} ({job.condition})"] += 1
     for (label, why), n in sorted(reasons.items()):
         yield f"n/a: {label} {why}, {counted(n, 'cell')}"
 

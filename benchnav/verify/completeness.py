@@ -19,7 +19,7 @@ def covered(run: RunFolder, suite: RebuiltSuite, report: Report) -> Iterator[tup
     """Yield every part with its cell; report missing and surplus seeds and parts."""
     stored = {str(c["key"]): c for c in run.manifest.cells}
     for job in suite.jobs:
-        where = f"{job.scenario.identity}, {job.track}, {job.contestant.label}"
+        where = job.shown
         fields = stored.get(job.key, {"key": job.key})
         reason = str(fields.get("reason", ""))
         if reason:

@@ -49,8 +49,7 @@ class PartCheck:
     @property
     def shown(self) -> str:
         """The name of the cell in findings."""
-        job = self.job
-        return f"{job.scenario.identity}, {job.track}, {job.contestant.label}"
+        return self.job.shown
 
     def place(self, episode: Episode) -> str:
         """Return the name of an episode in findings."""

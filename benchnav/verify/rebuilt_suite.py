@@ -16,6 +16,7 @@ from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.shard import Shard
 from benchnav.runner.plan.suite import Block, Suite
 from benchnav.runner.plan.suite_file import MAX_SEEDS
+from benchnav.scenario.condition import EXACT, perceptions_of
 from benchnav.scenario.parameters import split_parameters
 from benchnav.scenario.scenario import Scenario
 from benchnav.store.runs.manifest import IN_PROCESS, ISOLATED
@@ -49,7 +50,7 @@ def restore(run: RunFolder, root: Path, report: Report) -> RebuiltSuite | None:
     try:
         first, stop = suite["seeds"]
         split, tracks = suite["split"], tuple(map(str, suite["tracks"]))
-        blocks = tuple(Block(**_tuples(fields)) for fields in suite.get("blocks", ()))
+        blocks = tuple(map(_block, suite.get("blocks", ())))
         whole = all(type(seed) is int and seed >= 0 for seed in (first, stop))
         if not whole or not 1 <= stop - first <= MAX_SEEDS or split not in _SPLITS:
             raise ValueError(f"seeds {suite['seeds']!r} of split {split!r}")
@@ -67,7 +68,7 @@ def restore(run: RunFolder, root: Path, report: Report) -> RebuiltSuite | None:
             return None
         whole_suite = Suite(
             str(suite["name"]), suite["version"], split, range(first, stop), tuple(scenarios),
-            tracks, tuple(contestants), blocks=blocks,
+            tracks, tuple(contestants), blocks=blocks, perceptions=perceptions_of(suite),
         )  # fmt: skip
         jobs = list(whole_suite.jobs())
     except _MALFORMED as error:
@@ -116,8 +117,11 @@ def _scenario(
     return scenario
 
 
-def _tuples(fields: Mapping[str, Any]) -> dict[str, tuple[str, ...]]:
-    return {name: tuple(map(str, listed)) for name, listed in fields.items()}
+def _block(fields: Mapping[str, Any]) -> Block:
+    scenarios, tracks, navigators = (
+        tuple(map(str, fields[key])) for key in ("scenarios", "tracks", "navigators")
+    )
+    return Block(scenarios, tracks, navigators, perceptions_of(fields))
 
 
 def _contestant(fields: Mapping[str, Any], source: Mapping[str, Any] = {}) -> Contestant:
@@ -143,6 +147,8 @@ def _compare_cells(run: RunFolder, jobs: list[Job], where: str, report: Report) 
             "key": job.key, "scenario": job.scenario.identity, "track": job.track,
             "navigator": job.contestant.label,
         }  # fmt: skip
+        if job.perception != EXACT or "perception" in fields:
+            expected["perception"] = job.perception
         if job.also or "also" in fields:
             expected["also"] = list(job.also)
         if not run.manifest.shard and "seeds" in fields:

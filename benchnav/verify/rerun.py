@@ -207,8 +207,8 @@ def check_reasons(
         right = dataclasses.replace(job, contestant=contestant).reason
         report.counts["rerun n/a"] += bool(stored)
         if right != stored:
-            where = f"{job.scenario.identity}, {job.track}, {label}"
-            report.find("rerun", where, f"n/a: {stored!r}, but the navigator reports {right!r}")
+            text = f"n/a: {stored!r}, but the navigator reports {right!r}"
+            report.find("rerun", job.shown, text)
 
 
 def _short(value: Any) -> str:

@@ -1,4 +1,4 @@
-"""Curves as a picture: a panel for each scenario, track and role, a line for each navigator."""
+"""Curves as a picture: a panel for each scenario, condition and role, a line per navigator."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def _rows(every: list[list[Point]]) -> list[list[list[Point] | None]]:
     rows: dict[tuple[object, ...], list[list[Point] | None]] = {}
     for panel in every:
         p = panel[0]
-        key = p.split, p.scenario, p.role, p.horizon, p.dt, p.rehearsal
+        key = p.split, p.scenario, p.perception, p.role, p.horizon, p.dt, p.rehearsal
         rows.setdefault(key, [None] * len(tracks))[tracks.index(p.track)] = panel
     return list(rows.values())
 

@@ -11,6 +11,7 @@ from benchnav.leaderboard.rendering.prose import ARRIVALS, scaled
 from benchnav.leaderboard.statistics.comparison import Comparison
 from benchnav.leaderboard.statistics.head_to_head import Duel
 from benchnav.metrics.metric import Metric
+from benchnav.scenario.condition import condition
 from benchnav.viewer.picture import BLUE, GREY, RED, blank, plain
 
 if TYPE_CHECKING:
@@ -49,13 +50,13 @@ Row = tuple[str, str, str, str]
 
 
 def _row(c: Comparison) -> Row:
-    return c.split, c.track, c.role, c.scenario
+    return c.split, condition(c.track, c.perception), c.role, c.scenario
 
 
 def _label(row: Row, rows: Sequence[Row]) -> str:
     """Return the text that distinguishes a row from the others."""
-    split, track, role, scenario = row
-    parts = ["all scenarios" if scenario == ALL else scenario, track]
+    split, where, role, scenario = row
+    parts = ["all scenarios" if scenario == ALL else scenario, where]
     parts += [f"{role}s"] if len({r[2] for r in rows}) > 1 else []
     parts += [split] if split != "test" else []
     return ", ".join(parts)

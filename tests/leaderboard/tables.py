@@ -40,7 +40,7 @@ def row(navigator, seed, metric, value, **changes):
         "navigator": navigator, "scenario": "leaders/static@1", "scenario_hash": "c0ffee00",
         "track": "unknown", "split": "test", "seed": seed, "role": "leader", "metric": metric,
         "value": value, "agents": 4, "defined": 0 if math.isnan(value) else 4, "failure": "",
-        "horizon": 60.0, "dt": 0.1, **changes,
+        "horizon": 60.0, "dt": 0.1, "perception": "exact", **changes,
     }  # fmt: skip
 
 

@@ -8,9 +8,10 @@ import math
 import pytest
 
 from benchnav.leaderboard import NotApplicable, leaderboard, render
-from benchnav.leaderboard.record import NO_MAP, PRICE
+from benchnav.leaderboard.record import IGNORANCE, NO_MAP
 from tests.leaderboard.tables import METRICS, scores, table
 
+PRICE = IGNORANCE.mark
 SEEDS = 16
 PLANNER = {"known": [1.0] * SEEDS, "unknown": [0.5, 1.0, 0.25, 0.25] * (SEEDS // 4)}
 BLIND = [0.25, 0.75] * (SEEDS // 2)

@@ -10,7 +10,7 @@ from scipy import stats
 from benchnav.errors import UsageError
 from benchnav.leaderboard import Leaderboard, NotApplicable, comparisons, leaderboard
 from benchnav.leaderboard.label import require_one_navigator_per_label
-from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE
+from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, IGNORANCE
 from benchnav.leaderboard.statistics.head_to_head import duel
 from tests.leaderboard.tables import METRICS, metric, row, scores, simulated, table
 
@@ -141,7 +141,7 @@ def test_what_differs_in_kind_is_never_ranked_together(change):
         assert (
             r.note in ("no other entry to rank with", "the mean over scenarios ranks")
             or "attempted" in r.note
-            or r.track == PRICE
+            or r.track == IGNORANCE.mark
         )
 
 

@@ -9,16 +9,16 @@ import benchnav
 from benchnav.arena.solid import Kind
 from benchnav.leaderboard import leaderboard
 from benchnav.leaderboard.from_runs import curve, stored_values
-from benchnav.leaderboard.record import ALL, NO_MAP, PRICE
+from benchnav.leaderboard.record import ALL, IGNORANCE, NO_MAP
 from benchnav.leaderboard.statistics.curve import horizon_curves
 from benchnav.report.analysis.configuration import facts_of, parameters_of, training_text
 from benchnav.report.analysis.cost import costs
 from benchnav.report.analysis.episode_summary import summarise
 from benchnav.report.analysis.failures import outcome_shares, partners
 from benchnav.report.analysis.horizon import HorizonCurves
-from benchnav.report.analysis.knowledge import price_sentence, prices_of
 from benchnav.report.analysis.outcome import Outcome
 from benchnav.report.analysis.parameter import ParameterCurves
+from benchnav.report.analysis.price import price_sentence, prices_of
 from benchnav.report.analysis.profile import profile
 from benchnav.report.analysis.view import View, title_of, views_of
 from benchnav.report.figures.price import price_figure
@@ -116,7 +116,7 @@ def test_the_price_of_ignorance_in_words():
     assert texts["a"].endswith("; the map helps.")
     assert texts["b"].endswith("; that may be chance.")
     assert texts["c"].endswith("it uses no map, so a map changes nothing.")
-    notes = {r.navigator: r.note for r in records if r.track == PRICE}
+    notes = {r.navigator: r.note for r in records if r.track == IGNORANCE.mark}
     assert notes["c"] == NO_MAP
 
 

@@ -94,6 +94,7 @@ def _suite(name: str) -> Iterator[str]:
         ("is", "a suite"),
         ("scenarios", ", ".join(s.identity for s in suite.scenarios)),
         ("tracks", ", ".join(suite.tracks)),
+        ("perception", ", ".join(suite.perceptions)),
         ("navigators", ", ".join(each.label for each in suite.contestants)),
         ("seeds", f"{suite.seeds.start} … {suite.seeds.stop - 1} of split {suite.split}"),
     ]

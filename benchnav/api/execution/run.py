@@ -38,6 +38,7 @@ def run(
     navigators: Navigators | None = None,
     scenarios: str | Scenario | Iterable[str | Scenario | PathLike[str]] | None = None,
     tracks: str | Iterable[str] | None = None,
+    perception: str | Iterable[str] | None = None,
     seeds: int | str | range | None = None,
     out: str | PathLike[str] | None = None,
     workers: int | None = None,
@@ -52,7 +53,7 @@ def run(
     quiet: bool = False,
     debug: bool = False,
 ) -> Run:
-    """Run scenarios × tracks × navigators × seeds, and return the run.
+    """Run scenarios × tracks × perceptions × navigators × seeds, and return the run.
 
     A run that stopped early continues with the same call and the same ``out``.
 
@@ -62,6 +63,7 @@ def run(
             classes, instances or functions; or ``{label: navigator}``.
         scenarios: instead of the suite's own: names, files or `Scenario` objects.
         tracks: instead of the suite's own: known, stale, partial, unknown.
+        perception: instead of the suite's own: exact, noisy.
         seeds: N for the seeds 0 … N-1, or a range, or "A:B".
         out: the run folder; None: a new one in ``runs``.
         workers: processes; None: one per core; 0: this process, where nothing is guarded.
@@ -89,6 +91,7 @@ def run(
     selection = Selection(
         tuple(map(scenario_name, several(scenarios))), tuple(several(tracks)),
         navigator_specs(navigators), seeds_text(seeds), salt or "", isolate,
+        tuple(several(perception)),
     )  # fmt: skip
     running, share = _executor(executor, address, workers), _shard(shard)
     found = load_suite(suite_source(suite), selection, timeout=timeout)
@@ -171,8 +174,11 @@ def _shard(text: str | None) -> Shard | None:
 
 
 def _announcement(suite: Suite, folder: Path) -> str:
+    from benchnav.scenario.condition import EXACT
+
     sizes = (
         (len(suite.scenarios), "scenario"), (len(suite.tracks), "track"),
+        *([] if suite.perceptions == (EXACT,) else [(len(suite.perceptions), "perception")]),
         (len(suite.contestants), "navigator"), (len(suite.seeds), "seed"),
     )  # fmt: skip
     product = " × ".join(counted(n, what) for n, what in sizes)

@@ -5,18 +5,23 @@ from dataclasses import replace
 from benchnav.api.execution.navigators import NavigatorLike, navigator_spec
 from benchnav.api.records.episode import Episode
 from benchnav.api.records.world import World
-from benchnav.errors import UsageError, did_you_mean
+from benchnav.errors import UsageError
 from benchnav.processes.main_module import stop_import_of_main
 from benchnav.runner.plan.contestant import ContestantFactory
 from benchnav.runner.plan.job import Job
 from benchnav.runner.rollouts.rehearsal import perform
 from benchnav.runner.rollouts.seeding import check_salt, draw_salt
-from benchnav.scenario.terms import TRACKS
+from benchnav.scenario.condition import EXACT, require_perception, require_track
 from benchnav.verify.own_map import Production
 
 
 def simulate(
-    world: World, navigator: NavigatorLike, *, track: str = "known", salt: str | None = None
+    world: World,
+    navigator: NavigatorLike,
+    *,
+    track: str = "known",
+    perception: str = EXACT,
+    salt: str | None = None,
 ) -> Episode:
     """Run a navigator in a world, in this process, and return the episode.
 
@@ -27,21 +32,19 @@ def simulate(
         world: from `Scenario.world`.
         navigator: a name, ``{"type": name, …parameters}``, a class, an instance or a function.
         track: known, stale, partial or unknown: which map the navigator gets.
+        perception: exact or noisy: how well the navigator senses.
         salt: of the navigator's randomness, in hexadecimal digits; None: a new one each time.
 
-    Raises UsageError where the navigator cannot work in this scenario and track, and PluginError
-    where it cannot be made.
+    Raises UsageError where the navigator cannot work in this scenario and track, for an unknown
+    track or perception, and PluginError where it cannot be made.
     """
     stop_import_of_main()
-    if track not in TRACKS:
-        raise UsageError(
-            f"A track must be one of {', '.join(TRACKS)}. Got {track!r} instead."
-            f"{did_you_mean(track, TRACKS)}"
-        )
+    require_track(track)
+    require_perception(perception)
     scenario = world.scenario.record
     factory = ContestantFactory((world.record.sensing,), isolate=False, here=True)
     contestant = factory.create(navigator_spec(navigator), "navigator")
-    job = Job(scenario, world.split, track, contestant)
+    job = Job(scenario, world.split, track, contestant, perception=perception)
     if job.reason:
         raise UsageError(f"{contestant.label!r} cannot be run here: {job.reason}.")
     assignment = replace(job.assignment, salt=_salt(salt))

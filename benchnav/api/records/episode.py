@@ -15,6 +15,7 @@ from benchnav.metrics.attempt_ends import end_counts
 from benchnav.metrics.measure import all_metrics, load_metric
 from benchnav.metrics.metric import evaluate
 from benchnav.metrics.quantities.trajectory import cut
+from benchnav.scenario.condition import EXACT
 from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
@@ -45,6 +46,11 @@ class Episode:
     def track(self) -> str:
         """The knowledge track."""
         return self.record.identity.track
+
+    @property
+    def perception(self) -> str:
+        """How the navigator sensed: exact or noisy."""
+        return self.record.identity.perception
 
     @property
     def seed(self) -> int:
@@ -146,6 +152,7 @@ class Episode:
         record = self.record
         facts = [
             ("navigator", self.navigator), ("scenario", self.scenario), ("track", self.track),
+            *([] if self.perception == EXACT else [("perception", self.perception)]),
             ("seed", str(self.seed)), ("duration", f"{self.duration:g} s"),
             ("agents", end_counts(record)),
             ("contacts", counted(len(record.contacts), "event")),
@@ -155,9 +162,10 @@ class Episode:
 
     def __repr__(self) -> str:
         facts = dict(self._facts())
+        noisy = "" if self.perception == EXACT else f" perception={self.perception!r},"
         ended = f"; failed: {self.failure}" if self.failure else ""
         return (
-            f"Episode({self.navigator!r} in {self.scenario!r}, track={self.track!r},"
+            f"Episode({self.navigator!r} in {self.scenario!r}, track={self.track!r},{noisy}"
             f" seed={self.seed}: {facts['duration']}, {facts['agents']}{ended})"
         )
 

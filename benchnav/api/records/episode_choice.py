@@ -9,11 +9,12 @@ import pyarrow.compute as pc
 from benchnav.api.records.episodes import Episodes, Place, stored_episodes
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.report.failed_episodes import CAUSES
+from benchnav.scenario.condition import described
 from benchnav.store.runs.reading import results_of
 from benchnav.store.runs.run_folder import RunFolder
 
 SUCCESS = "success"
-Key = tuple[str, str, str, int]  # navigator, scenario, track, seed
+Key = tuple[str, str, str, str, int]  # navigator, scenario, track, perception, seed
 
 
 def failed_episodes(
@@ -67,16 +68,19 @@ def worst_episodes(
 def in_same_world(
     folder: RunFolder, place: Place, navigators: Sequence[str], owner: object = None
 ) -> Episodes:
-    """Return the episodes of several navigators in the world and track of one episode.
+    """Return the episodes of several navigators in the world and condition of one episode.
 
     Raises UsageError for a navigator that was not run there.
     """
     found = []
     for navigator in navigators:
-        there = stored_episodes(folder, navigator, place.scenario, place.track, place.seed).places
+        there = stored_episodes(
+            folder, navigator, place.scenario, place.track, place.perception, place.seed
+        ).places
         if not there:
+            where = described(place.track, place.perception)
             raise UsageError(
-                f"Every navigator must have been run in {place.scenario}, track {place.track},"
+                f"Every navigator must have been run in {place.scenario}, {where},"
                 f" seed {place.seed}. {navigator!r} was not."
             )
         found.append(there[0])
@@ -86,7 +90,7 @@ def in_same_world(
 def metric_values(table: pa.Table, metric: str) -> Mapping[Key, list[float]]:
     """Return the defined values of a metric: one for each role of an episode."""
     table = table.filter(pc.equal(table["metric"], metric))
-    names = ("navigator", "scenario", "track", "seed", "value")
+    names = ("navigator", "scenario", "track", "perception", "seed", "value")
     found: dict[Key, list[float]] = {}
     for *key, value in zip(*(table[name].to_pylist() for name in names), strict=True):
         if not math.isnan(value):
@@ -95,5 +99,5 @@ def metric_values(table: pa.Table, metric: str) -> Mapping[Key, list[float]]:
 
 
 def key_of(place: Place) -> Key:
-    """Return navigator, scenario, track and seed."""
-    return place.navigator, place.scenario, place.track, place.seed
+    """Return navigator, scenario, track, perception and seed."""
+    return place.navigator, place.scenario, place.track, place.perception, place.seed

@@ -1,4 +1,4 @@
-"""Find stored episodes by their names, NAVIGATOR/SCENARIO/TRACK/SEED."""
+"""Find stored episodes by name: NAVIGATOR/SCENARIO/TRACK/SEED, or …/TRACK/PERCEPTION/SEED."""
 
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 from benchnav.api.records.episodes import Episodes, Place
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.from_runs import names_of_scenario
+from benchnav.scenario.condition import EXACT
+from benchnav.scenario.terms import PERCEPTIONS
 
 if TYPE_CHECKING:
     from benchnav.api.records.run import Run
@@ -28,10 +30,14 @@ def _find(run: "Run", name: str) -> Place:
             f" Got {name!r} instead."
         )
     subject, track, seed = parts
+    perception = EXACT
+    if track in PERCEPTIONS:
+        perception, (subject, track) = track, subject.rsplit("/", 1)
     found = [
         place
         for place in run.episodes(track=track, seed=int(seed)).places
-        if subject in (f"{place.navigator}/{form}" for form in names_of_scenario(place.scenario))
+        if place.perception == perception
+        and subject in (f"{place.navigator}/{form}" for form in names_of_scenario(place.scenario))
     ]
     found = [place for place in found if place.name == name] or found
     if not found:

@@ -28,7 +28,8 @@ def episode_results(folder: RunFolder, places: Sequence[Place]) -> list[EpisodeR
     success = metric_values(table, SUCCESS)
     causes = {words: metric_values(table, name) for name, words in CAUSES.items()}
     rows = table.filter(pc.equal(table["metric"], SUCCESS))
-    columns = (rows[name].to_pylist() for name in ("navigator", "scenario", "track", "seed", "dt"))
+    names = ("navigator", "scenario", "track", "perception", "seed", "dt")
+    columns = (rows[name].to_pylist() for name in names)
     step = {tuple(key): dt for *key, dt in zip(*columns, strict=True)}
     steps = {part: part.steps() for part in dict.fromkeys(place.part for place in places)}
     found = []

@@ -9,6 +9,7 @@ from benchnav.api.output.text_table import table_html
 from benchnav.api.records.episode import Episode
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.from_runs import matching_scenarios
+from benchnav.scenario.condition import EXACT, episode_name, perception_of
 from benchnav.scenario.terms import TRACKS
 from benchnav.store.parts.part import Part
 from benchnav.store.runs.run_folder import RunFolder
@@ -32,11 +33,12 @@ class Place(NamedTuple):
     track: str
     seed: int
     folder: RunFolder
+    perception: str = EXACT
 
     @property
     def name(self) -> str:
-        """NAVIGATOR/SCENARIO/TRACK/SEED."""
-        return f"{self.navigator}/{self.scenario}/{self.track}/{self.seed}"
+        """NAVIGATOR/SCENARIO/TRACK/SEED; before the seed the perception, unless it is exact."""
+        return episode_name(self.navigator, self.scenario, self.track, self.perception, self.seed)
 
 
 class Episodes(Sequence[Episode]):
@@ -76,16 +78,17 @@ class Episodes(Sequence[Episode]):
         yield from _read(group)
 
     def to_pandas(self) -> "pd.DataFrame":
-        """Return the trajectories of all, with the columns navigator, scenario, track, seed first.
+        """Return the trajectories of all.
 
-        The other columns are those of `Episode.to_pandas`.
+        The first columns are navigator, scenario, track, perception, seed. The other columns are
+        those of `Episode.to_pandas`.
         """
         import pandas as pd
 
         frames = [
             episode.to_pandas().assign(
                 navigator=episode.navigator, scenario=episode.scenario, track=episode.track,
-                seed=episode.seed,
+                perception=episode.perception, seed=episode.seed,
             )
             for episode in self
         ]  # fmt: skip
@@ -116,7 +119,7 @@ class Episodes(Sequence[Episode]):
 
     def _repr_html_(self) -> str:
         rows = [
-            (place.navigator, place.scenario, place.track, str(place.seed))
+            (place.navigator, place.scenario, place.track, place.perception, str(place.seed))
             for place in self._places[:_SHOWN]
         ]
         more = len(self) - len(rows)
@@ -124,7 +127,7 @@ class Episodes(Sequence[Episode]):
         return table_html(title, _KEYS, rows)
 
 
-_KEYS = ("navigator", "scenario", "track", "seed")
+_KEYS = ("navigator", "scenario", "track", "perception", "seed")
 _STATES = ("time", "agent", "x", "y", "heading", "vx", "vy", "status")
 
 
@@ -133,6 +136,7 @@ def stored_episodes(
     navigator: str | None,
     scenario: str | None,
     track: str | None,
+    perception: str | None,
     seed: int | None,
     owner: object = None,
 ) -> Episodes:
@@ -145,12 +149,14 @@ def stored_episodes(
     tracks = [t for cell in folder.manifest.cells for t in (*cell.get("also", ()), cell["track"])]
     # 'unknown' is no misspelt 'known': it was not run.
     _require("track", track, tracks, hint=track not in TRACKS)
+    _require("perception", perception, [*map(perception_of, folder.manifest.cells)])
     known = {cell["scenario"] for cell in folder.manifest.cells}
     scenarios = known if scenario is None else matching_scenarios(known, [scenario])
     places = [
-        Place(part, cell["navigator"], cell["scenario"], each, s, folder)
+        Place(part, cell["navigator"], cell["scenario"], each, s, folder, perception_of(cell))
         for cell in cells
         if navigator in (None, cell["navigator"]) and cell["scenario"] in scenarios
+        if perception in (None, perception_of(cell))
         for each in (*cell.get("also", ()), cell["track"])
         if track in (None, each)
         for part in folder.parts_in(cell)

@@ -15,6 +15,7 @@ from benchnav.api.output.text_table import written
 from benchnav.arrays import IntArray
 from benchnav.episode.episode import Episode as Record
 from benchnav.errors import UsageError, did_you_mean
+from benchnav.scenario.condition import EXACT, episode_name
 
 if TYPE_CHECKING:
     from benchnav.api.records.episode import Episode
@@ -141,12 +142,16 @@ class Replay:
     def __repr__(self) -> str:
         every = [record.identity for record in self._records]
         first = every[0]
-        if len({(one.scenario, one.track, one.seed) for one in every}) > 1:
-            names = (f"{one.navigator}/{one.scenario}/{one.track}/{one.seed}" for one in every)
+        if len({(one.scenario, one.track, one.perception, one.seed) for one in every}) > 1:
+            names = (
+                episode_name(one.navigator, one.scenario, one.track, one.perception, one.seed)
+                for one in every
+            )
             return f"Replay({', '.join(names)})"
         names = (one.navigator for one in every)
+        noisy = "" if first.perception == EXACT else f" perception={first.perception!r},"
         return (
-            f"Replay({', '.join(names)} in {first.scenario!r}, track={first.track!r},"
+            f"Replay({', '.join(names)} in {first.scenario!r}, track={first.track!r},{noisy}"
             f" seed={first.seed})"
         )
 

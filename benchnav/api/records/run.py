@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from benchnav.api.output.messages import message, silent
 from benchnav.api.output.text_table import key_value_html
 from benchnav.errors import UsageError
+from benchnav.scenario.condition import EXACT, perceptions_of
 from benchnav.store.packs.unpack import opened
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.spans import count
@@ -98,6 +99,11 @@ class Run:
     def tracks(self) -> tuple[str, ...]:
         """The tracks, in the order of the suite."""
         return tuple(self.folder.manifest.suite["tracks"])
+
+    @property
+    def perceptions(self) -> tuple[str, ...]:
+        """The perceptions, in the order of the suite: exact, noisy."""
+        return perceptions_of(self.folder.manifest.suite)
 
     @property
     def seeds(self) -> range:
@@ -223,10 +229,11 @@ class Run:
         track: str | None = None,
         seed: int | None = None,
         *,
+        perception: str | None = None,
         failed: bool | str = False,
         worst: str | None = None,
     ) -> "Episodes":
-        """Return the stored episodes, or those of one navigator, scenario, track or seed.
+        """Return the stored episodes, or those of one navigator, scenario, condition or seed.
 
         A scenario may be named with or without version and parameters.
 
@@ -235,6 +242,7 @@ class Run:
             scenario: its name.
             track: the knowledge track.
             seed: of the world.
+            perception: exact or noisy.
             failed: True: only those in which an evaluated agent did not succeed; or a cause:
                 "collided", "timeout", "stuck" or "failed" (the navigator failed).
             worst: a metric: they come in its order, worst first.
@@ -243,7 +251,9 @@ class Run:
         """
         from benchnav.api.records.episodes import stored_episodes
 
-        found = stored_episodes(self.folder, navigator, scenario, track, seed, owner=self)
+        found = stored_episodes(
+            self.folder, navigator, scenario, track, perception, seed, owner=self
+        )
         if failed is not False:
             from benchnav.api.records.episode_choice import failed_episodes
 
@@ -329,15 +339,21 @@ class Run:
             ("suite", f"{manifest.suite['name']}@{manifest.suite['version']}"),
             ("scenarios", ", ".join(self.scenarios)),
             ("tracks", ", ".join(self.tracks)),
+            *self._noisy(", ".join(self.perceptions)),
             ("navigators", ", ".join(self.navigators)),
             ("seeds", f"{self.seeds.start} to {self.seeds.stop - 1}"),
             ("episodes", f"{total - missing} of {total}"),
         ]
 
+    def _noisy(self, value: Any) -> list[tuple[str, Any]]:
+        """Return the value under its name, or nothing for a run of exact perception only."""
+        return [] if self.perceptions == (EXACT,) else [("perception", value)]
+
     def __repr__(self) -> str:
         suite = self.folder.manifest.suite
         sizes = (
             (len(self.scenarios), "scenario"), (len(self.tracks), "track"),
+            *((count, name) for name, count in self._noisy(len(self.perceptions))),
             (len(self.navigators), "navigator"), (len(self.seeds), "seed"),
         )  # fmt: skip
         product = " × ".join(counted(n, what) for n, what in sizes)

@@ -17,6 +17,7 @@ def run(
     navigator: options.Navigator = None,
     scenario: options.Scenario = None,
     track: options.Track = None,
+    perception: options.Perception = None,
     salt: options.Salt = None,
     isolate: options.Isolate = False,
     again: options.Again = False,
@@ -25,13 +26,14 @@ def run(
 ) -> None:
     """Execute a suite into a run folder.
 
-    Scenarios × tracks × navigators × seeds. Prints the run folder on stdout;
+    Scenarios × tracks × perceptions × navigators × seeds. Prints the run folder on stdout;
     `benchnav leaderboard` makes the table from it.
     """
     from benchnav.api.execution.run import run as execute
 
     found = execute(
-        suite, navigators=navigator, scenarios=scenario, tracks=track, seeds=seeds, out=out,
+        suite, navigators=navigator, scenarios=scenario, tracks=track,
+        perception=perception, seeds=seeds, out=out,
         workers=workers, timeout=timeout, memory=memory, executor=executor, address=address,
         shard=shard, salt=salt, isolate=isolate, again=again, quiet=quiet, debug=debug,
     )  # fmt: skip

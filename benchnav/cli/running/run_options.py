@@ -62,6 +62,10 @@ Scenario = Annotated[
 Track = Annotated[
     list[str] | None, typer.Option(metavar="NAME", help="Instead of the suite's. Repeatable.")
 ]
+Perception = Annotated[
+    list[str] | None,
+    typer.Option(metavar="NAME", help="exact or noisy, instead of the suite's. Repeatable."),
+]
 Salt = Annotated[
     str | None,
     typer.Option(

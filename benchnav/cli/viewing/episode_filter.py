@@ -18,6 +18,7 @@ class EpisodeFilter:
     navigators: tuple[str, ...]
     scenario: str | None
     track: str | None
+    perception: str | None
     seed: int | None
     failed: bool | str  # or one of `benchnav.report.failed_episodes.CAUSES`
     worst: str | None
@@ -27,7 +28,8 @@ class EpisodeFilter:
         """The options that were given."""
         given = {
             "--navigator": bool(self.navigators), "--scenario": self.scenario is not None,
-            "--track": self.track is not None, "--seed": self.seed is not None,
+            "--track": self.track is not None, "--perception": self.perception is not None,
+            "--seed": self.seed is not None,
             "--failed": self.failed is True, "--cause": isinstance(self.failed, str),
             "--worst": self.worst is not None,
         }  # fmt: skip
@@ -77,12 +79,14 @@ class EpisodeFilter:
         """Return why no episode was found."""
         values = {
             "navigator": " or ".join(self.navigators) or None, "scenario": self.scenario,
-            "track": self.track, "seed": self.seed,
+            "track": self.track, "perception": self.perception, "seed": self.seed,
         }  # fmt: skip
         names = ", ".join(f"{key} {value}" for key, value in values.items() if value is not None)
         named = f" of {names}" if names else ""
         first = self.navigators[0] if self.navigators else None
-        count = len(run.episodes(first, self.scenario, self.track, self.seed))
+        count = len(
+            run.episodes(first, self.scenario, self.track, self.seed, perception=self.perception)
+        )
         if not count:
             shown = f"'benchnav replay {run.path} --list' shows all episodes."
             return f"{run.path} holds no episode{named}. {shown}"
@@ -95,5 +99,11 @@ class EpisodeFilter:
 
     def _of(self, run: "Run", navigator: str | None) -> "Episodes":
         return run.episodes(
-            navigator, self.scenario, self.track, self.seed, failed=self.failed, worst=self.worst
+            navigator,
+            self.scenario,
+            self.track,
+            self.seed,
+            perception=self.perception,
+            failed=self.failed,
+            worst=self.worst,
         )

@@ -26,4 +26,5 @@ def print_list(run: "Run", found: "Episodes") -> None:
         line = f"{row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]:>{widths[2]}}  {row[3]}"
         put(line.rstrip())
     if len(found) > len(places):
-        say(f"{len(found) - len(places)} more: name a navigator, scenario, track or seed.")
+        left = len(found) - len(places)
+        say(f"{left} more: name a navigator, scenario, track, perception or seed.")

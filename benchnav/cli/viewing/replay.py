@@ -8,6 +8,7 @@ import typer
 from benchnav.cli.console import put, say
 from benchnav.cli.viewing.episode_filter import EpisodeFilter
 from benchnav.cli.viewing.episode_list import print_list
+from benchnav.scenario.condition import condition
 from benchnav.text.file_name import file_name
 
 if TYPE_CHECKING:
@@ -26,6 +27,9 @@ def replay(
     ] = None,
     scenario: Annotated[str | None, typer.Option(help="In this scenario.")] = None,
     track: Annotated[str | None, typer.Option(help="On this track.")] = None,
+    perception: Annotated[
+        str | None, typer.Option(help="With this perception: exact or noisy.")
+    ] = None,
     seed: Annotated[int | None, typer.Option(help="In the world of this seed.")] = None,
     failed: Annotated[
         bool, typer.Option("--failed", help="Only where an agent did not succeed.")
@@ -73,8 +77,8 @@ def replay(
     from benchnav.api.records.run import open_run
 
     wanted = EpisodeFilter(
-        navigators=tuple(navigator or ()), scenario=scenario, track=track, seed=seed,
-        failed=failed if cause is None else cause, worst=worst,
+        navigators=tuple(navigator or ()), scenario=scenario, track=track,
+        perception=perception, seed=seed, failed=failed if cause is None else cause, worst=worst,
     )  # fmt: skip
     if episodes:
         wanted.require_unused(episodes, lists=list_)
@@ -97,4 +101,5 @@ def _file_name(places: "tuple[Place, ...]") -> str:
     first = places[0]
     names = dict.fromkeys(place.navigator for place in places)
     scenario = first.scenario.split("@")[0]
-    return file_name("replay", *names, scenario, first.track, str(first.seed), suffix=".html")
+    where = condition(first.track, first.perception)
+    return file_name("replay", *names, scenario, where, str(first.seed), suffix=".html")

@@ -22,6 +22,7 @@ def watch(
     ],
     seed: Annotated[int, typer.Option(help="Of the world.")] = 0,
     track: Annotated[str, typer.Option(help="known, stale, partial or unknown.")] = "known",
+    perception: Annotated[str, typer.Option(help="exact or noisy.")] = "exact",
     out: Annotated[
         Path | None,
         typer.Option(
@@ -43,7 +44,9 @@ def watch(
     from benchnav.api.records.scenario import load_scenario
 
     world = load_scenario(scenario).world(seed=seed)
-    episodes = [simulate(world, navigator, track=track) for navigator in navigators]
+    episodes = [
+        simulate(world, navigator, track=track, perception=perception) for navigator in navigators
+    ]
     for episode in episodes:
         say(f"{episode!r}")
     path = out or Path(file_name("watch", *navigators, scenario, str(seed), suffix=".html"))

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from benchnav.leaderboard.record import PRICE, Record
+from benchnav.leaderboard.record import Record
 from benchnav.leaderboard.rendering.digits import aligned, figure, figures, number, prefixed, signed
 from benchnav.text.plural import counted
 
@@ -68,7 +68,7 @@ def _figures(r: Record, interval: bool) -> tuple[str, str]:
         size, name = prefixed(r.unit, max(map(abs, (r.value, r.low, r.high))))
         numbers = r.value / size, r.low / size, r.high / size
         texts = list(figures(*numbers, whole)) if interval else [figure(*numbers, whole)]
-    value, *ends = map(signed, texts) if r.track == PRICE else texts
+    value, *ends = map(signed, texts) if r.price else texts
     return (f"{value} [{', '.join(ends)}]" if ends else value), name
 
 

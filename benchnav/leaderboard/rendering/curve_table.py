@@ -7,6 +7,7 @@ from benchnav.leaderboard.rendering import escape
 from benchnav.leaderboard.rendering.digits import figures, number, prefixed
 from benchnav.leaderboard.rendering.long_format import as_csv, as_json
 from benchnav.leaderboard.statistics.curve import HORIZON, Point, panels
+from benchnav.scenario.condition import described
 from benchnav.text.plural import counted
 
 FORMATS = ("markdown", "csv", "json")
@@ -38,7 +39,7 @@ def titled(points: Sequence[Point], role: bool = True) -> str:
     """Return the heading of a panel."""
     p = points[0]
     worlds = {q.worlds for q in points}
-    parts = [p.scenario, f"track {p.track}", *([f"{p.role}s"] if role else [])]
+    parts = [p.scenario, described(p.track, p.perception), *([f"{p.role}s"] if role else [])]
     parts += [counted(min(worlds), "world")] if len(worlds) == 1 else []
     parts += [f"split {p.split}"] if p.split != "test" else []
     parts += [f"rehearsal: {p.rehearsal}"] if p.rehearsal else []
@@ -46,7 +47,7 @@ def titled(points: Sequence[Point], role: bool = True) -> str:
 
 
 def _table(points: list[Point]) -> str:
-    """Return the curves of one scenario, track and role, a row for each navigator."""
+    """Return the curves of one scenario, condition and role, a row for each navigator."""
     every = sorted({p.x for p in points})
     step = max(1, len(every) // COLUMNS)
     shown = every[step - 1 :: step]

@@ -68,7 +68,7 @@ def _csv(board: Leaderboard, metrics: Metrics, columns: Metrics) -> str:
 def _chapters(
     board: Leaderboard, metrics: Metrics, columns: Metrics
 ) -> Iterator[tuple[str, list[Section]]]:
-    """Yield the tables of each track, then those of the price of ignorance."""
+    """Yield the tables of each condition, then those of each price."""
     for chapter, tables in groupby(sections(board, metrics, columns), key=lambda s: s.chapter):
         yield chapter, list(tables)
 

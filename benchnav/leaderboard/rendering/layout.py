@@ -5,19 +5,20 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from benchnav.leaderboard.columns import DESCRIPTIVE, MIDDLE_HALF, NAMES, choose
-from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Leaderboard, Record
+from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICES, Leaderboard, Record
 from benchnav.leaderboard.rendering.cell import Cell, cell, entrant, heading
 from benchnav.leaderboard.rendering.footnotes import with_footnotes
-from benchnav.leaderboard.rendering.knowledge_gap_table import LEGEND as PRICE_LEGEND
-from benchnav.leaderboard.rendering.knowledge_gap_table import price_sections
+from benchnav.leaderboard.rendering.price_table import LEGENDS as PRICE_LEGENDS
+from benchnav.leaderboard.rendering.price_table import price_sections
 from benchnav.leaderboard.rendering.section import Section
 from benchnav.leaderboard.statistics.order import by_merit, leading
+from benchnav.scenario.condition import condition, described
 from benchnav.text.plural import counted
 
 NARROW = 4  # largest number of metrics for which every cell shows its interval
 INTERVALS = 2  # metrics that show an interval in a wider table
 WIDE = 8  # with more metrics, a table has a row for each of them
-PRICED = 3  # of the default metrics that have a table of the price of ignorance
+PRICED = 3  # of the default metrics that have tables of prices
 ABREAST = 5  # navigators side by side in such a table
 
 LEGEND = (
@@ -35,9 +36,9 @@ LEGEND = (
 def sections(
     board: Leaderboard, metrics: Sequence[str] | None, columns: Sequence[str] | None = None
 ) -> Iterator[Section]:
-    """Return the tables of a leaderboard: one per track, scenario and role, then the prices.
+    """Return the tables of a leaderboard: one per condition, scenario and role, then the prices.
 
-    The table over all scenarios is the first of its track. ``columns`` are the columns of each
+    The table over all scenarios is the first of its condition. ``columns`` are the columns of each
     table, in this order; by default a table shows the rank, the ``metrics``, and the facts about
     navigators in which they differ. A long reason for a missing value becomes a footnote.
     """
@@ -49,7 +50,7 @@ def _sections(
 ) -> Iterator[Section]:
     named = None if columns is None else [name for name in columns if name in board.metrics]
     shown = choose(board.metrics, metrics if named is None else named)
-    records = [r for r in board.records if r.track != PRICE]
+    records = [r for r in board.records if not r.price]
     groups = {key: list(group) for key, group in groupby(records, key=_key)}
     modes = _modes(board)
     for key, records in sorted(groups.items(), key=lambda item: _overall_first(item[0])):
@@ -70,11 +71,12 @@ def _sections(
 
 def legend(board: Leaderboard) -> tuple[str, ...]:
     """Return the lines below all tables."""
-    priced = any(r.track == PRICE for r in board.records)
+    held = {r.price for r in board.records}
+    prices = [PRICE_LEGENDS[price] for price in PRICES if price in held]
     caveats = tuple(f"Caveat: {text}" for text in board.caveats)
     modes = _modes(board)
     mode = (f"mode: {modes[0]} for all entries.",) if len(modes) == 1 and modes[0] else ()
-    return (*LEGEND, *mode, *((PRICE_LEGEND,) if priced else ()), *caveats)
+    return (*LEGEND, *mode, *prices, *caveats)
 
 
 def _modes(board: Leaderboard) -> list[str]:
@@ -83,8 +85,8 @@ def _modes(board: Leaderboard) -> list[str]:
 
 
 def _overall_first(key: tuple[str, ...]) -> tuple[str, str, bool]:
-    split, track, scenario, *_ = key
-    return split, track, scenario != ALL
+    split, condition, scenario, *_ = key
+    return split, condition, scenario != ALL
 
 
 def failures_and_remarks(leaders: Sequence[Record]) -> list[str]:
@@ -103,9 +105,10 @@ def granted(rehearsals: int) -> str:
 
 
 def _key(r: Record) -> tuple[str, ...]:
-    """Return the key of a table: the scenario is third, role and grant are last."""
+    """Return the key of a table: condition and scenario follow the split, the grant is last."""
     variant = r.scenario_hash, f"{r.horizon!r}", f"{r.dt!r}"
-    return r.split, r.track, r.scenario, *variant, r.role, f"{r.rehearsal}"
+    where = condition(r.track, r.perception)
+    return r.split, where, r.scenario, *variant, r.role, f"{r.rehearsal}"
 
 
 def _title(records: list[Record], variants: bool) -> str:
@@ -120,18 +123,20 @@ def _title(records: list[Record], variants: bool) -> str:
         else ""
     )
     grant = f", rehearsal: {first.rehearsal}" if first.rehearsal else ""
-    return f"{scenario}, track {first.track}{split}, {first.role}s{worlds}{variant}{grant}"
+    where = described(first.track, first.perception)
+    return f"{scenario}, {where}{split}, {first.role}s{worlds}{variant}{grant}"
 
 
 def _name(r: Record, variants: bool) -> tuple[str, ...]:
     """Return the fields that distinguish a table from others of a leaderboard."""
     variant = f"{r.scenario_hash[:8]}-{r.horizon:g}-{r.dt:g}" if variants else ""
     grant = f"rehearsal-{r.rehearsal}" if r.rehearsal else ""
-    return r.scenario, r.track, r.role, "" if r.split == "test" else r.split, grant, variant
+    where = condition(r.track, r.perception)
+    return r.scenario, where, r.role, "" if r.split == "test" else r.split, grant, variant
 
 
 class _Table:
-    """The records of one scenario, track and role, the best navigator first."""
+    """The records of one scenario, condition and role, the best navigator first."""
 
     def __init__(
         self,
@@ -152,7 +157,7 @@ class _Table:
         self.decided = {r.metric for r in records if (r.rank_low or 0) > 1}
         self.rehearsed = records[0].rehearsal
         self.verified = any(r.verified for r in records)
-        self.chapter = f"Track {records[0].track}"
+        self.chapter = described(records[0].track, records[0].perception).capitalize()
         self.columns = [
             name
             for name in (self._usual(records) if columns is None else columns)

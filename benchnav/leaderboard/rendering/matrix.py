@@ -3,11 +3,20 @@
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 
-from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, NO_MAP, PRICE, Leaderboard, Record
+from benchnav.leaderboard.record import (
+    ALL,
+    ALL_INTERQUARTILE,
+    NO_MAP,
+    PRICES,
+    Leaderboard,
+    Record,
+)
 from benchnav.leaderboard.rendering.cell import Cell, cell, entrant, rank, rehearsal, training
 from benchnav.leaderboard.rendering.layout import failures_and_remarks, granted
+from benchnav.leaderboard.rendering.price_table import price_name
 from benchnav.leaderboard.rendering.section import Section
 from benchnav.leaderboard.statistics.order import by_merit
+from benchnav.scenario.condition import condition, described
 from benchnav.text.plural import counted
 
 Place = tuple[bool, str, str, float, float]
@@ -16,9 +25,9 @@ INTERVAL = "95 % interval"
 
 
 def matrix_sections(board: Leaderboard, metrics: Sequence[str]) -> Iterator[Section]:
-    """Yield a matrix per metric, track, role, split and grant; then the prices of ignorance."""
-    for price in (False, True):
-        records = [r for r in board.records if (r.track == PRICE) == price]
+    """Yield a matrix per metric, condition, role, split and grant; then the prices."""
+    for price in (None, *PRICES):
+        records = [r for r in board.records if r.price == price]
         records = [r for r in records if r.scenario != ALL_INTERQUARTILE]
         for metric in metrics:
             chosen = sorted((r for r in records if r.metric == metric), key=_contest)  # stable
@@ -28,8 +37,8 @@ def matrix_sections(board: Leaderboard, metrics: Sequence[str]) -> Iterator[Sect
                     yield section
 
 
-def _contest(r: Record) -> tuple[str, str, str, int]:
-    return r.split, r.track, r.role, r.rehearsal
+def _contest(r: Record) -> tuple[str, str, str, str, int]:
+    return r.split, r.track, r.perception, r.role, r.rehearsal
 
 
 def _place(r: Record) -> Place:
@@ -45,7 +54,7 @@ def _matrix(records: list[Record]) -> Section:
     first, wide = records[0], places[0]  # the column with intervals
     leaders = {r.navigator: r for r in records if _place(r) == wide}
     leaders = {r.navigator: leaders.get(r.navigator, r) for r in records}
-    priced = first.track == PRICE
+    priced = first.price is not None
     idle = {r.navigator for r in leaders.values() if priced and r.note == NO_MAP}
     names = [name for name in by_merit(leaders) if name not in idle]
     worse = {_place(r) for r in records if (r.rank_low or 0) > 1}
@@ -77,24 +86,30 @@ def _heading(place: Place, places: Sequence[Place]) -> str:
 
 
 def _title(records: Sequence[Record], places: Sequence[Place]) -> str:
-    """Return the caption: the metric, the agents, the track, and the meaning of the numbers."""
+    """Return the caption: the metric, the agents, the condition, and what the numbers mean."""
     first = records[0]
-    priced = first.track == PRICE
-    where = "track known less track unknown" if priced else f"track {first.track}"
+    where = _where(first)
     where += "" if first.split == "test" else f", split {first.split}"
     where += f", {counted(first.rehearsal, 'rehearsal')} granted" if first.rehearsal else ""
     counts = {r.episodes for r in records if r.episodes and r.scenario != ALL}
     worlds = counted(counts.pop(), "world") if len(counts) == 1 else "the worlds"
     several = f"each scenario, and over all scenarios with {INTERVAL}"
     of = several if len(places) > 1 else f"{places[0][1]}, with {INTERVAL}"
-    better = "" if priced else BETTER[first.better]
+    better = "" if first.price else BETTER[first.better]
     return f"{first.metric}{better} of {first.role}s, {where}: means over {worlds} of {of}"
 
 
+def _where(r: Record) -> str:
+    """Return the condition; for a price both sides of it."""
+    if r.price is None:
+        return described(r.track, r.perception)
+    return " less ".join(described(*side) for side in r.price.sides(r))
+
+
 def _name(r: Record) -> tuple[str, ...]:
-    track = "price" if r.track == PRICE else r.track
+    where = price_name(r.price, r) if r.price else (condition(r.track, r.perception),)
     grant = f"rehearsal-{r.rehearsal}" if r.rehearsal else ""
-    return r.metric, track, r.role, "" if r.split == "test" else r.split, grant
+    return r.metric, *where, r.role, "" if r.split == "test" else r.split, grant
 
 
 def _notes(leaders: Sequence[Record], idle: set[str]) -> tuple[str, ...]:
@@ -103,10 +118,10 @@ def _notes(leaders: Sequence[Record], idle: set[str]) -> tuple[str, ...]:
     for r in leaders:
         if r.note and not r.episodes:
             reasons.setdefault(r.note, []).append(r.navigator)
-        elif r.note and r.track != PRICE:
+        elif r.note and not r.price:
             reasons.setdefault(f"not ranked ({r.note})", []).append(r.navigator)
     notes = [f"{reason}: {', '.join(names)}." for reason, names in reasons.items()]
-    notes += failures_and_remarks([r for r in leaders if r.track != PRICE])
+    notes += failures_and_remarks([r for r in leaders if not r.price])
     notes += [f"{r.metric} of {r.navigator} {r.fault}." for r in leaders if r.fault]
     if idle:
         notes.append(f"{NO_MAP}, so that there is no difference: {', '.join(sorted(idle))}.")

@@ -13,6 +13,7 @@ from benchnav.leaderboard.rendering.long_format import as_csv, as_json
 from benchnav.leaderboard.statistics.comparison import Comparison
 from benchnav.leaderboard.statistics.head_to_head import Duel
 from benchnav.metrics.metric import Metric
+from benchnav.scenario.condition import described
 from benchnav.text.plural import counted
 
 FORMATS = ("markdown", "csv", "json")
@@ -69,7 +70,7 @@ def outcome(found: Sequence[Comparison]) -> str:
 def place(c: Comparison, *, role: bool, split: bool) -> str:
     """Return the place of a comparison, ``leaders/dynamic@1, track unknown (100 worlds)``."""
     scenario = "all scenarios" if c.scenario == ALL else c.scenario
-    parts = [scenario, f"track {c.track}"]
+    parts = [scenario, described(c.track, c.perception)]
     parts += [f"{c.role}s"] if role else []
     parts += [f"split {c.split}"] if split else []
     return f"{', '.join(parts)} ({counted(c.worlds, 'world')})"

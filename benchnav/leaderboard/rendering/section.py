@@ -9,7 +9,7 @@ from benchnav.leaderboard.rendering.cell import Cell
 class Section:
     """A table: title, headings, rows, and the notes below it."""
 
-    chapter: str  # shared by adjacent tables: a track, or the price of ignorance
+    chapter: str  # shared by adjacent tables: a condition, or a price
     title: str
     name: tuple[str, ...]  # distinguishes the table from all others; parts may be empty
     headings: tuple[Cell, ...]

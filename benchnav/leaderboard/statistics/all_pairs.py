@@ -32,10 +32,10 @@ Pair = tuple[str, str]
 
 @dataclass
 class _Found:
-    """The comparisons of one pair, and the number of its scenarios by split, track and role."""
+    """The comparisons of one pair, and the number of its scenarios by `_place`."""
 
     comparisons: list[Comparison] = field(default_factory=list)
-    scenarios: dict[tuple[str, str, str], int] = field(default_factory=dict)
+    scenarios: dict[tuple[str, str, str, str], int] = field(default_factory=dict)
 
 
 def duels(
@@ -62,25 +62,27 @@ def duels(
             yield duel(rows, metrics, names, *pair, gaps)
             continue
         comparisons = found[pair].comparisons if pair in found else []
-        comparisons.sort(key=lambda c: (order[c.metric], c.split, c.track, c.role))  # stable
+        comparisons.sort(key=lambda c: (order[c.metric], *_place(c)))  # stable
         notes = absences(_strata_of(every, pair), *pair, gaps)
         yield Duel(*pair, as_family(comparisons, metrics), tuple(notes))
 
 
-def notes_by_track(
+def notes_by_condition(
     results: pa.Table,
     metrics: Mapping[str, Metric],
-    tracks: Sequence[str],
+    conditions: Sequence[tuple[str, str]],
     gaps: Sequence[NotApplicable] = (),
 ) -> dict[Pair, list[list[str]]]:
-    """Return for every two navigators the notes of `Duel` on each of the tracks alone."""
+    """Return for every two navigators the notes of `Duel` on each (track, perception) alone."""
     every = strata(results, metrics, mixed=True)
     navigators = sorted(results["navigator"].unique().to_pylist())
     found: dict[Pair, list[list[str]]] = {}
     for pair in combinations(navigators, 2):
         shared = _strata_of(every, pair)
-        each = ([s for s in shared if s.track == track] for track in tracks)
-        found[pair] = [absences(chosen, *pair, gaps) for chosen in each]
+        found[pair] = [
+            absences([s for s in shared if (s.track, s.perception) == wanted], *pair, gaps)
+            for wanted in conditions
+        ]
     return found
 
 
@@ -91,14 +93,19 @@ def _all_comparisons(every: Sequence[Stratum], metrics: Sequence[Metric]) -> dic
             pair = found.setdefault((c.first, c.second), _Found())
             pair.comparisons.append(c)
             if c.metric == metrics[0].name:
-                place = s.split, s.track, s.role
+                place = _place(s)
                 pair.scenarios[place] = pair.scenarios.get(place, 0) + 1
-    for place, group in groupby(every, key=lambda s: (s.split, s.track, s.role)):
+    for place, group in groupby(every, key=_place):
         for c in _over_all(align(list(group)), metrics):
             held = found.get((c.first, c.second))
             if held is not None and held.scenarios.get(place, 0) > 1:
                 held.comparisons.append(c)
     return found
+
+
+def _place(of: Stratum | Comparison) -> tuple[str, str, str, str]:
+    """Return what the scenarios of a mean share: split, track, perception and role."""
+    return of.split, of.track, of.perception, of.role
 
 
 def _in_one(s: Stratum, metrics: Sequence[Metric]) -> Iterator[Comparison]:
@@ -113,7 +120,7 @@ def _in_one(s: Stratum, metrics: Sequence[Metric]) -> Iterator[Comparison]:
 
 
 def _over_all(group: Sequence[Stratum], metrics: Sequence[Metric]) -> Iterator[Comparison]:
-    """Yield the comparisons of all pairs over the scenarios of one split, track and role."""
+    """Yield the comparisons of all pairs over the scenarios of one split, condition and role."""
     s = group[0]
     if len(s.navigators) < 2:
         return
@@ -128,6 +135,7 @@ def _over_all(group: Sequence[Stratum], metrics: Sequence[Metric]) -> Iterator[C
             second=s.navigators[j],
             scenario=ALL,
             track=s.track,
+            perception=s.perception,
             role=s.role,
             metric=columns[k].name,
             worlds=int(found.worlds[k]),

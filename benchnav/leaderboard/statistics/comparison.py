@@ -26,6 +26,7 @@ class Comparison:
     second: str
     scenario: str  # or `benchnav.leaderboard.record.ALL`
     track: str
+    perception: str = "exact"
     role: str
     metric: str
     worlds: int  # worlds that both attempted and in which both have a value

@@ -49,6 +49,7 @@ class Point:
     horizon: float  # [s] of the episodes
     dt: float  # [s]
     rehearsal: int = 0  # rehearsals of each world that the navigator was granted
+    perception: str = "exact"
 
 
 @dataclass(frozen=True)
@@ -75,9 +76,10 @@ class Attempt:
     rehearsal: int  # rehearsals granted to the navigator
     seed: int
     times: FloatArray  # (N,) [s] of success; inf without success
+    perception: str = "exact"
 
 
-Key = tuple[str, str, str, str, str, float, float, int, str]
+Key = tuple[str, str, str, str, str, str, float, float, int, str]
 Worlds = dict[int, FloatArray]  # seed → success times
 
 
@@ -91,7 +93,7 @@ def attempts_of(episode: Episode) -> Iterator[Attempt]:
             yield Attempt(
                 identity.navigator, identity.scenario, identity.track, role.name.lower(),
                 identity.split, identity.scenario_hash, clock.horizon, clock.dt,
-                episode.rehearsals, identity.seed, times[members],
+                episode.rehearsals, identity.seed, times[members], identity.perception,
             )  # fmt: skip
 
 
@@ -99,9 +101,9 @@ def horizon_curves(episodes: Iterable[Episode], points: int = POINTS) -> tuple[P
     """Return success against horizon at ``points`` even times, from complete episodes.
 
     The cumulative incidence of success: agents that collided, failed or timed out stay in the
-    denominator. There is one curve for each navigator × scenario × track × role, and separate
-    ones for each split, scenario hash, horizon, time step or number of rehearsals. A repeated
-    episode counts once. Background agents are left out.
+    denominator. There is one curve for each navigator × scenario × condition × role, and
+    separate ones for each split, scenario hash, horizon, time step or number of rehearsals. A
+    repeated episode counts once. Background agents are left out.
     """
     return curves_of((a for episode in episodes for a in attempts_of(episode)), points)
 
@@ -111,8 +113,8 @@ def curves_of(attempts: Iterable[Attempt], points: int = POINTS) -> tuple[Point,
     curves: dict[Key, Worlds] = {}
     for a in attempts:
         key = (
-            a.split, a.track, a.scenario, a.role, a.scenario_hash, a.horizon, a.dt, a.rehearsal,
-            a.navigator,
+            a.split, a.track, a.perception, a.scenario, a.role, a.scenario_hash, a.horizon, a.dt,
+            a.rehearsal, a.navigator,
         )  # fmt: skip
         curves.setdefault(key, {})[a.seed] = a.times
     return tuple(p for key in sorted(curves) for p in _horizon_curve(key, curves[key], points))
@@ -125,7 +127,7 @@ def _times(horizon: float, points: int) -> FloatArray:
 
 
 def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
-    split, track, scenario, role, digest, horizon, dt, rehearsal, navigator = key
+    split, track, perception, scenario, role, digest, horizon, dt, rehearsal, navigator = key
     times = [worlds[seed] for seed in sorted(worlds)]
     every = np.array([success_by_horizon(each, _times(horizon, points)) for each in times])
     value, places = np.unique(every, axis=1, return_inverse=True)  # few times differ
@@ -136,7 +138,7 @@ def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
         yield Point(
             navigator, scenario, track, role, success.name, HORIZON, "s", float(time),
             float(found.value[k]), float(found.low[k]), float(found.high[k]), "", len(value),
-            split, digest, horizon, dt, rehearsal,
+            split, digest, horizon, dt, rehearsal, perception,
         )  # fmt: skip
 
 
@@ -161,19 +163,19 @@ def parameter_curves(
                 navigator, where.scenario, s.track, s.role, metric.name, axis, where.unit, where.x,
                 float(mean.value[n]), float(mean.low[n]), float(mean.high[n]), metric.unit,
                 int(s.attempted[:, n].sum()), s.split, s.scenario_hash, s.horizon, s.dt,
-                s.rehearsal,
+                s.rehearsal, s.perception,
             )
             for n, navigator in enumerate(s.navigators)
         ]  # fmt: skip
     return tuple(sorted(found, key=lambda p: (*place(p), p.navigator, p.x)))
 
 
-Place = tuple[str, str, str, str, float, float, int]
+Place = tuple[str, str, str, str, str, float, float, int]
 
 
 def place(p: Point) -> Place:
-    """Return the key of a picture: curves of one scenario, track and role share one."""
-    return p.split, p.scenario, p.track, p.role, p.horizon, p.dt, p.rehearsal
+    """Return the key of a picture: curves of one scenario, condition and role share one."""
+    return p.split, p.scenario, p.track, p.perception, p.role, p.horizon, p.dt, p.rehearsal
 
 
 def panels(points: Iterable[Point]) -> Iterator[list[Point]]:

@@ -31,7 +31,7 @@ class Duel:
 
     first: str
     second: str
-    comparisons: tuple[Comparison, ...]  # by metric, then split, track, role and scenario
+    comparisons: tuple[Comparison, ...]  # by metric, split, condition, role, scenario
     notes: tuple[str, ...]
 
 
@@ -43,10 +43,11 @@ def duel(
     second: str,
     gaps: Sequence[NotApplicable] = (),
 ) -> Duel:
-    """Compare ``first`` − ``second`` by the metrics ``names``, in every scenario, track and role.
+    """Compare ``first`` − ``second`` by the metrics ``names``, wherever both were run.
 
-    If both were run in several scenarios of a track, also compare over all of these with equal
-    weights. All comparisons form one family. ``gaps`` are cells that could not be run.
+    Each scenario, track, perception and role is compared on its own. If both were run in several
+    scenarios under one condition, also compare over all of these with equal weights. All
+    comparisons form one family. ``gaps`` are cells that could not be run.
     Raises UsageError if one of the two is not in ``results``, or they share no world.
     """
     _require(results, first, second)
@@ -66,10 +67,10 @@ def duel(
         )
     chosen = [metrics[name] for name in names]
     every = [c for s in met for c in _in_one(s, first, second, chosen)]
-    for _, group in groupby(met, key=lambda s: (s.split, s.track, s.role)):
+    for _, group in groupby(met, key=lambda s: (s.split, s.track, s.perception, s.role)):
         every += _over_all(list(group), first, second, chosen)
     order = {name: place for place, name in enumerate(names)}
-    every.sort(key=lambda c: (order[c.metric], c.split, c.track, c.role))  # stable
+    every.sort(key=lambda c: (order[c.metric], c.split, c.track, c.perception, c.role))  # stable
     return Duel(first, second, as_family(every, metrics), tuple(notes))
 
 
@@ -106,7 +107,7 @@ def _in_one(s: Stratum, first: str, second: str, metrics: Sequence[Metric]) -> l
 def _over_all(
     group: list[Stratum], first: str, second: str, metrics: Sequence[Metric]
 ) -> Iterator[Comparison]:
-    """Compare over the scenarios of one split, track and role, if there are several."""
+    """Compare over the scenarios of one split, condition and role, if there are several."""
     if len(group) < 2:
         return
     sides = [side_by_side(s, *_sides(s, first, second, len(metrics)), metrics) for s in group]
@@ -119,6 +120,7 @@ def _over_all(
             second=second,
             scenario=ALL,
             track=s.track,
+            perception=s.perception,
             role=s.role,
             metric=metric.name,
             worlds=int(found.worlds[m]),

@@ -5,6 +5,7 @@ from itertools import groupby
 
 from benchnav.leaderboard.record import NotApplicable
 from benchnav.leaderboard.statistics.strata import Stratum
+from benchnav.scenario.condition import condition
 from benchnav.text.plural import counted
 
 
@@ -29,25 +30,33 @@ def absences(
 def _single(
     found: Sequence[Stratum], names: tuple[str, str], gaps: Sequence[NotApplicable]
 ) -> Iterator[str]:
-    """Yield a sentence per reason about scenarios and tracks in which only one was run."""
-    reasons = {(gap.navigator, gap.scenario, gap.track): gap.reason for gap in gaps}
+    """Yield a sentence per reason about scenarios and conditions in which only one was run."""
+    reasons = {(gap.navigator, *_where(gap)): gap.reason for gap in gaps}
     single: list[tuple[str, str, str]] = []  # navigator, reason of the other, place
     for s in found:
         if len(s.navigators) == 2:
             continue
         (name,) = s.navigators
         other = names[name == names[0]]
-        reason = reasons.get((other, s.scenario, s.track), "was not run there")
+        reason = reasons.get((other, *_where(s)), "was not run there")
         if any(other in t.navigators and _place(t) == _place(s) for t in found):
             reason = "ran other worlds: horizon, time step or hash differ"
-        single.append((name, f"{other} {reason}", f"{s.scenario} ({s.track})"))
+        single.append((name, f"{other} {reason}", _shown(s)))
     for (name, reason), places in groupby(sorted(set(single)), key=lambda row: row[:2]):
         where = ", ".join(place for _, _, place in places)
         yield f"Only {name} in {where}: {reason}."
 
 
-def _place(s: Stratum) -> tuple[str, str, str, str]:
-    return s.split, s.track, s.role, s.scenario
+def _where(of: Stratum | NotApplicable) -> tuple[str, str, str]:
+    return of.scenario, of.track, of.perception
+
+
+def _shown(s: Stratum) -> str:
+    return f"{s.scenario} ({condition(s.track, s.perception)})"
+
+
+def _place(s: Stratum) -> tuple[str, ...]:
+    return s.split, s.role, *_where(s)
 
 
 def _uneven(found: Sequence[Stratum]) -> Iterator[str]:
@@ -57,7 +66,7 @@ def _uneven(found: Sequence[Stratum]) -> Iterator[str]:
         both = int(s.attempted.all(axis=1).sum())
         if len(s.navigators) == 2 and both < count.max():
             counts = " and ".join(f"{n} in {k}" for n, k in zip(s.navigators, count, strict=True))
-            yield f"{s.scenario} ({s.track}): {counts} worlds, compared in the {both} of both."
+            yield f"{_shown(s)}: {counts} worlds, compared in the {both} of both."
 
 
 def _failed(found: Sequence[Stratum]) -> Iterator[str]:
@@ -68,6 +77,6 @@ def _failed(found: Sequence[Stratum]) -> Iterator[str]:
         for name, failures in zip(s.navigators, s.failed.sum(axis=0), strict=True):
             if failures:
                 yield (
-                    f"{s.scenario} ({s.track}): {name} failed in {counted(failures, 'world')}:"
+                    f"{_shown(s)}: {name} failed in {counted(failures, 'world')}:"
                     " a failure counts as the worst possible value."
                 )

@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 def comparisons(
     results: pa.Table, metrics: Mapping[str, Metric], metric: str
 ) -> tuple[Comparison, ...]:
-    """Compare every pair of navigators on one metric, in every scenario, track and role.
+    """Compare every pair of navigators on one metric, in every scenario, condition and role.
 
-    The pairs in one scenario, track and role are a family. If one of a pair
+    The pairs in one scenario, condition and role are a family. If one of a pair
     rehearsed, the comparison gives the rehearsals of both, and has no verdict.
     ``results`` has the schema `benchnav.store.parts.results.RESULTS`. Raises UsageError for a
     metric that is not among ``metrics``, or if one label is used for two navigators.
@@ -61,6 +61,7 @@ def differences(
             second=s.navigators[j],
             scenario=s.scenario,
             track=s.track,
+            perception=s.perception,
             role=s.role,
             metric=metrics[c].name,
             worlds=int(found.worlds[c]),

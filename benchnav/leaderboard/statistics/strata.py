@@ -16,7 +16,7 @@ from benchnav.metrics.metric import Metric
 if TYPE_CHECKING:
     import pyarrow as pa
 
-KEYS = ("split", "track", "role", "scenario", "scenario_hash", "horizon", "dt")
+KEYS = ("split", "track", "perception", "role", "scenario", "scenario_hash", "horizon", "dt")
 GRANT = "rehearsal"  # the key that separates entries with different numbers of rehearsals
 COSTS = ("rehearsal_decisions", "rehearsal_seconds")
 MIXED = -1  # replaces the number if entries with different grants are together
@@ -24,13 +24,14 @@ MIXED = -1  # replaces the number if entries with different grants are together
 
 @dataclass(frozen=True, eq=False)
 class Stratum:
-    """Episodes with the same split, track, role, scenario, geometry, horizon, step and grant.
+    """Episodes with the same split, condition, role, scenario, geometry, horizon, step and grant.
 
     S seeds, N navigators, M metrics.
     """
 
     split: str
     track: str
+    perception: str
     role: str
     scenario: str
     scenario_hash: str
@@ -48,7 +49,7 @@ class Stratum:
     cost: FloatArray  # (S, N, 2) decisions and seconds [s] of rehearsals; NaN if not attempted
 
     def rng(self, purpose: str) -> np.random.Generator:
-        """Return a generator of this scenario, equal in every track and table."""
+        """Return a generator of this scenario, equal in every condition and table."""
         own = (self.scenario, self.scenario_hash, self.horizon, self.dt)
         key = "\0".join([purpose, *map(str, own)])
         return np.random.default_rng(list(sha256(key.encode()).digest()))

@@ -31,6 +31,7 @@ class EpisodeSummary:
     split: str
     variant: str  # `variant_name` of its worlds
     tracks: tuple[str, ...]  # an episode without a map stands for several
+    perception: str
     seed: int
     attempts: tuple[Attempt, ...]  # by role, in the track of the stored episode
     shares: tuple[tuple[str, tuple[float, ...]], ...]  # role → share of agents per `Outcome`
@@ -55,6 +56,7 @@ def summarise(episode: Episode, tracks: tuple[str, ...]) -> EpisodeSummary:
         split=identity.split,
         variant=variant_name(identity.scenario_hash, clock.horizon, clock.dt),
         tracks=tracks,
+        perception=identity.perception,
         seed=identity.seed,
         attempts=tuple(attempts_of(episode)),
         shares=tuple(shares),

@@ -73,4 +73,7 @@ def partners(
 
 
 def _is_in(summary: EpisodeSummary, view: View) -> bool:
-    return view.track in summary.tracks and view.split == summary.split
+    return view.track in summary.tracks and (view.split, view.perception) == (
+        summary.split,
+        summary.perception,
+    )

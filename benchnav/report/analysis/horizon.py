@@ -13,10 +13,10 @@ class HorizonCurves:
     def __init__(self, summaries: Iterable[EpisodeSummary]) -> None:
         found = list(summaries)
         self._points = curves_of(attempt for s in found for attempt in s.attempts)
-        self._tracks: dict[tuple[str, str], set[str]] = {}  # navigator, stored track → tracks
+        self._tracks: dict[tuple[str, str, str], set[str]] = {}  # by navigator, stored condition
         for s in found:
             for attempt in s.attempts:
-                key = attempt.navigator, attempt.track
+                key = attempt.navigator, attempt.track, attempt.perception
                 self._tracks.setdefault(key, set()).update(s.tracks)
 
     def panels(self, view: View) -> list[Sequence[Point]]:
@@ -24,8 +24,8 @@ class HorizonCurves:
         chosen = [
             p
             for p in self._points
-            if (p.split, p.role) == (view.split, view.role)
-            and view.track in self._tracks[p.navigator, p.track]
+            if (p.split, p.perception, p.role) == (view.split, view.perception, view.role)
+            and view.track in self._tracks[p.navigator, p.track, p.perception]
         ]
         groups: dict[tuple[str, float, float], list[Point]] = {}
         for p in chosen:

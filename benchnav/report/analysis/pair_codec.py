@@ -10,6 +10,7 @@ from benchnav.leaderboard.rendering.digits import RATE_DECIMALS
 from benchnav.leaderboard.statistics.comparison import Comparison, least_worlds
 from benchnav.leaderboard.statistics.head_to_head import Duel
 from benchnav.metrics.metric import Metric
+from benchnav.scenario.condition import condition
 
 FIGURES = 5  # of a number
 VERDICTS = (
@@ -17,7 +18,7 @@ VERDICTS = (
     "not as equals",
 )  # fmt: skip
 Place = tuple[str, str, str, str]
-"""Scenario ("" for all), track, role, split."""
+"""Scenario ("" for all), condition, role, split."""
 
 
 @dataclass(eq=False)
@@ -32,7 +33,7 @@ class PairCodec:
 
         These are the indices of metric and place, the number of worlds, the difference, both ends
         of its interval, p after Holm's correction, and the index of the verdict. ``notes`` are
-        those of each track.
+        those of each condition.
         """
         family = max((c.family for c in duel.comparisons), default=0)
         rows = [self._row(c) for c in duel.comparisons]
@@ -40,7 +41,8 @@ class PairCodec:
         return {"family": family, "needed": needed, "notes": notes, "rows": rows}
 
     def _row(self, c: Comparison) -> list[float | None]:
-        place = "" if c.scenario == ALL else c.scenario, c.track, c.role, c.split
+        where = condition(c.track, c.perception)
+        place = "" if c.scenario == ALL else c.scenario, where, c.role, c.split
         index = self.places.setdefault(place, len(self.places))
         numbers = (rounded(x) for x in (c.difference, c.low, c.high, c.adjusted))
         metric = self.metrics.index(c.metric)

@@ -31,7 +31,7 @@ class ParameterCurves:
                 p
                 for p in self._points[axis]
                 if p.scenario == settings[scenario].scenario
-                and (p.split, p.track, p.role) == (view.split, view.track, view.role)
+                and View(p.split, p.track, p.role, p.perception) == view
             ]
             if len({p.x for p in chosen}) > 1:
                 found.append(chosen)

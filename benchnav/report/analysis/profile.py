@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from benchnav.leaderboard.record import ALL, PRICE, Record
+from benchnav.leaderboard.record import ALL, Record
 from benchnav.leaderboard.table import leaderboard
 from benchnav.metrics.metric import Metric
 from benchnav.report.analysis.view import View, view_of
@@ -39,7 +39,7 @@ def profile(
 
 def _means(records: Sequence[Record]) -> list[Record]:
     """Return the records over all scenarios, or those of the only scenario."""
-    held = [r for r in records if r.track != PRICE and r.episodes]
+    held = [r for r in records if not r.price and r.episodes]
     whole = [r for r in held if r.scenario == ALL]
     covered = {(view_of(r), r.navigator) for r in whole}
     return whole + [r for r in held if (view_of(r), r.navigator) not in covered]

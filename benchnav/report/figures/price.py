@@ -1,8 +1,8 @@
-"""The price of ignorance of one navigator, scenario by scenario."""
+"""A price of one navigator, scenario by scenario."""
 
 from collections.abc import Sequence
 
-from benchnav.leaderboard.record import ALL, Record
+from benchnav.leaderboard.record import ALL, IGNORANCE, Record
 from benchnav.leaderboard.rendering.cell import cell
 from benchnav.report.figure import plain
 from benchnav.report.figures.style import Figure, errors, rows_axis
@@ -12,10 +12,10 @@ WHOLE = "all scenarios"
 
 
 def price_figure(prices: Sequence[Record], style: LineStyle) -> Figure:
-    """Return the differences known − unknown of one metric, a row for each scenario.
+    """Return the differences of one metric, such as known − unknown, a row for each scenario.
 
-    ``prices`` come from `benchnav.report.analysis.knowledge.prices_of`, of one split and role.
-    Filled marks: the interval excludes 0.
+    ``prices`` come from `benchnav.report.analysis.price.prices_of`, of one split, role and
+    condition. Filled marks: the interval excludes 0.
     """
     shown = [r for r in prices if r.value == r.value and r.episodes]
     names = [WHOLE if r.scenario == ALL else plain(r.scenario) for r in shown]
@@ -33,7 +33,8 @@ def price_figure(prices: Sequence[Record], style: LineStyle) -> Figure:
         "text": [cell(r, interval=True, decided=False).text for r in shown],
         "hovertemplate": "%{y}<br>%{text}<extra></extra>",
     }]  # fmt: skip
-    title = f"{plain(shown[0].metric)}, known − unknown" if shown else ""
+    price = (shown[0].price or IGNORANCE) if shown else IGNORANCE
+    title = f"{plain(shown[0].metric)}, {price.first} − {price.second}" if shown else ""
     layout = {
         "xaxis": {"title": {"text": title}, "range": [-reach, reach], "zeroline": True},
         "yaxis": rows_axis(names), "showlegend": False,

@@ -74,6 +74,7 @@ def _lines(folder: RunFolder, manifest: Manifest) -> Iterator[tuple[str, str]]:
     yield "episodes", f"{total - missing} of {total}"
     yield "seeds", f"{suite['seeds'][0]} to {suite['seeds'][1] - 1}, split {suite['split']}"
     yield "tracks", ", ".join(map(str, suite["tracks"]))
+    yield "perception", ", ".join(suite.get("perception", ()))
     yield "commit of benchnav", _commit(origin)
     yield "processor", str(origin.get("processor", ""))
     yield "system", manifest.platform

@@ -8,13 +8,14 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from benchnav.leaderboard.from_runs import COMPARED
-from benchnav.leaderboard.statistics.all_pairs import duels, notes_by_track
+from benchnav.leaderboard.statistics.all_pairs import duels, notes_by_condition
 from benchnav.report.analysis.best import more_seeds
 from benchnav.report.analysis.pair_codec import VERDICTS, PairCodec, metric_fields
 from benchnav.report.figure import plain
 from benchnav.report.page import ASSETS, COMPARISON, Page, href
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
+from benchnav.scenario.condition import condition
 from benchnav.text.visible import visible
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def pages(data: ReportData) -> Iterator[Page]:
     codec = PairCodec(metrics)
     labels = sorted(set(values.results["navigator"].unique().to_pylist()))
     shown = values.results.filter(_named(values.results, metrics))
-    notes = notes_by_track(shown, values.metrics, data.tracks, values.not_applicable)
+    notes = notes_by_condition(shown, values.metrics, data.conditions, values.not_applicable)
     pairs = []
     for duel in duels(values.results, values.metrics, metrics, values.not_applicable):
         key = f"pair-{labels.index(duel.first)}-{labels.index(duel.second)}"
@@ -43,7 +44,7 @@ def pages(data: ReportData) -> Iterator[Page]:
         "metrics": [metric_fields(values.metrics[name]) for name in metrics],
         "places": list(codec.places),
         "verdicts": VERDICTS,
-        "tracks": data.tracks,
+        "tracks": [condition(*each) for each in data.conditions],
         "runs": runs,
     }
     body = fill(

@@ -12,11 +12,12 @@ from benchnav.report.line_style import LineStyle
 from benchnav.report.page import FAILURES, Page, replay_path
 from benchnav.report.report_data import ReportData, family_of
 from benchnav.report.template import fill
+from benchnav.scenario.condition import perception_of
 
 
 @dataclass(frozen=True)
 class Row:
-    """The failures of a navigator in a scenario and track."""
+    """The failures of a navigator in a scenario and condition."""
 
     found: Failures
     family: str
@@ -34,16 +35,22 @@ def pages(
     order = {s.identity: k for k, s in enumerate(data.scenarios)}
     ordered = sorted(
         failures,
-        key=lambda f: (order[f.scenario], data.tracks.index(f.track), place[f.navigator]),
+        key=lambda f: (
+            order[f.scenario],
+            data.conditions.index((f.track, f.perception)),
+            place[f.navigator],
+        ),
     )
     rows = [_row(data, f, replays) for f in ordered]
     body = fill(
         "failures.html",
         page=FAILURES, rows=rows, left_out=len(rows) - len(replays), run=_run(data, 0),
+        is_exact=data.is_exact,
         filters=[
             ("scenario", "Scenario", list(dict.fromkeys(r.found.scenario for r in rows)), None),
             ("family", "Family", sorted({r.family for r in rows}), None),
             ("track", "Track", list(dict.fromkeys(r.found.track for r in rows)), None),
+            ("perception", "Perception", sorted({r.found.perception for r in rows}), None),
             ("navigator", "Navigator", list(data.navigators), None),
         ],
     )  # fmt: skip
@@ -51,14 +58,15 @@ def pages(
 
 
 def _row(data: ReportData, f: Failures, replays: Collection[Cell]) -> Row:
-    has_replay = (f.navigator, f.scenario, f.track) in replays
+    has_replay = f.cell in replays
     words = [
         "benchnav", "replay", _run(data, _owner(data, f)), "--navigator", f.navigator,
-        "--scenario", f.scenario, "--track", f.track, "--seed", str(f.seed),
+        "--scenario", f.scenario, "--track", f.track,
+        *([] if data.is_exact else ["--perception", f.perception]), "--seed", str(f.seed),
     ]  # fmt: skip
     return Row(
         f, family_of(f.scenario), data.styles[f.navigator], f.failed / f.episodes,
-        replay_path(f.navigator, f.scenario, f.track, f.seed) if has_replay else None,
+        replay_path(f.navigator, f.scenario, f.track, f.seed, f.perception) if has_replay else None,
         shlex.join(words),
     )  # fmt: skip
 
@@ -68,8 +76,11 @@ def _owner(data: ReportData, f: Failures) -> int:
     for number, folder in enumerate(data.folders):
         for cell in folder.manifest.cells:
             tracks = (*cell.get("also", ()), cell["track"])
-            names = cell["navigator"], cell["scenario"]
-            if names == (f.navigator, f.scenario) and f.track in tracks and not cell["reason"]:
+            cells = [
+                (cell["navigator"], cell["scenario"], track, perception_of(cell))
+                for track in tracks
+            ]
+            if f.cell in cells and not cell["reason"]:
                 return number
     return 0
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 
 from benchnav.leaderboard.columns import choose
-from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICE, Record
+from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Record
 from benchnav.leaderboard.rendering.cell import Cell, column, rank, training
 from benchnav.leaderboard.rendering.layout import legend
 from benchnav.leaderboard.statistics.order import by_merit, leading
@@ -18,6 +18,7 @@ from benchnav.report.line_style import LineStyle
 from benchnav.report.page import LEADERBOARD, Page
 from benchnav.report.report_data import ReportData, family_of
 from benchnav.report.template import fill
+from benchnav.scenario.terms import PERCEPTIONS
 from benchnav.store.runs.spans import count
 from benchnav.text.plural import counted
 
@@ -47,7 +48,7 @@ class MetricCell:
 
 @dataclass(frozen=True)
 class Row:
-    """A navigator in one scenario, track and role."""
+    """A navigator in one scenario, condition and role."""
 
     navigator: str
     style: LineStyle
@@ -57,6 +58,7 @@ class Row:
     variant: str  # what distinguishes it from another row of the same names; "" for nothing
     family: str
     track: str
+    perception: str
     role: str
     rank: str  # why there is no result, for a navigator that cannot run here
     rank_order: float
@@ -81,6 +83,7 @@ def pages(data: ReportData) -> Iterator[Page]:
         ],
         filters=[
             ("track", "Track", list(dict.fromkeys(r.track for r in rows)), 0),
+            ("perception", "Perception", list(dict.fromkeys(r.perception for r in rows)), 0),
             ("family", "Family", sorted({r.family for r in rows if r.family}), None),
             ("scenario", "Scenario", list(dict.fromkeys(r.scenario for r in rows)), 0),
             ("role", "Role", [role for role in ROLES if role in {r.role for r in rows}], 0),
@@ -88,7 +91,7 @@ def pages(data: ReportData) -> Iterator[Page]:
         has_training=any(r.training for r in rows),
         best=best, more=list(more_seeds(data.folders)) if any(b.is_tied for _, b in best) else (),
         summary=_summary(data), verification=_verification(data),
-        any_verified=any(r.is_verified for r in rows),
+        is_exact=data.is_exact, any_verified=any(r.is_verified for r in rows),
     )  # fmt: skip
     yield Page(LEADERBOARD, "Leaderboard", body, LEADERBOARD, has_tables=True)
 
@@ -98,6 +101,7 @@ def _summary(data: ReportData) -> str:
     sizes = (
         counted(len(data.navigators), "navigator"), counted(len(data.scenarios), "scenario"),
         f"{counted(len(data.tracks), 'track')} ({', '.join(data.tracks)})",
+        *([] if data.is_exact else [f"{' and '.join(data.perceptions)} perception"]),
     )  # fmt: skip
     missing = sum(count(seeds) for folder in data.folders for _, seeds in folder.missing())
     gap = f" The runs are incomplete: {counted(missing, 'episode')} missing." if missing else ""
@@ -123,11 +127,16 @@ def leaderboard_rows(data: ReportData) -> Iterator[Row]:
 
 
 def _groups(data: ReportData) -> list[list[Record]]:
-    """Return the records that are ranked together; those over all scenarios first in a track."""
-    records = [r for r in data.board.records if r.track != PRICE]
+    """Return the records that are ranked together; first those over all scenarios."""
+    records = [r for r in data.board.records if not r.price]
     records = [r for r in records if r.scenario != ALL_INTERQUARTILE]
     order = {track: place for place, track in enumerate(data.tracks)}
-    records.sort(key=lambda r: (r.split, order.get(r.track, len(order)), r.scenario != ALL))
+    records.sort(
+        key=lambda r: (
+            r.split, order.get(r.track, len(order)), PERCEPTIONS.index(r.perception),
+            r.scenario != ALL,
+        )
+    )  # fmt: skip
     return [list(group) for _, group in groupby(records, key=_key)]
 
 
@@ -148,11 +157,12 @@ def _best(data: ReportData) -> Iterator[tuple[str, Best]]:
 def _key(r: Record) -> tuple[object, ...]:
     """Return the key of navigators that are ranked together."""
     horizon = "" if math.isnan(r.horizon) else f"{r.horizon} {r.dt}"
-    return r.split, r.track, r.scenario, r.scenario_hash, horizon, r.role, r.rehearsal
+    where = r.track, r.perception, r.scenario, r.scenario_hash
+    return r.split, *where, horizon, r.role, r.rehearsal
 
 
 def _names(r: Record) -> tuple[str, ...]:
-    return r.track, r.scenario, r.role
+    return r.track, r.perception, r.scenario, r.role
 
 
 def _rows(data: ReportData, group: Sequence[Record], is_unique: bool) -> Iterator[Row]:
@@ -171,7 +181,8 @@ def _rows(data: ReportData, group: Sequence[Record], is_unique: bool) -> Iterato
             is_verified=any(at[navigator, m].verified for m in held if (navigator, m) in at),
             scenario=OVERALL if whole else r.scenario, page="" if whole else r.scenario,
             variant="" if is_unique else _variant(r),
-            family="" if whole else family_of(r.scenario), track=r.track, role=r.role,
+            family="" if whole else family_of(r.scenario), track=r.track,
+            perception=r.perception, role=r.role,
             rank=rank(r).text if r.episodes else r.note,
             rank_order=_LAST if r.rank_low is None else r.rank_low,
             cells=tuple(

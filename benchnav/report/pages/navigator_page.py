@@ -8,13 +8,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 from urllib.parse import urlencode
 
-from benchnav.leaderboard.record import Record
+from benchnav.leaderboard.record import IGNORANCE, PRICES, Price, Record
 from benchnav.leaderboard.rendering.cell import cell, column
 from benchnav.metrics.success import success
 from benchnav.report.analysis.configuration import facts_of, parameters_of, training_text
 from benchnav.report.analysis.cost import MEANINGS, costs
 from benchnav.report.analysis.failures import OutcomeShares, outcome_shares
-from benchnav.report.analysis.knowledge import QUESTION, price_sentence, prices_of
+from benchnav.report.analysis.price import WORDS, price_sentence, prices_of
 from benchnav.report.analysis.profile import Profile, profile
 from benchnav.report.analysis.view import View, title_of, views_of
 from benchnav.report.figure import figure_html
@@ -28,6 +28,7 @@ from benchnav.report.pages.grouping import grouped
 from benchnav.report.pages.records import records_with
 from benchnav.report.report_data import ReportData
 from benchnav.report.template import fill
+from benchnav.scenario.condition import condition
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -144,8 +145,12 @@ def _page(shared: _Shared, name: str) -> Page:
         trained=bool(entry.get("training")),
         parameters=parameters_of(entry["config"]),
         profiles=list(_profiles(shared, name)),
-        question=QUESTION,
-        prices=list(_prices(shared, name)),
+        prices=[
+            (price.name.capitalize(), WORDS[price], found)
+            for price in PRICES
+            for found in [list(_prices(shared, name, price))]
+            if found or price is IGNORANCE or not shared.data.is_exact
+        ],
         costs=list(_costs(shared, name)),
         outcomes=list(_outcomes(shared, name)),
         reasons=list(_reasons(shared, name)),
@@ -166,21 +171,22 @@ def _profiles(shared: _Shared, name: str) -> Iterator[Markup]:
             )  # fmt: skip
 
 
-def _prices(shared: _Shared, name: str) -> Iterator[tuple[str, Markup | None]]:
-    """Yield a sentence and a figure for each split and role."""
-    data = shared.data
-    found = prices_of(shared.records, name, success.name)
-    for key, records in grouped(found, lambda r: f"{r.split}\0{r.role}").items():
+def _prices(shared: _Shared, name: str, price: Price) -> Iterator[tuple[str, Markup | None]]:
+    """Yield a sentence and a figure for each split, condition and role."""
+    data, words = shared.data, WORDS[price]
+    found = prices_of(shared.records, name, success.name, price)
+    groups = grouped(found, lambda r: f"{r.split}\0{price.other(r)}\0{r.role}")
+    for key, records in groups.items():
         text = price_sentence(records[0], data.values.metrics[success.name])
         shown = [r for r in records if r.episodes and r.value == r.value]
         if len(shown) < 2 or all(r.note == records[0].note != "" for r in records):
             yield text, None
             continue
-        role = key.partition("\0")[2]
+        role = key.rpartition("\0")[2]
         yield text, figure_html(
             price_figure(records, data.styles[name]), height=height_of(len(shown)),
-            label=f"Price of ignorance of {name}, {role}s",
-            caption="To the right of 0 the map helps. Filled: the interval excludes 0.",
+            label=f"{price.name.capitalize()} of {name}, {role}s",
+            caption=f"To the right of 0 {words.above}. Filled: the interval excludes 0.",
         )  # fmt: skip
 
 
@@ -228,7 +234,10 @@ def _outcomes(shared: _Shared, name: str) -> Iterator[Markup]:
 
 
 def _reasons(shared: _Shared, name: str) -> Iterator[tuple[str, list[str]]]:
-    """Yield why cells could not be run, and these scenarios and tracks."""
+    """Yield why cells could not be run, and these scenarios and conditions."""
     gaps = [gap for gap in shared.data.values.not_applicable if gap.navigator == name]
     for reason, found in grouped(gaps, lambda gap: gap.reason).items():
-        yield reason, sorted({f"{gap.scenario} ({gap.track})" for gap in found})
+        yield (
+            reason,
+            sorted({f"{gap.scenario} ({condition(gap.track, gap.perception)})" for gap in found}),
+        )

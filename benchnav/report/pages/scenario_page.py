@@ -30,6 +30,7 @@ from benchnav.report.pages.records import records_with
 from benchnav.report.pages.table import metric_table
 from benchnav.report.report_data import ReportData, StoredScenario
 from benchnav.report.template import fill
+from benchnav.scenario.condition import described
 
 if TYPE_CHECKING:
     from markupsafe import Markup
@@ -168,7 +169,8 @@ class _Scenario:
 
     def _section(self, view: View) -> tuple[list[Markup], Markup]:
         """Return the figures and the table of one view."""
-        where = f"{self.scenario.identity}, track {view.track}, {view.role}s"
+        condition = described(view.track, view.perception)
+        where = f"{self.scenario.identity}, {condition}, {view.role}s"
         values = self._of(view, success.name)
         figures = []
         if any(r.value == r.value for r in values):

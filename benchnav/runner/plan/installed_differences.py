@@ -17,6 +17,7 @@ from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.suite_file import SuiteFile, parse_seeds, suite_names, suite_path
 from benchnav.scenario.catalogue import find
 from benchnav.scenario.catalogue import names as scenario_names
+from benchnav.scenario.condition import perceptions_of
 from benchnav.store.runs.manifest import Manifest
 from benchnav.text.plural import counted
 from benchnav.text.visible import shortened
@@ -124,7 +125,7 @@ def _numbers(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
 
 
 def _members(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
-    """Yield the scenarios, tracks and navigators that are missing, added or changed."""
+    """Yield scenarios, tracks, perceptions and navigators that are missing, added or changed."""
     suite = manifest.suite
     own = {label_of(spec): spec for spec in here.navigators}
     entries = {str(e["label"]): e["config"] for e in suite.get("navigators", ())}
@@ -133,6 +134,7 @@ def _members(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
         ("scenario", {_named(e["scenario"]) for e in suite["scenarios"]},
          {_named(name) for name in here.scenarios}),
         ("track", set(map(str, suite.get("tracks", ()))), set(here.tracks)),
+        ("perception", set(perceptions_of(suite)), set(here.perception)),
         ("navigator", set(entries) - changed, set(own)),
     ):  # fmt: skip
         kept, others = run & installed, sorted(run - installed)

@@ -1,4 +1,4 @@
-"""Jobs: the cells of a suite, each with one scenario, track and navigator, for all seeds."""
+"""Jobs: the cells of a suite, each with one scenario, condition and navigator, for all seeds."""
 
 import hashlib
 import json
@@ -6,12 +6,13 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any
 
-from benchnav.generation.build import sensing_of
+from benchnav.generation.build import noise_of, sensing_of
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.contestant import Contestant
 from benchnav.runner.rollouts.rollout import Assignment
+from benchnav.scenario.condition import EXACT, NOISY, condition
 from benchnav.scenario.sampling.sampler import support
 from benchnav.scenario.scenario import Scenario
 from benchnav.source.parts import places_of
@@ -20,17 +21,18 @@ from benchnav.store.runs.manifest import ISOLATED
 
 @dataclass(frozen=True)
 class Job:
-    """A cell of a suite to run: one scenario × track × navigator, with all seeds."""
+    """A cell of a suite: one scenario × track × perception × navigator, with all seeds."""
 
     scenario: Scenario
     split: str
     track: str
     contestant: Contestant
     also: tuple[str, ...] = ()  # other tracks with the same episodes, as no map is used
+    perception: str = EXACT
 
     @property
     def assignment(self) -> Assignment:
-        """The navigator, the scenario and the track."""
+        """The navigator, the scenario and the condition."""
         scenario, contestant = self.scenario, self.contestant
         return Assignment(
             scenario.identity, scenario.hash, self.split, self.track, contestant.label,
@@ -38,6 +40,7 @@ class Job:
             source_hash=contestant.source_hash, rehearsals=contestant.rehearsal,
             leader=contestant.leader.spec if contestant.leader else None,
             isolated=contestant.mode == ISOLATED,
+            noise=noise_of(scenario) if self.perception == NOISY else None,
         )  # fmt: skip
 
     @property
@@ -52,18 +55,28 @@ class Job:
         return not self.contestant.uses_map and self.track in self.scenario.granted_tracks
 
     @property
-    def contest(self) -> tuple[str, str]:
-        """The scenario, and the navigator's label."""
-        return self.scenario.identity, self.contestant.label
+    def condition(self) -> str:
+        """The track, and the perception unless it is exact."""
+        return condition(self.track, self.perception)
+
+    @property
+    def shown(self) -> str:
+        """The name of the cell in messages."""
+        return f"{self.scenario.identity}, {self.condition}, {self.contestant.label}"
+
+    @property
+    def contest(self) -> tuple[str, str, str]:
+        """The scenario, the perception, and the navigator's label."""
+        return self.scenario.identity, self.perception, self.contestant.label
 
     @property
     def key(self) -> str:
-        """The name of its folder: readable, with a hash of its scenario, track and navigator."""
+        """The name of its folder: readable, with a hash of scenario, condition and navigator."""
         a = self.assignment
-        text = json.dumps(
-            [a.scenario, a.scenario_hash, a.split, a.track, a.label, dict(self.contestant.spec)]
-        )
-        parts = (_slug(a.scenario), a.track, _slug(a.label))
+        noisy = () if a.perception == EXACT else (a.perception,)
+        spec = dict(self.contestant.spec)
+        text = json.dumps([a.scenario, a.scenario_hash, a.split, a.track, *noisy, a.label, spec])
+        parts = (_slug(a.scenario), a.track, *noisy, _slug(a.label))
         return ".".join(parts) + "." + hashlib.sha256(text.encode()).hexdigest()[:10]
 
     @property

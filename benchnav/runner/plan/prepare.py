@@ -13,7 +13,8 @@ from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.shard import Shard
 from benchnav.runner.plan.suite import Suite
 from benchnav.runner.rollouts.seeding import draw_salt
-from benchnav.store.runs.manifest import MANIFEST, Manifest
+from benchnav.scenario.condition import EXACT
+from benchnav.store.runs.manifest import MANIFEST, Manifest, schema_for
 from benchnav.store.runs.provenance import provenance
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.spans import spans
@@ -37,9 +38,11 @@ def planned(
     if shard is not None:
         for fields in stored_cells:
             fields["seeds"] = spans(wanted.get(fields["key"], ()))
+    described = suite.resolved()
     return Manifest(
-        suite.resolved(), tuple(stored_cells), suite.salt or draw_salt(), shard=str(shard or ""),
-        sources=sources_of(suite.contestants), provenance=provenance(),
+        described, tuple(stored_cells), suite.salt or draw_salt(), shard=str(shard or ""),
+        sources=sources_of(suite.contestants), schema=schema_for(described),
+        provenance=provenance(),
     )  # fmt: skip
 
 
@@ -99,6 +102,7 @@ def _fields_of_cell(job: Job) -> dict[str, Any]:
         "key": job.key,
         "scenario": job.scenario.identity,
         "track": job.track,
+        **({} if job.perception == EXACT else {"perception": job.perception}),
         "navigator": job.contestant.label,
         "reason": job.reason,
         **({"also": list(job.also)} if job.also else {}),

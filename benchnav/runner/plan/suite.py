@@ -1,8 +1,8 @@
-"""A suite, resolved: a lazy product of scenarios, tracks and navigators over seeds."""
+"""A suite, resolved: a lazy product of scenarios, conditions and navigators over seeds."""
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +23,8 @@ from benchnav.runner.plan.limits import patience
 from benchnav.runner.plan.suite_file import SuiteFile, is_scenario, parse_seeds, suite_path
 from benchnav.runner.rollouts.seeding import check_salt
 from benchnav.scenario.catalogue import find
+from benchnav.scenario.condition import EXACT, require_perception, require_track
 from benchnav.scenario.scenario import Scenario
-from benchnav.scenario.terms import TRACKS
 from benchnav.store.runs.scenario_files import sha256_of
 
 FIRST_LOOK = "quick"  # the suite whose navigators, tracks and seeds a single scenario gets
@@ -40,6 +40,7 @@ class Selection:
     seeds: str = ""
     salt: str = ""  # in hexadecimal digits; empty: the run draws one
     isolate: bool = False  # whether each evaluated navigator runs in its own process
+    perceptions: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -49,18 +50,27 @@ class Block:
     scenarios: tuple[str, ...]  # identities
     tracks: tuple[str, ...]
     navigators: tuple[str, ...]  # labels
+    perceptions: tuple[str, ...] = (EXACT,)
+
+    def fields(self) -> dict[str, Any]:
+        """Return it as plain data for the manifest; a perception that is exact is left out."""
+        return {
+            "scenarios": self.scenarios, "tracks": self.tracks, "navigators": self.navigators,
+            **_unless_exact(self.perceptions),
+        }  # fmt: skip
 
     def __contains__(self, job: Job) -> bool:
         return (
             job.scenario.identity in self.scenarios
             and job.track in self.tracks
+            and job.perception in self.perceptions
             and job.contestant.label in self.navigators
         )
 
 
 @dataclass(frozen=True)
 class Suite:
-    """Scenarios, tracks, navigators and seeds to run."""
+    """Scenarios, tracks, perceptions, navigators and seeds to run."""
 
     name: str
     version: int
@@ -71,9 +81,10 @@ class Suite:
     contestants: tuple[Contestant, ...]
     salt: str = ""  # of navigators' randomness; empty: each new run draws its own
     blocks: tuple[Block, ...] = ()  # the parts of the product to run; empty: all of it
+    perceptions: tuple[str, ...] = (EXACT,)
 
     def jobs(self) -> Iterator[Job]:
-        """Yield all cells, also n/a ones, by scenario, track and navigator.
+        """Yield all cells, also n/a ones, by scenario, track, perception and navigator.
 
         A navigator that uses no map runs once for all tracks, in the last track of a scenario.
         """
@@ -81,10 +92,11 @@ class Suite:
             job
             for scenario in self.scenarios
             for track in self.tracks
+            for perception in self.perceptions
             for contestant in self.contestants
-            if (job := Job(scenario, self.split, track, contestant)) in self
+            if (job := Job(scenario, self.split, track, contestant, perception=perception)) in self
         ]
-        shared: dict[tuple[str, str], list[str]] = {}  # tracks with the same episodes
+        shared: dict[tuple[str, str, str], list[str]] = {}  # tracks with the same episodes
         for job in whole:
             if job.once:
                 shared.setdefault(job.contest, []).append(job.track)
@@ -113,8 +125,9 @@ class Suite:
                 for s in self.scenarios
             ],
             "tracks": list(self.tracks),
+            **_unless_exact(self.perceptions),
             "navigators": [resolved(contestant) for contestant in self.contestants],
-            **({"blocks": [asdict(block) for block in self.blocks]} if self.blocks else {}),
+            **({"blocks": [block.fields() for block in self.blocks]} if self.blocks else {}),
         }
 
 
@@ -123,12 +136,12 @@ def load_suite(
 ) -> Suite:
     """Return the suite of this name, file or content, with the selection applied.
 
-    The name or file of a scenario gives a suite of that scenario: its navigators, tracks and
+    The name or file of a scenario gives a suite of that scenario: its navigators, conditions and
     seeds are those of the suite `FIRST_LOOK` unless others are selected. Navigators report their
     properties in separate processes, in which a call may last ``timeout`` [s].
 
     Raises:
-        UsageError: no such suite, track, seeds or salt; a label or scenario twice.
+        UsageError: no such suite, track, perception, seeds or salt; a label or scenario twice.
         ScenarioError: the suite file or a scenario is wrong.
         PluginError: a navigator cannot be used.
     """
@@ -163,16 +176,24 @@ def _selected(
         ]
     )
     tracks = tuple(selection.tracks or file.tracks)
-    _refuse_unknown_tracks(tracks)
+    perceptions = tuple(selection.perceptions or file.perception)
+    for track in tracks:
+        require_track(track)
+    for perception in perceptions:
+        require_perception(perception)
     for key, names, selected in (
         ("scenarios", [s.identity for s in scenarios], selection.scenarios),
         ("tracks", tracks, selection.tracks),
+        ("perception", perceptions, selection.perceptions),
         ("navigators", [e.label for e in contestants], selection.navigators),
     ):
         _refuse_twice(key, names, selected, document)
     seeds = _seeds(selection.seeds or str(file.seeds))
     salt = _salt(selection.salt)
-    suite = Suite(file.name, file.version, file.split, seeds, scenarios, tracks, contestants, salt)
+    suite = Suite(
+        file.name, file.version, file.split, seeds, scenarios, tracks, contestants, salt,
+        perceptions=perceptions,
+    )  # fmt: skip
     return replace(suite, blocks=_blocks(file, suite, document, folder)) if file.blocks else suite
 
 
@@ -195,6 +216,7 @@ def _blocks(file: SuiteFile, suite: Suite, document: Document, folder: Path) -> 
         tuple(
             contestant.label for contestant in suite.contestants if contestant.label not in labels
         ),
+        tuple(each for each in suite.perceptions if each not in file.perception),
     )
     blocks = []
     for i, block in enumerate(file.blocks):
@@ -202,11 +224,13 @@ def _blocks(file: SuiteFile, suite: Suite, document: Document, folder: Path) -> 
         scenarios = _known(block.scenarios, file.scenarios, f"{at}.scenarios")
         tracks = _known(block.tracks, file.tracks, f"{at}.tracks")
         navigators = _known(block.navigators, labels, f"{at}.navigators")
+        perceptions = _known(block.perception, file.perception, f"{at}.perception")
         blocks.append(
             Block(
                 tuple(identities[name] for name in scenarios) + added[0],
                 tracks + added[1],
                 navigators + added[2],
+                perceptions + added[3],
             )
         )
     return tuple(blocks)
@@ -261,13 +285,9 @@ def _salt(text: str) -> str:
     return text.lower()
 
 
-def _refuse_unknown_tracks(tracks: Sequence[str]) -> None:
-    for track in tracks:
-        if track not in TRACKS:
-            raise UsageError(
-                f"A track must be one of {', '.join(TRACKS)}. Got {track!r} instead."
-                f"{did_you_mean(track, TRACKS)}"
-            )
+def _unless_exact(perceptions: tuple[str, ...]) -> dict[str, Any]:
+    """Return the key of a manifest; none for exact perception, so that older hashes hold."""
+    return {} if perceptions == (EXACT,) else {"perception": list(perceptions)}
 
 
 def _refuse_twice(

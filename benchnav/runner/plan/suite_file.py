@@ -13,7 +13,7 @@ from benchnav.scenario.catalogue import is_named
 from benchnav.scenario.catalogue import names as scenario_names
 from benchnav.scenario.parameters import split_parameters
 from benchnav.scenario.scenario import Scenario
-from benchnav.scenario.terms import Track
+from benchnav.scenario.terms import Perception, Track
 from benchnav.store.runs.spans import SEED_DIGITS
 
 MAX_SEEDS = 1_000_000
@@ -31,13 +31,16 @@ class BlockFile(BaseModel):
         None, min_length=1, description="Some of the suite's scenarios, written as in the suite."
     )
     tracks: tuple[Track, ...] | None = Field(None, min_length=1, description="Some of its tracks.")
+    perception: tuple[Perception, ...] | None = Field(
+        None, min_length=1, description="Some of its perceptions."
+    )
     navigators: tuple[Name, ...] | None = Field(
         None, min_length=1, description="Some of its navigators, by name or label."
     )
 
 
 class SuiteFile(BaseModel):
-    """Scenarios × tracks × navigators × seeds."""
+    """Scenarios × tracks × perceptions × navigators × seeds."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
@@ -53,6 +56,11 @@ class SuiteFile(BaseModel):
     )
     tracks: tuple[Track, ...] = Field(
         ("known",), min_length=1, description="Knowledge tracks: known, stale, partial, unknown."
+    )
+    perception: tuple[Perception, ...] = Field(
+        ("exact",),
+        min_length=1,
+        description="Perceptions: exact, and noisy as the key `noise` of each scenario says.",
     )
     navigators: tuple[Name | dict[str, Any], ...] = Field(
         min_length=1,

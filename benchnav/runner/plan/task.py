@@ -48,7 +48,7 @@ class Task:
 
     @property
     def assignment(self) -> Assignment:
-        """The navigator, the scenario and the track, with the salt of the run."""
+        """The navigator, the scenario and the condition, with the salt of the run."""
         return replace(self.job.assignment, salt=self.salt)
 
     @property

@@ -25,6 +25,7 @@ from benchnav.runner.rollouts.navigator_driver import PROPERTIES, Driver
 from benchnav.runner.rollouts.recorder import Recorder
 from benchnav.runner.rollouts.seeding import generator, noise_key, place
 from benchnav.runner.rollouts.tamper_guard import Guard
+from benchnav.scenario.condition import EXACT, NOISY
 from benchnav.world.simulation import Simulation
 
 MAX_WORLDS = 256  # of a batch: larger batches are hardly faster and need more memory
@@ -34,7 +35,7 @@ _BYTES = 72  # recorded per agent and decision
 
 @dataclass(frozen=True)
 class Assignment:
-    """The navigator, the scenario and the knowledge of a rollout."""
+    """The navigator, the scenario, the knowledge and the perception of a rollout."""
 
     scenario: str  # "leaders/dynamic@1"
     scenario_hash: str
@@ -49,20 +50,27 @@ class Assignment:
     rehearsals: int = 0  # that the navigator asks for
     leader: Spec | None = None  # the navigator of the leaders in rehearsals
     rehearsal: int = 0  # k: this is the k-th rehearsal; 0: the scored episode
-    noise: Noise | None = None  # of the senses; None: the perception track `exact`
+    # of the senses of the navigator, and of its leaders in rehearsals; None: perception `exact`
+    noise: Noise | None = None
     isolated: bool = False  # whether the evaluated navigator runs in its own process
+
+    @property
+    def perception(self) -> str:
+        """The perception: exact or noisy."""
+        return EXACT if self.noise is None else NOISY
 
     @property
     def cell(self) -> tuple[str, ...]:
         """The key of an isolated process, which serves one role in one cell."""
         role = "rehearsal" if self.rehearsal else "episode"
-        return self.scenario, self.scenario_hash, self.split, self.track, self.label, role
+        condition = self.track, self.perception
+        return self.scenario, self.scenario_hash, self.split, *condition, self.label, role
 
     def identity(self, seed: int) -> Identity:
         """Return the identity of the episode with this seed."""
         return Identity(
             self.scenario, self.scenario_hash, self.split, seed, self.track, self.label,
-            self.navigator_hash, self.rehearsal, self.source_hash,
+            self.navigator_hash, self.rehearsal, self.source_hash, self.perception,
         )  # fmt: skip
 
 
@@ -84,7 +92,7 @@ def rollout(
     until the worlds that fail on their own are found: only these fail.
 
     Args:
-        assignment: the navigator, the scenario and the knowledge.
+        assignment: the navigator, the scenario, the knowledge and the perception.
         worlds: (seed, world) pairs.
         charge: a reason for which every episode fails without running (its navigator
             killed the process, for example); "" runs them.

@@ -14,6 +14,7 @@ import pyarrow as pa
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, BoolArray
 from benchnav.episode.episode import Contacts, Episode, Identity, Timings
+from benchnav.scenario.condition import EXACT
 from benchnav.store.parts import state_codec
 from benchnav.store.parts.world_codec import world_from_json, world_to_json
 
@@ -68,6 +69,7 @@ EPISODES = pa.schema(
         ("source_hash", pa.string()),  # of the navigator's code and data; null: unknown
         ("traceback", pa.string()),  # of the failure; null if no exception was raised
         ("coded", pa.bool_()),  # whether states are coded; null: they are not
+        ("perception", pa.string()),  # files of exact perception do not have this column
     ]
 )
 LATER = (
@@ -83,16 +85,20 @@ LATER = (
     "source_hash",
     "traceback",
     "coded",
+    "perception",
 )  # columns that older parts do not have; null there
 DICTIONARY = [*_IDENTITY, "navigator_hash", "source_hash", "failure"]  # with repeated values
+EXACT_EPISODES = pa.schema([field for field in EPISODES if field.name != "perception"])
+"""The columns of a file of exact perception, which older versions can read."""
 
 
 def to_table(episodes: Sequence[Episode]) -> pa.Table:
-    """Return a table (N rows) of `EPISODES`."""
+    """Return a table (N rows) of `EPISODES`, or of `EXACT_EPISODES` for exact perception."""
     columns: dict[str, Any] = {
         name: [getattr(e.identity, name) for e in episodes]
         for name in (*_IDENTITY, "seed", "navigator_hash", "rehearsal")
     }
+    columns["perception"] = [e.identity.perception for e in episodes]
     columns["source_hash"] = [e.identity.source_hash or None for e in episodes]
     for name in ("failure", "reproducible", "digest", "rehearsals", "rehearsal_decisions"):
         columns[name] = [getattr(e, name) for e in episodes]
@@ -115,12 +121,13 @@ def to_table(episodes: Sequence[Episode]) -> pa.Table:
     columns["twist"] = [e.twist for e in episodes]
     columns["traceback"] = [e.traceback or None for e in episodes]
     columns["rehearsal_seconds"] = [e.timings.rehearsal for e in episodes]
+    schema = EXACT_EPISODES if set(columns["perception"]) <= {EXACT} else EPISODES
     arrays = [
         values if isinstance(values, pa.Array) else pa.array(values, type=field.type)
-        for field in EPISODES
+        for field in schema
         for values in [columns[field.name]]
     ]
-    return pa.Table.from_arrays(arrays, schema=EPISODES)
+    return pa.Table.from_arrays(arrays, schema=schema)
 
 
 def _stored_states(episode: Episode) -> dict[str, AnyArray]:
@@ -212,6 +219,7 @@ def _episode(batch: _Columns, row: int) -> Episode:
     identity["navigator_hash"] = scalar("navigator_hash") or ""
     identity["source_hash"] = scalar("source_hash") or ""
     identity["rehearsal"] = scalar("rehearsal") or 0
+    identity["perception"] = scalar("perception") or EXACT
     return Episode(
         identity=Identity(**identity),
         world=world,

@@ -10,6 +10,7 @@ from typing import Any
 
 import pyarrow as pa
 
+from benchnav.scenario.condition import EXACT, perception_of
 from benchnav.store.runs.manifest import Manifest
 from benchnav.store.runs.navigator_hash import hash_of_entry
 
@@ -60,6 +61,7 @@ def membership(manifest: Manifest, cell: Mapping[str, Any], seals: Mapping[str, 
         "scenario": {identity},
         "scenario_hash": {scenario.get("hash")},
         "track": {cell.get("track")},
+        "perception": {EXACT, ""} if perception_of(cell) == EXACT else {perception_of(cell)},
         "split": {suite.get("split")},
         "navigator_hash": {own} if manifest.schema >= _HASHED else {own, ""},
         "source_hash": {manifest.source_of(label)},

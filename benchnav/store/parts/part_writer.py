@@ -13,9 +13,9 @@ import pyarrow.parquet as pq
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError, StoreError
-from benchnav.store.parts.episodes import DICTIONARY, EPISODES, to_table
+from benchnav.store.parts.episodes import DICTIONARY, to_table
 from benchnav.store.parts.part import Part
-from benchnav.store.parts.results import RESULTS
+from benchnav.store.parts.results import RESULTS, stored_form
 from benchnav.store.parts.seal import (
     EPISODES_FILE,
     FILES,
@@ -45,17 +45,18 @@ class EpisodeFiles:
         self.part = part
         self._finished = False
         self._streams: dict[str, _Stream] = {}
-        self._open(EPISODES_FILE)
 
     def add(self, episodes: Sequence[Episode], rehearsals: Sequence[Episode] = ()) -> None:
         """Append scored episodes, and the rehearsals of some."""
+        for suffix, chosen in ((EPISODES_FILE, episodes), (REHEARSALS_FILE, rehearsals)):
+            if chosen:
+                self._write(suffix, to_table(chosen))
+
+    def _write(self, suffix: str, table: pa.Table) -> None:
         try:
-            if episodes:
-                self._streams[EPISODES_FILE].writer.write_table(to_table(episodes))
-            if rehearsals:
-                if REHEARSALS_FILE not in self._streams:
-                    self._open(REHEARSALS_FILE)
-                self._streams[REHEARSALS_FILE].writer.write_table(to_table(rehearsals))
+            if suffix not in self._streams:
+                self._open(suffix, table.schema)
+            self._streams[suffix].writer.write_table(table)
         except OSError as error:
             raise not_writable(self.part, error) from error
 
@@ -82,14 +83,11 @@ class EpisodeFiles:
                 stream.file.close()
         discard(self.part)
 
-    def _open(self, suffix: str) -> None:
-        try:
-            self.part.folder.mkdir(parents=True, exist_ok=True)
-            file = temporary(self.part, suffix).open("wb")
-        except OSError as error:
-            raise not_writable(self.part, error) from error
+    def _open(self, suffix: str, schema: pa.Schema) -> None:
+        self.part.folder.mkdir(parents=True, exist_ok=True)
+        file = temporary(self.part, suffix).open("wb")
         writer = pq.ParquetWriter(
-            file, EPISODES, compression="zstd", use_dictionary=DICTIONARY,
+            file, schema, compression="zstd", use_dictionary=DICTIONARY,
             write_statistics=["seed"],
         )  # fmt: skip
         self._streams[suffix] = _Stream(file, writer)
@@ -138,7 +136,7 @@ def seal(part: Part, results: pa.Table, episodes: int) -> None:
     """
     try:
         with temporary(part, RESULTS_FILE).open("wb") as file:
-            pq.write_table(results, file, compression="zstd")
+            pq.write_table(stored_form(results), file, compression="zstd")
             _sync(file)
         written = [suffix for suffix in FILES if temporary(part, suffix).exists()]
         sealed = {suffix: _facts(temporary(part, suffix)) for suffix in written}

@@ -11,7 +11,8 @@ import pyarrow.compute as pc
 from benchnav.arena.agents import Role
 from benchnav.arrays import LARGEST
 from benchnav.config.document import shown
-from benchnav.scenario.terms import SPLITS, TRACKS
+from benchnav.scenario.condition import EXACT
+from benchnav.scenario.terms import PERCEPTIONS, SPLITS, TRACKS
 from benchnav.store.runs.spans import SEED_END
 
 MAX_ROWS = 1 << 18  # of a part: 64 seeds, two roles and 2048 metrics
@@ -22,7 +23,10 @@ _TEXTS = {  # column → allowed number of characters
     "navigator_hash": 64, "missing": 10_000, "source_hash": 64, "traceback": 10_000,
     "remarks": 10_000,
 }  # fmt: skip
-_ONE_OF = {"track": TRACKS, "split": SPLITS, "role": tuple(r.name.lower() for r in Role)}
+_ONE_OF = {
+    "track": TRACKS, "perception": PERCEPTIONS, "split": SPLITS,
+    "role": tuple(r.name.lower() for r in Role),
+}  # fmt: skip
 _RANGES: dict[str, tuple[float, float]] = {
     "seed": (0, SEED_END), "value": (-LARGEST, LARGEST), "agents": (1, _MOST_AGENTS),
     "defined": (0, _MOST_AGENTS), "horizon": (0, 1e6), "dt": (0, 10), "rehearsal": (0, 1_000_000),
@@ -57,6 +61,7 @@ RESULTS = pa.schema(
         ("source_hash", pa.string()),  # of the navigator's code and data; "" if unknown
         ("traceback", pa.string()),  # of the failure; null if none, and in older parts
         ("remarks", pa.list_(pa.string())),  # of the navigator on this episode; null likewise
+        ("perception", pa.string()),  # parts of exact perception are stored without this column
     ]
 )
 
@@ -70,8 +75,15 @@ LATER = {
     "source_hash": "",
     "traceback": None,
     "remarks": None,
+    "perception": EXACT,
 }
 """Columns that older parts do not have, and their default values."""
+
+
+def stored_form(table: pa.Table) -> pa.Table:
+    """Return a table of `RESULTS` as it is stored: only noisy perception has a column."""
+    exact = pc.all(pc.equal(table["perception"], EXACT)).as_py() is not False
+    return table.drop_columns("perception") if exact else table
 
 
 def completed(table: pa.Table) -> pa.Table:

@@ -48,7 +48,8 @@ def check_rehearsals(part: Part, expected: Sequence[Identity], most: int) -> Non
 
 def _episodes(part: Part, suffix: str) -> Iterator[Episode]:
     try:
-        table = bounded_parquet.read(temporary(part, suffix).read_bytes(), EPISODES)
+        content = temporary(part, suffix).read_bytes()
+        table = bounded_parquet.read(content, EPISODES, ["perception"])
         yield from from_table(table, range(len(table)))
     except (OSError, pa.ArrowException, *UNDECODABLE) as error:
         raise _corrupt(part, f"cannot be read ({error})") from error

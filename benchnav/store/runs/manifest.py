@@ -20,8 +20,9 @@ from benchnav.store.runs.config_key import RENAMED_IN, new_form, old_form
 from benchnav.store.runs.manifest_schema import ManifestSchema
 from benchnav.store.runs.run_path import RunPath, run_path
 
-SCHEMA = 7  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source;
-#            5: provenance; 6: key `config`; 7: coded states
+SCHEMA = 8  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source;
+#            5: provenance; 6: key `config`; 7: coded states; 8: perceptions
+_EXACT_SCHEMA = 7  # of runs with exact perception only: older versions can read them
 MANIFEST = "manifest.json"
 MAX_BYTES = 64 << 20  # of a manifest
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
@@ -36,7 +37,8 @@ class Manifest:
     """The suite that a run executes, and its conditions."""
 
     suite: Mapping[str, Any]  # resolved: hashes of scenarios, full configurations, seeds
-    # key, scenario, track, navigator, reason for n/a or ""; `also`: other tracks it represents
+    # key, scenario, track, navigator, reason for n/a or ""; `also`: other tracks it represents;
+    # `perception` unless it is exact
     cells: tuple[Mapping[str, Any], ...]
     salt: str = ""  # of the navigators' random numbers, in hexadecimal digits
     limits: Mapping[str, float] = field(default_factory=dict)  # an episode beyond them fails
@@ -90,7 +92,7 @@ class Manifest:
         merged = [others[e["label"]] if e["label"] in labels else e for e in entries]
         sources = {k: v for k, v in other.sources.items() if k in labels}
         return replace(
-            self, suite={**self.suite, "navigators": merged}, schema=SCHEMA,
+            self, suite={**self.suite, "navigators": merged}, schema=schema_for(self.suite),
             sources={**self.sources, **sources},
         )  # fmt: skip
 
@@ -100,6 +102,11 @@ class Manifest:
         if self.schema < RENAMED_IN:
             fields["suite"] = old_form(fields["suite"])
         return checked_json.dump(fields)
+
+
+def schema_for(suite: Mapping[str, Any]) -> int:
+    """Return the schema of a new run of a resolved suite."""
+    return SCHEMA if "perception" in suite else _EXACT_SCHEMA
 
 
 def versions() -> dict[str, str]:

@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from benchnav.config.document import shown
 from benchnav.config.validation import FieldError
 from benchnav.scenario.parameters import Parameter
-from benchnav.scenario.terms import Track
+from benchnav.scenario.terms import Perception, Track
 from benchnav.store.runs.provenance import LONGEST
 from benchnav.store.runs.spans import SEED_END
 
@@ -28,6 +28,7 @@ Seed = Annotated[int, Field(ge=0, le=SEED_END)]
 Span = Annotated[tuple[Seed, Seed], Field(description="first, stop")]
 Short = Annotated[str, Field(max_length=200)]
 Text = Annotated[str, Field(max_length=10_000)]
+Perceptions = Annotated[tuple[Perception, ...], Field(min_length=1, max_length=2)]
 
 
 class _Part(BaseModel):
@@ -73,6 +74,7 @@ class _Block(_Part):
     scenarios: Annotated[tuple[Identity, ...], Field(max_length=10_000)]
     tracks: Annotated[tuple[Track, ...], Field(max_length=4)]
     navigators: Annotated[tuple[Label, ...], Field(max_length=10_000)]
+    perception: Perceptions = ("exact",)
 
 
 class _Suite(_Part):
@@ -82,6 +84,7 @@ class _Suite(_Part):
     seeds: Span
     scenarios: Annotated[tuple[_Scenario, ...], Field(max_length=100_000)]
     tracks: Annotated[tuple[Track, ...], Field(max_length=4)]
+    perception: Perceptions = ("exact",)
     navigators: Annotated[tuple[_Navigator, ...], Field(max_length=10_000)]
     blocks: Annotated[tuple[_Block, ...], Field(max_length=100)] = ()
 
@@ -92,7 +95,8 @@ class _Suite(_Part):
             raise FieldError(
                 ("seeds",), f"must be [first, stop] of 1 to {MAX_SEEDS} seeds; got {self.seeds}"
             )
-        product = len(self.scenarios) * len(self.tracks) * len(self.navigators)
+        conditions = len(self.tracks) * len(self.perception)
+        product = len(self.scenarios) * conditions * len(self.navigators)
         if product > MOST_CELLS:
             raise FieldError((), f"must have at most {MOST_CELLS} cells; it has {product}")
         _require_once(("scenarios",), [s.scenario for s in self.scenarios])
@@ -105,6 +109,7 @@ class _Cell(_Part):
     reason: Text
     scenario: Identity
     track: Track
+    perception: Perception = "exact"
     navigator: Label
     also: Annotated[tuple[Track, ...], Field(max_length=3)] = ()
     seeds: Annotated[tuple[Span, ...] | None, Field(max_length=100_000)] = None
@@ -160,7 +165,9 @@ class ManifestSchema(_Part):
     @model_validator(mode="after")
     def _check(self) -> "ManifestSchema":
         _require_once(("cells",), [cell.key for cell in self.cells])
-        _require_once(("cells",), [(c.scenario, c.track, c.navigator) for c in self.cells])
+        _require_once(
+            ("cells",), [(c.scenario, c.track, c.perception, c.navigator) for c in self.cells]
+        )
         first, stop = self.suite.seeds
         for i, cell in enumerate(self.cells):
             if cell.seeds and not (first <= cell.seeds[0][0] and cell.seeds[-1][1] <= stop):

@@ -1,12 +1,14 @@
 """Read episodes and measured values of whole runs."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from typing import Any
 
 import pyarrow as pa
 
 from benchnav.episode.episode import Episode
 from benchnav.errors import CorruptPartError
+from benchnav.scenario.condition import perception_of
 from benchnav.store.bounded.bounded_parquet import allowed
 from benchnav.store.parts.part import RESULTS_FILE, Part
 from benchnav.store.parts.results import RESULTS
@@ -14,7 +16,7 @@ from benchnav.store.runs.manifest import Manifest
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.run_path import RunPath
 
-_OF_A_CELL = ["scenario", "track", "navigator"]
+_OF_A_CELL = ["scenario", "track", "perception", "navigator"]
 
 
 def read_episodes(run: RunPath) -> Iterator[Episode]:
@@ -42,12 +44,17 @@ def read_episodes_in_every_track(run: RunPath) -> Iterator[Episode]:
 def episodes_in_every_track(run: RunFolder) -> Iterator[Episode]:
     """Yield the same, for an open run."""
     cells = run.manifest.cells
-    also = {(c["scenario"], c["track"], c["navigator"]): c.get("also", ()) for c in cells}
+    also = {_key_of(cell): cell.get("also", ()) for cell in cells}
     for episode in episodes_of(run):
         identity = episode.identity
-        key = (identity.scenario, identity.track, identity.navigator)
+        key = identity.scenario, identity.track, identity.perception, identity.navigator
         for track in (*also.get(key, ()), identity.track):
             yield replace(episode, identity=replace(identity, track=track))
+
+
+def _key_of(cell: Mapping[str, Any]) -> tuple[str, str, str, str]:
+    """Return the values of `_OF_A_CELL` of a cell of a manifest."""
+    return cell["scenario"], cell["track"], perception_of(cell), cell["navigator"]
 
 
 def read_rehearsals(run: RunPath) -> Iterator[Episode]:
@@ -109,11 +116,7 @@ def in_every_track(results: pa.Table, manifest: Manifest) -> pa.Table:
 
     The rows may be encoded, like those of `encoded_results_of`.
     """
-    others = [
-        (*(cell[name] for name in _OF_A_CELL), track)
-        for cell in manifest.cells
-        for track in cell.get("also", ())
-    ]
+    others = [(*_key_of(cell), track) for cell in manifest.cells for track in cell.get("also", ())]
     if not others:
         return results
     columns = (pa.array(column, pa.string()) for column in zip(*others, strict=True))
