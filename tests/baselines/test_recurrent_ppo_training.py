@@ -171,8 +171,10 @@ def test_the_hash_is_of_what_decides_the_weights():
     recipe = tiny()
     assert recipe.hash == tiny(description="other words").hash
     assert recipe.hash == tiny(perception="exact").hash
-    others = [tiny(rows=3), tiny(gamma=0.9), tiny(encoder="paper"), tiny(sequence=7),
-              tiny(perception="noisy"), tiny(network={"lstm_layers": 1, "lstm_size": 9})]  # fmt: skip
+    others = [
+        tiny(rows=3), tiny(gamma=0.9), tiny(encoder="paper"), tiny(sequence=7),
+        tiny(perception="noisy"), tiny(network={"lstm_layers": 1, "lstm_size": 9}),
+    ]  # fmt: skip
     assert len({recipe.hash, *(other.hash for other in others)}) == 7
 
 
