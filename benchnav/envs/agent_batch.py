@@ -12,6 +12,7 @@ from enum import Enum
 
 import numpy as np
 
+from benchnav.arena.noise import Noise
 from benchnav.arena.world import Afterwards, ContactRule, World
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.envs.autoreset import AutoresetSimulation
@@ -25,6 +26,7 @@ from benchnav.navigation.navigator import Need
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.observe import observe
 from benchnav.navigation.plugin.configure import Spec
+from benchnav.sensors.noise.noisy_senses import NoisySenses
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +75,7 @@ class AgentBatch:
         drivers: Sequence[Spec] = (),
         *,
         autoreset: Autoreset = Autoreset.SAME_STEP,
+        noise: Noise | None = None,
     ) -> None:
         """Prepare the batch. No world is drawn before `reset`.
 
@@ -86,6 +89,8 @@ class AgentBatch:
                 has the needs of the encoder, and neighbours.
             drivers: navigators of the teams that are not evaluated.
             autoreset: when a row starts again.
+            noise: of the senses of the learners, drawn anew for each start of a row; None: they
+                perceive without error.
 
         Raises UsageError if no world of the pool has an agent that learns.
         """
@@ -112,6 +117,7 @@ class AgentBatch:
         self._limits = s.agents  # (B, A) records: max_speed, max_turn_rate, radius
         self.active = np.zeros((s.B, s.A), np.bool_)
         self._slots = np.tile(np.arange(s.A), (s.B, 1))  # (B, A) all agents
+        self._senses = NoisySenses(s, self._slots, noise) if noise is not None else None
 
     @property
     def rows(self) -> int:
@@ -201,6 +207,9 @@ class AgentBatch:
     def _start(self, rows: IntArray, worlds: IntArray) -> None:
         self.simulation.restart(rows, worlds)
         s = self.simulation
+        if self._senses is not None:
+            keys = self._rng.integers(0, 2**64, (len(rows), 2), np.uint64)
+            self._senses.begin(rows, keys)
         self.active[rows] = s.present[rows] & s.agents["evaluated"][rows]
         for k, driver in enumerate(self._drivers, 1):
             mine = [np.flatnonzero(s.pool[w].agents.driver == k) for w in worlds]
@@ -221,7 +230,7 @@ class AgentBatch:
 
     def _observe(self, active: BoolArray) -> Observation:
         s = self.simulation
-        return observe(s, self._slots, active, self._needs, (None,) * s.B)
+        return observe(s, self._slots, active, self._needs, (None,) * s.B, self._senses)
 
     @property
     def _bodies(self) -> Bodies:

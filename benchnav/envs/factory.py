@@ -13,8 +13,9 @@ from benchnav.envs.agent_batch import AgentBatch, Autoreset
 from benchnav.envs.encoders.catalogue import encoder as encoder_called
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import ConfigError, UsageError, did_you_mean
-from benchnav.generation.build import build
+from benchnav.generation.build import build, noise_of
 from benchnav.scenario.catalogue import find
+from benchnav.scenario.terms import PERCEPTIONS
 
 
 class NoRenderingError(UsageError, TypeError):
@@ -60,14 +61,22 @@ def weights_of(reward: Reward) -> RewardWeights:
 
 def make_batch(
     scenario: str, encoder: str, split: str, worlds: int, reward: Reward, slots: int | None = None,
-    *, rows: int = 1, autoreset: Autoreset = Autoreset.SAME_STEP,
+    *, rows: int = 1, autoreset: Autoreset = Autoreset.SAME_STEP, perception: str = "exact",
 ) -> AgentBatch:  # fmt: skip
     """Return a batch of rows with ``slots`` learning agents in total, or of ``rows`` rows.
 
-    The order of worlds is random until `AgentBatch.reseed` is called. Raises UsageError if
-    ``slots`` is no multiple of a world's learning agents, and the errors of `make_worlds`,
-    `weights_of` and the catalogue of encoders.
+    In the perception track `noisy`, the learners' senses have the noise of the scenario; other
+    agents perceive without error. The order of worlds is random until `AgentBatch.reseed` is
+    called. Raises UsageError if ``slots`` is no multiple of a world's learning agents, or the
+    perception is unknown, and the errors of `make_worlds`, `weights_of` and the catalogue of
+    encoders.
     """
+    if perception not in PERCEPTIONS:
+        raise UsageError(
+            f"The perception must be {' or '.join(PERCEPTIONS)}. Got {perception!r} instead."
+            f"{did_you_mean(str(perception), PERCEPTIONS)}"
+        )
+    noise = noise_of(find(scenario)) if perception == "noisy" else None
     chosen, weights = encoder_called(encoder), weights_of(reward)
     pool, drivers = make_worlds(scenario, split, worlds), find(scenario).driver_specs
     L = max(int(world.agents.evaluated.sum()) for world in pool)
@@ -84,8 +93,9 @@ def make_batch(
                 f" Got {slots} instead{nearest}."
             )
     return AgentBatch(
-        pool, rows, chosen, weights, np.random.default_rng(), drivers=drivers, autoreset=autoreset
-    )
+        pool, rows, chosen, weights, np.random.default_rng(), drivers=drivers,
+        autoreset=autoreset, noise=noise,
+    )  # fmt: skip
 
 
 def drawn_index(

@@ -42,6 +42,7 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         worlds: int = 100,
         reward: Reward = None,
         render_mode: str | None = None,
+        perception: str = "exact",
     ) -> None:
         """Draw the worlds. The parameters are those of `LeaderEnv`.
 
@@ -50,8 +51,9 @@ class LeadersEnv(ParallelEnv[str, Float32Array, Float32Array]):  # type: ignore[
         check_render_mode(render_mode, RENDER_MODES)
         self.render_mode = render_mode
         self.batch = make_batch(
-            scenario, encoder, split, worlds, reward, autoreset=Autoreset.DISABLED
-        )
+            scenario, encoder, split, worlds, reward, autoreset=Autoreset.DISABLED,
+            perception=perception,
+        )  # fmt: skip
         self._slots = LearnerSlots(self.batch)
         self.possible_agents = [f"leader_{a}" for a in range(self._slots.size)]
         self.agents: list[str] = []

@@ -30,18 +30,19 @@ def find_edges(
     worlds: AnyArray,
     agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray,
     item: IntArray, first: FloatArray, second: FloatArray, before: FloatArray, after: FloatArray,
-    first_convex: BoolArray, second_convex: BoolArray, count: IntArray,
+    first_convex: BoolArray, second_convex: BoolArray, count: IntArray, identity: IntArray,
 ) -> None:  # fmt: skip
     """Find edges for rows low:high of the flattened (B, chosen agents).
 
-    Outputs are (B, An, E, …). ``bulge`` [m] is the radius of the largest fixed disc.
+    Outputs are (B, An, E, …). ``bulge`` [m] is the radius of the largest fixed disc. ``identity``
+    numbers the edges of a world, and does not depend on the other worlds of the batch.
     """
     best = np.empty(CANDIDATES)  # squared distances, rising
     code = np.empty(CANDIDATES, np.int64)  # 8 (capsule) + side of the octagon, see `_edge`
     _find_in_rows(
         low, high, chosen, limit, bulge, occlusion, worlds, agents, bodies, shapes, capsules, start,
-        item, first, second, before, after, first_convex, second_convex, count, best, code,
-        np.empty(10), np.empty(sight.TABLE), np.empty(bodies.shape[1], np.int64),
+        item, first, second, before, after, first_convex, second_convex, count, identity, best,
+        code, np.empty(10), np.empty(sight.TABLE), np.empty(bodies.shape[1], np.int64),
     )  # fmt: skip
 
 
@@ -51,7 +52,7 @@ def _find_in_rows(
     worlds: AnyArray,
     agents: AnyArray, bodies: AnyArray, shapes: AnyArray, capsules: AnyArray, start: IntArray,
     item: IntArray, first: FloatArray, second: FloatArray, before: FloatArray, after: FloatArray,
-    first_convex: BoolArray, second_convex: BoolArray, count: IntArray,
+    first_convex: BoolArray, second_convex: BoolArray, count: IntArray, identity: IntArray,
     best: FloatArray, code: IntArray, edge: FloatArray, table: FloatArray, blockers: IntArray,
 ) -> None:  # fmt: skip
     width, most = first.shape[1], first.shape[2]
@@ -84,6 +85,7 @@ def _find_in_rows(
                     before[b, k, kept, t], after[b, k, kept, t] = edge[4 + t], edge[6 + t]
                 first_convex[b, k, kept] = edge[8] > 0.0
                 second_convex[b, k, kept] = edge[9] > 0.0
+                identity[b, k, kept] = _identity(code[s], world, others, capsules, shapes)
                 kept += 1
             count[b, k] = kept
 
@@ -245,6 +247,16 @@ def _insert(d2: float, edge_code: int, n: int, best: FloatArray, code: IntArray)
         at -= 1
     best[at], code[at] = d2, edge_code
     return n
+
+
+@kernel_without_allocation
+def _identity(code: int, world: Any, bodies: AnyArray, capsules: AnyArray, shapes: AnyArray) -> int:
+    """Return a number of an edge that is unique in its world, from its code in the batch."""
+    q = code // 8 - len(capsules)
+    if q < 0:
+        return code - 8 * int(world.first)
+    m = int(shapes[q].solid)
+    return 4294967296 * (m + 1) + code - 8 * (len(capsules) + int(bodies[m].first))
 
 
 @kernel_without_allocation

@@ -55,12 +55,13 @@ def find_neighbours(
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
     velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, agents: AnyArray,
-    form: FloatArray,
+    form: FloatArray, identity: IntArray,
 ) -> None:  # fmt: skip
     """Find neighbours of the agents at spots low:high of the flattened (B, A).
 
     Outputs are (B, An, K, …), zero behind the last neighbour; `number_rows` gives the ``row`` of
-    each agent.
+    each agent. ``identity`` (B, An, K) is the index of a neighbour among the agents, or -1 - m for
+    body m; it has no value behind the last neighbour.
 
     The search starts within ``near`` (B, A) [m], a guess from the last call, and is repeated within
     a larger radius if it finds too few. The guess changes the time that it takes, not the result.
@@ -77,7 +78,8 @@ def find_neighbours(
     _find_in_rows(
         low, high, row, limit, occlusion, side, sees, worlds, bodies, shapes, capsules,
         start, item, hashed, spots, near, listed, beyond, position, velocity, radius, kind, count,
-        agents, form, np.empty((2, most)), np.empty(most, np.int64), np.empty(4, np.int64), best,
+        agents, form, identity, np.empty((2, most)), np.empty(most, np.int64),
+        np.empty(4, np.int64), best,
         best.view(np.int64), np.empty((LANES, most), np.int64), np.empty(most, np.int64), given,
         given.view(np.int64), smallest, smallest.view(np.int64), np.empty(LANES, np.int64),
         np.empty(TABLE), np.empty(bodies.shape[1], np.int64),
@@ -91,7 +93,8 @@ def _find_in_rows(
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
     velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, agents: AnyArray,
-    form: FloatArray, around: FloatArray, at: IntArray, window: IntArray, best: FloatArray, exact: IntArray,
+    form: FloatArray, identity: IntArray, around: FloatArray, at: IntArray, window: IntArray,
+    best: FloatArray, exact: IntArray,
     place: IntArray, ranked: IntArray, given: FloatArray, given_bits: IntArray,
     smallest: FloatArray, bits: IntArray, sizes: IntArray, fixed: FloatArray, blockers: IntArray,
 ) -> None:  # fmt: skip
@@ -154,6 +157,7 @@ def _find_in_rows(
                     kept, crowd, things, ranked, position[b, k], velocity[b, k], radius[b, k],
                     kind[b, k],
                 )  # fmt: skip
+                _identify(kept, crowd, ranked, identity[b, k])
                 count[b, k] = kept
                 if world.shaped:
                     _write_forms(kept, crowd, ranked, agents[b], form[:, b, k])
@@ -227,6 +231,13 @@ def _write_forms(
             if a.shaped:
                 form[0, s], form[3, s] = a.heading, a.rounding
                 form[1, s], form[2, s] = a.core_length + a.rounding, a.core_width + a.rounding
+
+
+@kernel_without_allocation
+def _identify(kept: int, spots: AnyArray, ranked: IntArray, identity: IntArray) -> None:
+    """Write the identities of the ranked places."""
+    for s in range(kept):
+        identity[s] = spots[ranked[s]].index if ranked[s] >= 0 else ranked[s]
 
 
 @kernel_without_allocation

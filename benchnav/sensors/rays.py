@@ -102,11 +102,15 @@ def _cast_in_rows(
                 distance[b, k, r], kind[b, k, r], approach[b, k, r] = reach, hit_kind, 0.0
                 if hit_kind == _DYNAMIC:
                     approach[b, k, r] = -(things[hit[r], VX] * dx + things[hit[r], VY] * dy)
-                goal[b, k, r] = _goal_distance(gx, gy, dx, dy, world.tolerance + own, reach)
+                goal[b, k, r] = goal_distance(gx, gy, dx, dy, world.tolerance + own, reach)
 
 
 @kernel_without_allocation
-def _goal_distance(fx: float, fy: float, dx: float, dy: float, reach: float, best: float) -> float:
+def goal_distance(fx: float, fy: float, dx: float, dy: float, reach: float, best: float) -> float:
+    """Return the way along a ray to the goal's disc; inf if missed, or farther than ``best`` [m].
+
+    (fx, fy) is the place of the agent relative to its goal, in the frame of the ray.
+    """
     t = 0.0 if fx * fx + fy * fy <= reach * reach else disc_time(fx, fy, dx, dy, reach)
     return t if t <= best else math.inf
 

@@ -23,7 +23,10 @@ LEAST = 64  # with fewer agents, a second thread costs more than it saves
 
 
 def sense(
-    simulation: Simulation, chosen: IntArray, needs: frozenset[str]
+    simulation: Simulation,
+    chosen: IntArray,
+    needs: frozenset[str],
+    identities: dict[str, IntArray] | None = None,
 ) -> tuple[Rays | None, Neighbours | None, Edges | None]:
     """Return the current sensor readings of the chosen agents.
 
@@ -31,7 +34,10 @@ def sense(
         simulation: B worlds with equal sensing.
         chosen: (B, An) agent indices; -1 is padding without readings.
         needs: sensors to compute; the result is None for a sensor that the worlds do not have.
+        identities: receives, by sensor, a number (B, An, …) of each neighbour and each edge, which
+            stays the same during an episode.
     """
+    known = {} if identities is None else identities
     sensing: Sensing = simulation.worlds[0].sensing
     crowd = simulation.A > BRUTE_FORCE
     side = 1.0
@@ -46,9 +52,11 @@ def sense(
     if RAYS in needs and sensing.rays is not None:
         rays = _rays(simulation, chosen, sensing.rays, side)
     if NEIGHBOURS in needs and sensing.neighbours is not None:
-        neighbours = _neighbours(simulation, chosen, sensing.neighbours, sensing.occlusion, side)
+        neighbours = _neighbours(
+            simulation, chosen, sensing.neighbours, sensing.occlusion, side, known
+        )
     if EDGES in needs and sensing.edges is not None:
-        edges = _edges(simulation, chosen, sensing.edges, sensing.occlusion)
+        edges = _edges(simulation, chosen, sensing.edges, sensing.occlusion, known)
     return rays, neighbours, edges
 
 
@@ -103,8 +111,9 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
 
 
 def _neighbours(
-    simulation: Simulation, chosen: IntArray, sensor: NeighbourSensor, occlusion: bool, side: float
-) -> Neighbours:
+    simulation: Simulation, chosen: IntArray, sensor: NeighbourSensor, occlusion: bool, side: float,
+    identities: dict[str, IntArray],
+) -> Neighbours:  # fmt: skip
     shape = (*chosen.shape, sensor.count)
     s = simulation
     form = np.zeros((4, *shape))
@@ -113,27 +122,34 @@ def _neighbours(
         np.empty(chosen.shape, np.int64), *form,
     )  # fmt: skip
     row = np.empty((s.B, s.A), np.int64)
+    identities[NEIGHBOURS] = np.empty(shape, np.int64)
     readings = (out.position, out.velocity, out.radius, out.kind, out.count)
     number_rows(0, s.B, chosen, s.agents, row, *readings)
     run_rows(
         find_neighbours, row.size, row, float(sensor.range), occlusion, side, s.sees,
         s.records, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
-        s.near, s.listed, s.beyond, *readings, s.agents, form, least=LEAST,
+        s.near, s.listed, s.beyond, *readings, s.agents, form, identities[NEIGHBOURS],
+        least=LEAST,
     )  # fmt: skip
     return out
 
 
-def _edges(simulation: Simulation, chosen: IntArray, sensor: EdgeSensor, occlusion: bool) -> Edges:
+def _edges(
+    simulation: Simulation, chosen: IntArray, sensor: EdgeSensor, occlusion: bool,
+    identities: dict[str, IntArray],
+) -> Edges:  # fmt: skip
     shape = (*chosen.shape, sensor.count)
     points = [np.zeros((*shape, 2)) for _ in range(4)]
     out = Edges(
         points[0], points[1], points[2], points[3], np.zeros(shape, np.bool_),
         np.zeros(shape, np.bool_), np.zeros(chosen.shape, np.int64),
     )  # fmt: skip
+    identities[EDGES] = np.empty(shape, np.int64)
     s = simulation
     run_rows(
         find_edges, chosen.size, chosen, float(sensor.range), s.widest_disc, occlusion,
         s.records, s.agents, s.bodies, s.shapes, s.capsules, s.start, s.item, out.start, out.end,
-        out.before, out.after, out.start_convex, out.end_convex, out.count, least=LEAST,
+        out.before, out.after, out.start_convex, out.end_convex, out.count, identities[EDGES],
+        least=LEAST,
     )  # fmt: skip
     return out

@@ -20,19 +20,23 @@ KINDS = ("vector", "sb3", "gymnasium", "pettingzoo")
 @overload
 def make_env(scenario: str | Scenario, *, num_worlds: int = ..., kind: Literal["vector"] = ...,
              encoder: str = ..., split: str = ..., worlds: int = ..., reward: "Reward" = ...,
-             render_mode: str | None = ...) -> "LeaderVectorEnv": ...  # fmt: skip
+             render_mode: str | None = ...,
+             perception: str = ...) -> "LeaderVectorEnv": ...  # fmt: skip
 @overload
 def make_env(scenario: str | Scenario, *, num_worlds: int = ..., kind: Literal["sb3"],
              encoder: str = ..., split: str = ..., worlds: int = ..., reward: "Reward" = ...,
-             render_mode: str | None = ...) -> "AgentVecEnv": ...  # fmt: skip
+             render_mode: str | None = ...,
+             perception: str = ...) -> "AgentVecEnv": ...  # fmt: skip
 @overload
 def make_env(scenario: str | Scenario, *, kind: Literal["gymnasium"], encoder: str = ...,
              split: str = ..., worlds: int = ..., reward: "Reward" = ..., others: "Spec",
-             render_mode: str | None = ...) -> "LeaderEnv": ...  # fmt: skip
+             render_mode: str | None = ...,
+             perception: str = ...) -> "LeaderEnv": ...  # fmt: skip
 @overload
 def make_env(scenario: str | Scenario, *, kind: Literal["pettingzoo"], encoder: str = ...,
              split: str = ..., worlds: int = ..., reward: "Reward" = ...,
-             render_mode: str | None = ...) -> "LeadersEnv": ...  # fmt: skip
+             render_mode: str | None = ...,
+             perception: str = ...) -> "LeadersEnv": ...  # fmt: skip
 def make_env(
     scenario: str | Scenario,
     *,
@@ -44,6 +48,7 @@ def make_env(
     reward: "Reward" = None,
     others: "Spec | None" = None,
     render_mode: str | None = None,
+    perception: str = "exact",
 ) -> Any:
     """Return an environment in which agents of a scenario learn.
 
@@ -60,6 +65,7 @@ def make_env(
         others: for "gymnasium", which needs it: the navigator of the other agents.
         render_mode: "rgb_array": `render` returns pictures; "human", for "gymnasium" and
             "pettingzoo": a window shows every decision; None: nothing is drawn.
+        perception: "exact", or "noisy": learning agents perceive with the noise of the scenario.
 
     Raises UsageError or ConfigError for a mistake in the call, and MissingExtraError where the
     extra ``learn`` is not installed.
@@ -81,33 +87,35 @@ def make_env(
         raise UsageError(f"others is for the kind gymnasium. Got it with {kind!r}.")
     rows = 4 if num_worlds is None else num_worlds
     try:
-        return _made(kind, name, encoder, split, worlds, reward, rows, others, render_mode)
+        options = {
+            "split": split, "worlds": worlds, "reward": reward, "perception": perception,
+        }  # fmt: skip
+        return _made(kind, name, encoder, rows, others, render_mode, options)
     except ModuleNotFoundError as error:
         raise MissingExtraError(f"An environment of the kind {kind!r}", "learn") from error
 
 
 def _made(
-    kind: str, name: str, encoder: str, split: str, worlds: int, reward: "Reward", rows: int,
-    others: "Spec | None", render_mode: str | None,
+    kind: str, name: str, encoder: str, rows: int, others: "Spec | None", render_mode: str | None,
+    options: dict[str, Any],
 ) -> Any:  # fmt: skip
-    options: dict[str, Any] = {
-        "split": split, "worlds": worlds, "reward": reward, "render_mode": render_mode,
-    }  # fmt: skip
     if kind == "vector":
         from benchnav.envs.gym.leader_vector_env import LeaderVectorEnv
 
-        return LeaderVectorEnv(None, name, encoder, num_worlds=rows, **options)
+        return LeaderVectorEnv(
+            None, name, encoder, num_worlds=rows, render_mode=render_mode, **options
+        )
     if kind == "gymnasium":
         from benchnav.envs.gym.leader_env import LeaderEnv
 
-        return LeaderEnv(name, encoder, others=others, **options)
+        return LeaderEnv(name, encoder, others=others, render_mode=render_mode, **options)
     if kind == "pettingzoo":
         from benchnav.envs.parallel_env import LeadersEnv
 
-        return LeadersEnv(name, encoder, **options)
+        return LeadersEnv(name, encoder, render_mode=render_mode, **options)
     from benchnav.envs.factory import make_batch
     from benchnav.envs.sb3.agent_vec_env import AgentVecEnv
     from benchnav.envs.sb3.attempt_monitor import AttemptMonitor
 
-    batch = make_batch(name, encoder, split, worlds, reward, rows=rows)
+    batch = make_batch(name, encoder, rows=rows, **options)
     return AttemptMonitor(AgentVecEnv([batch], render_mode))

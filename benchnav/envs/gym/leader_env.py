@@ -36,6 +36,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         reward: Reward = None,
         others: Spec | None = None,
         render_mode: str | None = None,
+        perception: str = "exact",
     ) -> None:
         """Draw the worlds.
 
@@ -48,6 +49,8 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
             others: the navigator of the other agents, by name or ``{"type": name, …}``; required.
             render_mode: "rgb_array": `render` returns a picture; "human": a window shows every
                 decision in real time; None: nothing is drawn.
+            perception: "exact", or "noisy": the learning agent perceives with the noise of the
+                scenario, other agents without error.
 
         Raises BenchnavError for a mistake in any of these.
         """
@@ -59,8 +62,9 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
                 " 'benchnav list navigators' shows all."
             )
         self.batch = make_batch(
-            scenario, encoder, split, worlds, reward, autoreset=Autoreset.DISABLED
-        )
+            scenario, encoder, split, worlds, reward, autoreset=Autoreset.DISABLED,
+            perception=perception,
+        )  # fmt: skip
         self.observation_space = observation_space(self.batch.encoder)
         self.action_space = action_space()
         self.agent = 0

@@ -50,6 +50,7 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         render_mode: str | None = None,
         num_worlds: int = 1,
         autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
+        perception: str = "exact",
     ) -> None:
         """Draw the worlds. The parameters are those of `LeaderEnv`, except for five.
 
@@ -72,7 +73,7 @@ class LeaderVectorEnv(VectorEnv[Float32Array, Float32Array, Any]):
         self.metadata = {**self.metadata, "autoreset_mode": self._mode}  # type: ignore[misc]
         self.batch = make_batch(
             scenario, encoder, split, worlds, reward, num_envs, rows=num_worlds,
-            autoreset=Autoreset(self._mode.value),
+            autoreset=Autoreset(self._mode.value), perception=perception,
         )  # fmt: skip
         self._slots = LearnerSlots(self.batch)
         self.render_mode, self._renderer = render_mode, Renderer(self.batch.simulation, PICTURE)

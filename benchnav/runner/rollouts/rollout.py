@@ -243,7 +243,8 @@ def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) 
     """Brief all navigators. Return the duration [s] of the evaluated navigator's reset."""
     about = (assignment.salt, assignment.scenario_hash, assignment.split)
     which = assignment.rehearsal
-    keys = np.array([noise_key(*about, seed, which) for seed in seeds])
+    noisy = assignment.noise is not None
+    keys = np.array([noise_key(*about, seed, which) for seed in seeds]) if noisy else None
     seconds = [
         d.reset([generator(*about, seed, d.which, which) for seed in seeds], keys) for d in drivers
     ]

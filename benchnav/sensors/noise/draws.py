@@ -32,7 +32,8 @@ def draw(
     """Return two words of 64 random bits.
 
     Args:
-        key_0, key_1: the key of the world.
+        key_0: first half of the key of the world.
+        key_1: second half of it.
         step: decisions done, below 2³².
         agent: index of the agent in its world, below 2³².
         channel: one of the channels above.
@@ -82,7 +83,7 @@ def uniform(word: np.uint64) -> float:
 @kernel_without_allocation
 def two_normals(word: np.uint64) -> tuple[float, float]:
     """Return two independent standard normal numbers from the halves of a word."""
-    return normal(np.int64(word >> _32)), normal(np.int64(word & _LOW))
+    return normal(int(word >> _32)), normal(int(word & _LOW))
 
 
 @kernel_without_allocation

@@ -1,14 +1,15 @@
 """The worlds in which a recipe trains and validates."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from benchnav.arena import World
+from benchnav.arena.noise import Noise
 from benchnav.envs import AgentBatch, AgentVecEnv, RewardWeights, encoder
-from benchnav.generation.build import build
+from benchnav.generation.build import build, noise_of
 from benchnav.navigation import Spec
 from benchnav.scenario.catalogue import find
 
@@ -17,10 +18,11 @@ from .recipe import Recipe, Stage
 
 @dataclass(frozen=True, eq=False)
 class Pool:
-    """Worlds that share clock, sensing, goal tolerance and drivers."""
+    """Worlds that share clock, sensing, goal tolerance, drivers and noise."""
 
     worlds: Sequence[World]
     drivers: tuple[Spec, ...]
+    noise: Noise | None  # of the senses; None: the perception track `exact`
 
 
 class CourseEnv(AgentVecEnv):
@@ -35,11 +37,11 @@ def training_pools(recipe: Recipe, stage: Stage) -> list[Pool]:
     """Return the worlds of a stage."""
     pools: dict[str, Pool] = {}
     for course in recipe.courses_of(stage):
-        new = _pool(course.scenario, "train", course.worlds)
+        new = _pool(recipe, course.scenario, "train", course.worlds)
         first = new.worlds[0]
-        key = repr((first.clock, first.sensing, first.rules.goal_tolerance, new.drivers))
-        held = pools.get(key, Pool((), new.drivers))
-        pools[key] = Pool((*held.worlds, *new.worlds), new.drivers)
+        key = repr((first.clock, first.sensing, first.rules.goal_tolerance, new.drivers, new.noise))
+        held = pools[key].worlds if key in pools else ()
+        pools[key] = replace(new, worlds=(*held, *new.worlds))
     return list(pools.values())
 
 
@@ -58,17 +60,19 @@ def validation_batches(recipe: Recipe) -> dict[str, AgentBatch]:
     """Return worlds of the split `validation`, by scenario; every world has its own row."""
     validation = recipe.validation
     names = validation.scenarios or tuple(course.scenario for course in recipe.courses)
-    pools = {name: _pool(name, "validation", validation.worlds) for name in names}
+    pools = {name: _pool(recipe, name, "validation", validation.worlds) for name in names}
     return {name: _batch(recipe, pool, len(pool.worlds)) for name, pool in pools.items()}
 
 
-def _pool(name: str, split: str, count: int) -> Pool:
+def _pool(recipe: Recipe, name: str, split: str, count: int) -> Pool:
     scenario = find(name)
-    return Pool([build(scenario, split, seed) for seed in range(count)], scenario.driver_specs)
+    worlds = [build(scenario, split, seed) for seed in range(count)]
+    noise = noise_of(scenario) if recipe.perception == "noisy" else None
+    return Pool(worlds, scenario.driver_specs, noise)
 
 
 def _batch(recipe: Recipe, pool: Pool, rows: int) -> AgentBatch:
     return AgentBatch(
         pool.worlds, rows, encoder(recipe.encoder), RewardWeights(), np.random.default_rng(0),
-        drivers=pool.drivers,
+        drivers=pool.drivers, noise=pool.noise,
     )  # fmt: skip
