@@ -35,7 +35,8 @@ def scene(episode: Episode, agents: IntArray, origin: Origin | None = None) -> d
     return {
         "navigator": identity.navigator, "scenario": identity.scenario,
         "condition": condition(identity.track, identity.perception),
-        "perception": identity.perception, "seed": identity.seed, "failure": episode.failure, "dt": world.clock.dt,
+        "perception": identity.perception, "seed": identity.seed, "failure": episode.failure,
+        "dt": world.clock.dt,
         "horizon": world.clock.horizon, "bounds": list(world.bounds),
         "solids": [_shape(solid) for solid in world.solids],
         "bodies": [_shape(body.solid) for body in world.bodies],
