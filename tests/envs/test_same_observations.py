@@ -10,7 +10,7 @@ from benchnav.envs.agent_batch import AgentBatch
 from benchnav.envs.background_agents import BackgroundNavigator
 from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.reward import RewardWeights
-from benchnav.generation.build import build
+from benchnav.generation.build import build, noise_of
 from benchnav.navigation.navigator import Navigator, Need
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.rollouts.navigator_driver import Driver
@@ -67,18 +67,21 @@ def step_of(batch, command):
     return batch.step(np.zeros_like(command))
 
 
+@pytest.mark.parametrize("noisy", [False, True])
 @pytest.mark.parametrize(
     "scenario", ["leaders/dynamic", "leaders/moving-furniture", "corridor/bidirectional"]
 )
-def test_an_environment_shows_a_learner_what_the_runner_shows_a_navigator(scenario):
+def test_an_environment_shows_a_learner_what_the_runner_shows_a_navigator(scenario, noisy):
     worlds = worlds_of(scenario)
+    noise = replace(noise_of(find(scenario)), delay=2) if noisy else None
     wanderer, simulation = Wanderer(), Simulation(worlds)
-    driver = Driver(wanderer, simulation, 0, "unknown")
-    driver.reset([np.random.default_rng(b) for b in range(len(worlds))])
+    driver = Driver(wanderer, simulation, 0, "unknown", noise=noise)
     rng = np.random.default_rng(0)
-    batch = AgentBatch(worlds, len(worlds), encoder("ego"), RewardWeights(), rng)
+    batch = AgentBatch(worlds, len(worlds), encoder("ego"), RewardWeights(), rng, noise=noise)
     batch._needs = SENSORS
     batch.reset(np.arange(len(worlds)))
+    keys = batch._senses._keys if noisy else None
+    driver.reset([np.random.default_rng(b) for b in range(len(worlds))], keys)
     alive, compared = np.ones(len(worlds), bool), 0
     for _ in range(DECISIONS):
         going = np.flatnonzero(alive & simulation.running)
