@@ -66,13 +66,15 @@ def has_limits(limits: FloatArray) -> BoolArray:
 @kernel
 def curvature(limits: FloatArray) -> float:
     """Return the largest curvature [1/m] of a car's path."""
-    return math.tan(limits[STEER]) / limits[BASE]
+    most: float = math.tan(limits[STEER]) / limits[BASE]
+    return most
 
 
 @kernel
 def top_speed(limits: FloatArray) -> float:
     """Return the largest speed [m/s] straight ahead."""
-    return min(limits[TOP], limits[WHEEL])
+    top: float = min(limits[TOP], limits[WHEEL])
+    return top
 
 
 @kernel

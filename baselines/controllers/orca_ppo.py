@@ -54,8 +54,8 @@ class OrcaPpo(Controller):
 
     ORCA assumes that a body can execute its commands, and that others avoid it too. Therefore the
     policy of `recurrent-ppo-plus`, which learned on unicycles among obstacles that
-    never yield, drives unicycles and differential drives, and every agent that has just sensed a dynamic
-    obstacle; ORCA drives all others. The policy is better with goals than with waypoints,
+    never yield, drives unicycles and differential drives, and every agent that has just sensed a
+    dynamic obstacle; ORCA drives all others. The policy is better with goals than with waypoints,
     and avoids obstacles itself: unless the path is a detour, its target is the goal.
     """
 

@@ -219,8 +219,8 @@ def test_where_the_mean_touches_the_best_sample_is_taken():
     control(
         0, 1, np.ones(1, bool), np.zeros((1, 2)), np.zeros(1), np.array([[4.0, 0.0]]),
         np.array([9.0]), body[None], plan, *UNLIMITED, *post,
-        np.array([[int(Kind.AGENT)]], np.int8), np.array([1]), nothing, nothing, np.array([0]), noise, 0.2, np.array([0.4, 0.5]), 1.0, 0.0,
-        0.05, weights, out,
+        np.array([[int(Kind.AGENT)]], np.int8), np.array([1]), nothing, nothing, np.array([0]),
+        noise, 0.2, np.array([0.4, 0.5]), 1.0, 0.0, 0.05, weights, out,
     )  # fmt: skip
     expected = 2.25 * (1 - 2 * np.arange(8) / 7)  # one of both ways round, unmixed
     assert np.abs(np.abs(out[0, :, 1]) - np.abs(expected)).max() < 1e-9

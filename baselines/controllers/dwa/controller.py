@@ -103,7 +103,8 @@ class DynamicWindow(Controller):
         arrays = (
             observation.active, observation.position, observation.heading,
             np.concatenate([now[..., None], last[..., 1:]], axis=-1), guide.target,
-            guide.remaining, body, limited, limits, position, velocity, radius, count, start, end, edges,
+            guide.remaining, body, limited, limits, position, velocity, radius, count, start, end,
+            edges,
         )  # fmt: skip
         answer = np.zeros((rows, 2))
         run_rows(choose, rows, *flat(rows, arrays), self._search, answer)

@@ -94,17 +94,18 @@ def _within_acceleration(
 @kernel
 def turn_time(limits: FloatArray, angle: float) -> float:
     """Return the time [s] in which a body turns by ``angle`` [rad] from rest to rest."""
-    rate = limits[TURN]
+    rate: float = limits[TURN]
     if limits[KIND] == _WHEELS:
         rate = min(rate, limits[WHEEL] / limits[TRACK])
-    up = limits[TURN_UP]
+    up: float = limits[TURN_UP]
     if math.isinf(up):
         time = angle / rate
     elif angle * up < rate * rate:
         time = 2.0 * math.sqrt(angle / up)
     else:
         time = angle / rate + rate / up
-    return max(time, limits[STEP])
+    least: float = limits[STEP]
+    return max(time, least)
 
 
 @kernel
@@ -167,7 +168,7 @@ def widest_turn(limits: FloatArray, error: float) -> float:
     its wheels turn to it, for a time t, it strays by v θ t / 2 more.
     """
     r = 1.0 / curvature(limits)
-    late = 0.5 * top_speed(limits) * limits[STEER] / limits[STEER_RATE]
+    late: float = 0.5 * top_speed(limits) * limits[STEER] / limits[STEER_RATE]
     return min((math.sqrt(late * late + 2.0 * r * error) - late) / r, 0.5 * math.pi)
 
 
