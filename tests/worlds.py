@@ -29,7 +29,9 @@ def disc(kind, x, y, radius):
     return Solid(kind, (), (x, y), radius)
 
 
-def agents(start, goal, radius=0.5, speed=2.0, unicycle=False, heading=0.0, team=0, driver=0):
+def agents(
+    start, goal, radius=0.5, speed=2.0, unicycle=False, heading=0.0, team=0, driver=0, **limits
+):  # fmt: skip
     start, goal = np.atleast_2d(np.asarray(start, float)), np.atleast_2d(np.asarray(goal, float))
     n = len(start)
 
@@ -38,8 +40,9 @@ def agents(start, goal, radius=0.5, speed=2.0, unicycle=False, heading=0.0, team
 
     return Agents(
         start, full(heading), goal, full(radius), full(speed), full(1.0), full(2.5),
-        full(int(unicycle), np.int8), full(0, np.int8), full(team, np.int64),
+        full(unicycle, np.int8), full(0, np.int8), full(team, np.int64),
         full(driver, np.int64),
+        **{name: full(value, np.asarray(value).dtype) for name, value in limits.items()},
     )  # fmt: skip
 
 
@@ -65,9 +68,13 @@ def back_and_forth(solid, a, b, speed, phase=0.0):
 
 
 def random_world(
-    seed, count=4, contact=ContactRule.SLIDE, unicycle=True, radius=0.5, **options
+    seed, count=4, contact=ContactRule.SLIDE, unicycle=True, radius=0.5, limits=None, **options
 ):  # fmt: skip
-    """A walled square with boxes, discs and movers; agents start free of everything."""
+    """A walled square with boxes, discs and movers; agents start free of everything.
+
+    ``unicycle`` may be any number of `Dynamics`, or one for each agent, and ``limits`` holds
+    columns of `MotionLimits`.
+    """
     rng = np.random.default_rng(seed)
     solids, taken = [walls(20.0)], []
 
@@ -92,6 +99,19 @@ def random_world(
         movers.append(back_and_forth(shape, a, b, rng.uniform(0.5, 1.5), rng.uniform(0, 5)))
     crew = agents(
         start, rng.uniform(1, 19, (count, 2)), radius, unicycle=unicycle,
-        heading=rng.uniform(-3, 3, count),
+        heading=rng.uniform(-3, 3, count), **(limits or {}),
     )  # fmt: skip
     return world(crew, solids, movers, contact=contact, **options)
+
+
+def limited_world(seed, **options):
+    """A random world of four agents: of every dynamics one, with all limits of motion."""
+    none = math.inf
+    limits = {
+        "max_acceleration": [2.0, 1.0, 3.0, 2.0], "max_deceleration": [3.0, 3.0, none, 5.0],
+        "max_turn_acceleration": [none, 6.0, 9.0, none], "track_width": [0.0, 0.0, 0.6, 0.0],
+        "max_wheel_speed": [none, none, 1.8, none], "wheelbase": [0.0, 0.0, 0.0, 0.4],
+        "max_steering_angle": [none, none, none, 0.7], "max_steering_rate": [none, none, none, 2.0],
+        "reverse": [False, True, True, seed % 2 == 0],
+    }  # fmt: skip
+    return random_world(seed, 4, unicycle=[0, 1, 2, 3], limits=limits, **options)

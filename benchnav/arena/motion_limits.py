@@ -42,6 +42,11 @@ class MotionLimits:
             if getattr(self, name) is None:
                 object.__setattr__(self, name, np.full(len(self), value))
 
+    @property
+    def limited(self) -> bool:
+        """Whether any column limits an agent."""
+        return len(self.without_limit()) < len(NO_LIMIT)
+
     def without_limit(self) -> frozenset[str]:
         """Return the names of the columns that limit no agent."""
         return frozenset(

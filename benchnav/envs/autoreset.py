@@ -22,10 +22,11 @@ class AutoresetSimulation(Simulation):
     def __init__(self, pool: Sequence[World], rows: int) -> None:
         super().__init__(pool)
         self.pool = self.worlds
-        self._fresh = (self.agents, self.bodies, self.records, self.sees)
+        self._fresh = (self.agents, self.limits, self.bodies, self.records, self.sees)
         first = np.arange(rows) % len(pool)
         self.worlds = tuple(self.pool[w] for w in first)
-        self.agents, self.bodies, self.records, self.sees = (a[first] for a in self._fresh)
+        live = (array[first] for array in self._fresh)
+        self.agents, self.limits, self.bodies, self.records, self.sees = live
         self._opened, self._closed = self._opened[first], self._closed[first]
         self._kept = [[] for _ in first]
         self.hashed, self.spots = self.hashed[first], self.spots[first]
@@ -35,9 +36,8 @@ class AutoresetSimulation(Simulation):
 
     def restart(self, rows: IntArray, worlds: IntArray) -> None:
         """Start the worlds ``worlds`` (N,) of the pool in ``rows`` (N,)."""
-        for live, fresh in zip(
-            (self.agents, self.bodies, self.records, self.sees), self._fresh, strict=True
-        ):
+        arrays = (self.agents, self.limits, self.bodies, self.records, self.sees)
+        for live, fresh in zip(arrays, self._fresh, strict=True):
             live[rows] = fresh[worlds]
         self._opened["code"][rows] = -1
         held = list(self.worlds)

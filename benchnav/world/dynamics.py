@@ -8,17 +8,18 @@ from benchnav.kernels import kernel_without_allocation
 
 @kernel_without_allocation
 def limited(
-    c0: float, c1: float, twist: bool, unicycle: bool, heading: float,
+    c0: float, c1: float, twist: bool, nonholonomic: bool, heading: float,
     max_speed: float, max_turn_rate: float, dt: float,
 ) -> tuple[float, float]:  # fmt: skip
-    """Return the command within limits: as a twist if it is a twist or the body is a unicycle.
+    """Return the command within limits of speed and turn rate.
 
-    A unicycle tracks a planar velocity u by one law: turn towards u at the
+    It is returned as a twist if it is a twist or the body is ``nonholonomic``, a unicycle. A
+    unicycle tracks a planar velocity u by one law: turn towards u at the
     rate that would face it at the end of the step, within the limit, and drive at
     |u| cos(error), but never backwards. A holonomic body follows a twist as a unicycle
     does.
     """
-    if unicycle or twist:
+    if nonholonomic or twist:
         v, w = c0, c1
         if not twist:
             c, s = cos_sin(heading)

@@ -27,16 +27,23 @@ WORLD = _record(
     origin_x="f8", origin_y="f8", side="f8",
     substeps="i8", steps="i8", steps_done="i8", revision="i8", contact="i8", nx="i8", ny="i8",
     grid="i8", first="i8", last="i8", agents="i8", bodies="i8", closed="i8",
-    vanish_on_arrival="?", vanish_on_end="?", charge_both="?", running="?",
+    vanish_on_arrival="?", vanish_on_end="?", charge_both="?", running="?", limited="?",
 )  # fmt: skip
 
 # (B, A), padding has present = False; fields that others read come first, in one cache line
 AGENT = _record(
     x="f8", y="f8", vx="f8", vy="f8", radius="f8", ci="i4", cj="i4", team="i4",
-    spot="i4", status="i1", present="?", unicycle="?", evaluated="?", turning="?", halted="?",
+    spot="i4", status="i1", present="?", nonholonomic="?", evaluated="?", turning="?", halted="?",
     open="?",
     heading="f8", goal_x="f8", goal_y="f8", arrival="f8", max_speed="f8", max_turn_rate="f8",
     preferred_speed="f8", drive_0="f8", drive_1="f8", tau="f8", code="i8", home="i8", hits="i8",
+)  # fmt: skip
+
+# (B, A), read in worlds that are `limited`: limits of motion, and the steering angle [rad]
+LIMITS = _record(
+    max_speed="f8", max_turn_rate="f8", max_acceleration="f8", max_deceleration="f8",
+    max_turn_acceleration="f8", half_track="f8", max_wheel_speed="f8", wheelbase="f8",
+    max_steering_angle="f8", max_steering_rate="f8", steering="f8", dynamics="i1", reverse="?",
 )  # fmt: skip
 
 # an agent in a hashed cell (ci, cj) with its motion, so that a search reads one array in order

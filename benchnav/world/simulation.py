@@ -14,8 +14,9 @@ from benchnav.threads import run_rows
 from benchnav.world.bodies import stack_bodies, start_bodies, top_speeds
 from benchnav.world.contacts import RELEASE
 from benchnav.world.fixed import stack_fixed
+from benchnav.world.motion_limits import limit_records
 from benchnav.world.records import AGENT as AGENT_RECORD
-from benchnav.world.records import CONTACT, LISTED, OPEN_CONTACTS, SPOT, WORLD, field
+from benchnav.world.records import CONTACT, LIMITS, LISTED, OPEN_CONTACTS, SPOT, WORLD, field
 from benchnav.world.step import step_worlds
 from benchnav.world.touch import AGENT, BODY, BRUTE_FORCE
 
@@ -34,6 +35,7 @@ class Simulation:
             raise ValueError("The worlds of a batch must share their clock and rules.")
         self.agents = _agent_records(self.worlds)
         self.bodies, self.shapes, self.knots = stack_bodies(self.worlds)
+        self.limits = _limit_records(self.worlds, self.A)
         self.records = _world_records(self.worlds, self.agents, self.bodies, self.knots)
         # wider lists change nothing: an object out of reach is never the next touch
         margin = float((0.5 * self.records["reach"]).max()) + RELEASE
@@ -97,7 +99,7 @@ class Simulation:
 
         Args:
             command: (B, A, 2) finite planar velocities [m/s] or twists [m/s, rad/s].
-            twist: (B, A) whether each agent's command is a twist.
+            twist: (B, A) whether each agent's command is a twist, the same in every step.
 
         Returns:
             (B, A, 2) the commands as executed, within the limits.
@@ -106,9 +108,9 @@ class Simulation:
         self._drain(32)
         run_rows(
             step_worlds, self.B, np.ascontiguousarray(command, np.float64),
-            np.ascontiguousarray(twist), executed, self.records, self.agents, self.bodies,
-            self.shapes, self.knots, self.capsules, self.start, self.item, self._opened,
-            self._closed, self.hashed, self.spots, self.listed, self.beyond,
+            np.ascontiguousarray(twist), executed, self.records, self.agents, self.limits,
+            self.bodies, self.shapes, self.knots, self.capsules, self.start, self.item,
+            self._opened, self._closed, self.hashed, self.spots, self.listed, self.beyond,
         )  # fmt: skip
         return executed
 
@@ -194,8 +196,17 @@ def _agent_records(worlds: Sequence[World]) -> AnyArray:
         row["goal_x"], row["goal_y"] = agents.goal[:, 0], agents.goal[:, 1]
         for name in plain:
             row[name] = getattr(agents, name)
-        row["unicycle"] = agents.dynamics == int(Dynamics.UNICYCLE)
+        row["nonholonomic"] = agents.dynamics != int(Dynamics.HOLONOMIC)
         row["evaluated"], row["present"] = agents.evaluated, True
+    return records
+
+
+def _limit_records(worlds: Sequence[World], most: int) -> AnyArray:
+    """Return LIMITS records (B, A), which only worlds with limits read."""
+    records = np.zeros((len(worlds), most), LIMITS)
+    for row, world in zip(records, worlds, strict=True):
+        if world.agents.limited:
+            row[: len(world.agents)] = limit_records(world.agents)
     return records
 
 
@@ -214,6 +225,7 @@ def _world_records(
         row["charge_both"] = rules.charge == Charge.BOTH
         row["agents"], row["bodies"] = len(world.agents), len(world.bodies)
         row["running"] = bool(world.agents.evaluated.any())
+        row["limited"] = world.agents.limited
     speed, widest = agents["max_speed"].max(axis=1), agents["radius"].max(axis=1)
     top_speeds(bodies, records["bodies"], knots, speed)
     records["widest"] = widest

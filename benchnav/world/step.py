@@ -21,6 +21,7 @@ from benchnav.world.contacts import MAX_HITS, follow_up, touch
 from benchnav.world.crowd import ROWS, advance_crowd, find_all_in_crowd, sort_spots
 from benchnav.world.dynamics import limited, planar_velocity
 from benchnav.world.fixed import cell_at
+from benchnav.world.motion_limits import within_limits
 from benchnav.world.touch import BRUTE_FORCE, find_next, next_agent
 
 _ACTIVE = int(Status.ACTIVE)
@@ -30,50 +31,51 @@ _STATIC = int(Kind.STATIC)
 @kernel
 def step_worlds(
     low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
-    worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
-    capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray,
+    worlds: AnyArray, agents: AnyArray, limits: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    knots: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray,
+    closed: AnyArray, hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray,
 ) -> None:  # fmt: skip
     """Advance the running worlds of rows low:high; ``executed`` gets the commands within limits."""
     count = agents.shape[1]
     driven, motion = np.empty((3, count)), np.empty((ROWS, count))
     near = np.empty(2 * count + 1, np.int64)
     _step_rows(
-        low, high, command, twist, executed, worlds, agents, bodies, shapes, knots, capsules,
-        start, item, opened, closed, hashed, spots, listed, beyond, driven, motion, near,
+        low, high, command, twist, executed, worlds, agents, limits, bodies, shapes, knots,
+        capsules, start, item, opened, closed, hashed, spots, listed, beyond, driven, motion, near,
     )  # fmt: skip
 
 
 @kernel_without_allocation
 def _step_rows(
     low: int, high: int, command: FloatArray, twist: BoolArray, executed: FloatArray,
-    worlds: AnyArray, agents: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray,
-    capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray,
-    hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray, driven: FloatArray,
-    motion: FloatArray, near: IntArray,
+    worlds: AnyArray, agents: AnyArray, limits: AnyArray, bodies: AnyArray, shapes: AnyArray,
+    knots: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, opened: AnyArray,
+    closed: AnyArray, hashed: IntArray, spots: AnyArray, listed: IntArray, beyond: FloatArray,
+    driven: FloatArray, motion: FloatArray, near: IntArray,
 ) -> None:  # fmt: skip
     for b in range(low, high):
         if worlds[b].running:
             step_world(
-                command[b], twist[b], executed[b], worlds[b], agents[b], bodies[b], shapes, knots,
-                capsules, start, item, opened[b], closed[b], hashed[b], spots[b], listed[b],
-                beyond[b], driven, motion, near,
+                command[b], twist[b], executed[b], worlds[b], agents[b], limits[b], bodies[b],
+                shapes, knots, capsules, start, item, opened[b], closed[b], hashed[b], spots[b],
+                listed[b], beyond[b], driven, motion, near,
             )  # fmt: skip
 
 
 @kernel_without_allocation
 def step_world(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
-    bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray, start: IntArray,
-    item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray, spots: AnyArray,
-    listed: IntArray, beyond: FloatArray, driven: FloatArray, motion: FloatArray, near: IntArray,
+    limits: AnyArray, bodies: AnyArray, shapes: AnyArray, knots: AnyArray, capsules: AnyArray,
+    start: IntArray, item: IntArray, opened: AnyArray, closed: AnyArray, hashed: IntArray,
+    spots: AnyArray, listed: IntArray, beyond: FloatArray, driven: FloatArray, motion: FloatArray,
+    near: IntArray,
 ) -> None:  # fmt: skip
     """Advance one world: arrays over its agents (A,), bodies (M,) and contacts (A, 8).
 
     ``driven`` (3, A), ``motion`` (6, A) and ``near`` (2 A + 1,) are scratch.
     """
     relocate(world.steps_done * world.dt, world, agents, bodies, knots)
-    if obey(command, twist, executed, world, agents, driven):
+    if obey(command, twist, executed, world, agents, limits, driven):
         find_directions(driven[0], driven[1], driven[2])
     for s in range(world.substeps):
         tick = world.steps_done * world.substeps + s
@@ -139,7 +141,7 @@ def _within(dx: float, dy: float, reach: float) -> bool:
 @inlined
 def obey(
     command: FloatArray, twist: BoolArray, executed: FloatArray, world: Any, agents: AnyArray,
-    driven: FloatArray,
+    limits: AnyArray, driven: FloatArray,
 ) -> bool:  # fmt: skip
     """Store commands within limits; return whether any is a planar velocity.
 
@@ -149,11 +151,17 @@ def obey(
     for i in range(world.agents):
         a = agents[i]
         a.halted = False
-        a.turning = a.unicycle or twist[i]
-        a.drive_0, a.drive_1 = 0.0, 0.0
-        if a.status == _ACTIVE and a.present:
+        a.turning = a.nonholonomic or twist[i]
+        if a.status != _ACTIVE or not a.present:
+            a.drive_0, a.drive_1 = 0.0, 0.0
+        elif world.limited:
+            a.drive_0, a.drive_1 = within_limits(
+                command[i, 0], command[i, 1], twist[i], a.heading, a.drive_0, a.drive_1, limits[i],
+                world.dt,
+            )  # fmt: skip
+        else:
             a.drive_0, a.drive_1 = limited(
-                command[i, 0], command[i, 1], twist[i], a.unicycle, a.heading, a.max_speed,
+                command[i, 0], command[i, 1], twist[i], a.nonholonomic, a.heading, a.max_speed,
                 a.max_turn_rate, world.dt,
             )  # fmt: skip
         executed[i, 0], executed[i, 1] = a.drive_0, a.drive_1

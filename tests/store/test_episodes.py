@@ -15,7 +15,7 @@ from benchnav.store.parts.digest import digest
 from benchnav.store.parts.episodes import LATER, SHAPES, from_table, to_table
 from benchnav.store.parts.world_codec import from_json, to_json, world_from_json, world_to_json
 from tests.runner.verify.faulty import play
-from tests.worlds import random_world
+from tests.worlds import limited_world, random_world
 
 Scalar = TypeVar("Scalar", bound=np.generic)
 # What NDArray is since NumPy 2.5, whichever NumPy is installed.
@@ -147,6 +147,29 @@ def test_states_of_a_simulation_are_stored_as_zeros_where_nothing_happens(contac
     if not twist:
         for name, array in coded.items():
             assert (array.view(np.int64) == 0).mean() > 0.2, name  # agents touch all the time
+
+
+@pytest.mark.parametrize("twist", [False, True])
+def test_states_of_bodies_with_limits_are_stored_as_zeros_too(twist):
+    world = limited_world(4, steps=60)
+    episode = play(world, 4, twist)
+    states = {name: getattr(episode, name) for name in SHAPES}
+    coded = state_codec.coded(world, episode.twist, states)
+    back = state_codec.decoded(world, episode.twist, {**states, **coded})
+    for name, array in back.items():
+        assert array.tobytes() == states[name].tobytes()
+    assert (coded["executed"].view(np.int64) == 0).all()
+    assert (coded["position"].view(np.int64) == 0).mean() > 0.2
+
+
+def test_limits_of_motion_come_back_with_their_world(tools):
+    world = limited_world(5)
+    text = world_to_json(world).decode()
+    tools.same(world.agents, world_from_json(text).agents)
+    assert "max_acceleration" in text
+    plain = world_to_json(random_world(5)).decode()
+    assert "max_acceleration" not in plain
+    tools.same(random_world(5).agents, world_from_json(plain).agents)
 
 
 def test_coded_states_of_a_strange_world_are_refused(tools):

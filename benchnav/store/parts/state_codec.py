@@ -23,13 +23,14 @@ from benchnav.geometry.rotation import angle_of, wrap
 from benchnav.kernels import kernel_without_allocation
 from benchnav.world.bodies import body_at, law_records
 from benchnav.world.dynamics import limited, planar_velocity
+from benchnav.world.motion_limits import limit_records, within_limits
 
 CODED = ("executed", "position", "heading")
 BODIES = "body_position"
 MAX_SUBSTEPS = 100  # of a scenario; a world with more is stored as it is
 _ACTIVE = int(Status.ACTIVE)
 _RELOCATE = int(LawKind.RELOCATE)
-_UNICYCLE = int(Dynamics.UNICYCLE)
+_HOLONOMIC = int(Dynamics.HOLONOMIC)
 
 
 def can_code(world: World) -> bool:
@@ -80,8 +81,9 @@ def _convert(
     _code(
         np.ascontiguousarray(states["requested"], np.float64),
         np.ascontiguousarray(states["status"], np.int8),
-        np.ascontiguousarray(twist, np.bool_).reshape(size), column("dynamics") == _UNICYCLE,
-        column("max_speed"), column("max_turn_rate"), column("start", 2), column("heading"),
+        np.ascontiguousarray(twist, np.bool_).reshape(size), column("dynamics") != _HOLONOMIC,
+        column("max_speed"), column("max_turn_rate"), world.agents.limited,
+        limit_records(world.agents), column("start", 2), column("heading"),
         float(clock.dt), clock.substeps, *arrays,
     )  # fmt: skip
     return {**dict(zip(CODED, result, strict=True)), BODIES: _bodies(world, states[BODIES], decode)}
@@ -102,9 +104,10 @@ def _bodies(world: World, given: FloatArray, decode: bool) -> FloatArray:
 
 @kernel_without_allocation
 def _code(
-    requested: FloatArray, status: ByteArray, twist: BoolArray, unicycle: BoolArray,
-    max_speed: FloatArray, max_turn_rate: FloatArray, start: FloatArray, facing: FloatArray,
-    dt: float, substeps: int, executed: FloatArray, position: FloatArray, heading: FloatArray,
+    requested: FloatArray, status: ByteArray, twist: BoolArray, nonholonomic: BoolArray,
+    max_speed: FloatArray, max_turn_rate: FloatArray, has_limits: bool, limits: AnyArray,
+    start: FloatArray, facing: FloatArray, dt: float, substeps: int,
+    executed: FloatArray, position: FloatArray, heading: FloatArray,
     new_executed: FloatArray, new_position: FloatArray, new_heading: FloatArray,
     executed_bits: IntArray, position_bits: IntArray, heading_bits: IntArray,
     given_executed: IntArray, given_position: IntArray, given_heading: IntArray,
@@ -115,23 +118,30 @@ def _code(
     """
     h = dt / substeps
     for i in range(len(twist)):
-        turning = unicycle[i] or twist[i]
+        turning = nonholonomic[i] or twist[i]
         new_position[0, i, 0], new_position[0, i, 1] = start[i, 0], start[i, 1]
         new_heading[0, i] = facing[i]
+        previous_0, previous_1 = 0.0, 0.0  # the executed command
         position_bits[0, i, 0] ^= given_position[0, i, 0]
         position_bits[0, i, 1] ^= given_position[0, i, 1]
         heading_bits[0, i] ^= given_heading[0, i]
         for t in range(len(requested)):
             drive_0, drive_1 = 0.0, 0.0
-            if status[t, i] == _ACTIVE:
+            if status[t, i] == _ACTIVE and has_limits:
+                drive_0, drive_1 = within_limits(
+                    requested[t, i, 0], requested[t, i, 1], twist[i], heading[t, i], previous_0,
+                    previous_1, limits[i], dt,
+                )  # fmt: skip
+            elif status[t, i] == _ACTIVE:
                 drive_0, drive_1 = limited(
-                    requested[t, i, 0], requested[t, i, 1], twist[i], unicycle[i], heading[t, i],
-                    max_speed[i], max_turn_rate[i], dt,
+                    requested[t, i, 0], requested[t, i, 1], twist[i], nonholonomic[i],
+                    heading[t, i], max_speed[i], max_turn_rate[i], dt,
                 )  # fmt: skip
             new_executed[t, i, 0], new_executed[t, i, 1] = drive_0, drive_1
             executed_bits[t, i, 0] ^= given_executed[t, i, 0]
             executed_bits[t, i, 1] ^= given_executed[t, i, 1]
             drive_0, drive_1 = executed[t, i, 0], executed[t, i, 1]
+            previous_0, previous_1 = drive_0, drive_1
             x, y, angle = position[t, i, 0], position[t, i, 1], heading[t, i]
             if status[t, i] == _ACTIVE:
                 for _ in range(substeps):

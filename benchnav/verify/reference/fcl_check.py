@@ -176,7 +176,7 @@ class _Judgement:
             return here
         drive, heading = e.executed[t, i], float(e.heading[t, i])
         twist = bool(e.twist[i]) if e.twist is not None else False
-        turning = twist or self.world.agents.dynamics[i] == int(Dynamics.UNICYCLE)
+        turning = twist or self.world.agents.dynamics[i] != int(Dynamics.HOLONOMIC)
         substeps = self.world.clock.substeps
         h, corner, places = self.dt / substeps, here[0], [here]
         for s in range(substeps):

@@ -104,6 +104,8 @@ def _follow(twin: Twin, episode: Episode, t: int) -> None:
     twin.position = episode.position[t].copy()
     twin.heading = episode.heading[t].copy()
     twin.status = _status(episode, t)
+    for drive, executed in zip(twin.drives, episode.executed[t - 1], strict=True):
+        drive.follow(executed)
 
 
 def _check_arrivals(

@@ -17,6 +17,7 @@ from benchnav.arena.world import Afterwards, Charge, ContactRule, World
 from benchnav.arrays import BoolArray, ByteArray, FloatArray
 from benchnav.episode.episode import Status
 from benchnav.verify.reference.reference_contacts import Event, Ledger, Partner
+from benchnav.verify.reference.reference_dynamics import Drive
 from benchnav.verify.reference.reference_geometry import first_touch, inside, law_position, nearest
 
 MAX_HITS = 8  # after this many touches within a substep, an agent is wedged
@@ -47,6 +48,8 @@ class Twin:
         self.halted = np.zeros(len(members), np.bool_)
         self.placed = [False] * len(world.bodies)
         self.bodies = np.array([law_position(b, 0.0, False) for b in world.bodies]).reshape(-1, 2)
+        rest = np.zeros(2)
+        self.drives = [Drive(members, i, world.clock.dt, rest) for i in range(len(members))]
         self.ledger = Ledger()
         self.doubtful = False  # rounding may decide the outcome of this decision
         self.touches = 0  # so far
@@ -84,10 +87,12 @@ class Twin:
         self._relocate(self.steps * clock.dt)
         self.halted[:] = False
         self.doubtful = False
-        self._turning = (self.world.agents.dynamics == int(Dynamics.UNICYCLE)) | twist
+        self._turning = (self.world.agents.dynamics != int(Dynamics.HOLONOMIC)) | twist
         drive = np.zeros_like(self.position)
         for i in np.flatnonzero(self.active):
-            drive[i] = self._limited(int(i), command[i], bool(twist[i]))
+            body = self.drives[i]
+            drive[i] = body.executed(command[i], bool(twist[i]), float(self.heading[i]))
+            self.doubtful |= body.doubtful
         for s in range(clock.substeps):
             self._substep(drive, (self.steps * clock.substeps + s) * h, h)
         self.steps += 1
@@ -109,21 +114,6 @@ class Twin:
             if not (away[self.present] < 0.0).any() and not (np.array(others) < 0.0).any():
                 self.placed[m] = True
                 self.bodies[m] = there
-
-    def _limited(self, i: int, command: FloatArray, twist: bool) -> FloatArray:
-        members, heading = self.world.agents, self.heading[i]
-        top, turn = members.max_speed[i], members.max_turn_rate[i]
-        if not self._turning[i]:
-            speed = math.hypot(*command)
-            limited: FloatArray = command * (min(1.0, top / speed) if speed > 0.0 else 1.0)
-            return limited
-        forward, rate = command
-        if not twist:
-            aim = math.atan2(command[1], command[0]) - heading
-            speed = math.hypot(*command)
-            forward = max(0.0, speed * math.cos(aim))
-            rate = math.remainder(aim, 2.0 * math.pi) / self.world.clock.dt if speed else 0.0
-        return np.array([min(max(forward, 0.0), top), min(max(rate, -turn), turn)])
 
     def _substep(self, drive: FloatArray, begin: float, h: float) -> None:
         self.hits[:] = 0

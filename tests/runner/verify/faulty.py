@@ -9,6 +9,7 @@ import json
 import math
 import sys
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[3]))
@@ -26,13 +27,14 @@ from benchnav.verify.part_check import Pair
 from benchnav.verify.reference.fcl_check import judge
 from benchnav.verify.reference.reference_check import check_twin
 from benchnav.verify.resimulation import resimulate
-from benchnav.world import contacts, step, touch
+from benchnav.world import contacts, motion_limits, simulation, step, touch
 from benchnav.world.simulation import Simulation
-from tests.worlds import agents, back_and_forth, box, random_world, walls, world
+from tests.worlds import agents, back_and_forth, box, limited_world, random_world, walls, world
 
 
 def scenes():
     """Worlds in which everything happens that a kernel does."""
+    yield limited_world(3, steps=25)
     for seed, (unicycle, contact) in enumerate(
         [(True, ContactRule.SLIDE), (False, ContactRule.STOP), (False, ContactRule.END)]
     ):
@@ -45,19 +47,19 @@ def scenes():
     yield world(crew, [walls(20.0)], [press, shelf], steps=25)
 
 
-def play(drawn, seed):
+def play(drawn, seed, twists=False):
     """An episode of noisy commands towards the goals."""
-    simulation = Simulation([drawn])
-    recorder = Recorder(simulation)
+    batch = Simulation([drawn])
+    recorder = Recorder(batch)
     rng = np.random.default_rng(seed)
-    twist = np.zeros((1, simulation.A), bool)
+    twist = np.full((1, batch.A), twists)
     recorder.record_kinds(twist)
     recorder.record_state()
-    while simulation.running.any():
-        away = simulation.goal - simulation.position
+    while batch.running.any():
+        away = batch.goal - batch.position
         length = np.maximum(np.linalg.norm(away, axis=-1, keepdims=True), 1e-9)
         command = 2.5 * away / length + 0.5 * rng.normal(size=away.shape)
-        executed = simulation.step(command, twist)
+        executed = batch.step(command, twist)
         recorder.record_commands(command, executed, 0.0)
         recorder.record_state()
     identity = Identity("a/b@1", "", "test", seed, "known", "noise")
@@ -121,6 +123,22 @@ FAULTS = {
         lambda genuine: lambda body, knots, time: genuine(body, knots, 0.99 * time),
     ),
     "step: what is re-placed asks nobody": (step, "_within", lambda _: lambda *_: False),
+    "limits: bodies brake and speed up a little faster": (
+        motion_limits, "approached",
+        lambda genuine: lambda d0, d1, t0, t1, a, d, dt: genuine(
+            d0, d1, t0, t1, 1.01 * a, 1.01 * d, dt
+        ),
+    ),
+    "limits: an Ackermann body is taken for a unicycle": (
+        motion_limits, "_steered",
+        lambda _: lambda v, w, d0, body, dt: motion_limits._wheeled(v, w, d0, 0.0, body, dt),
+    ),
+    "limits: the wheels are nearer to each other": (
+        simulation, "limit_records",
+        lambda genuine: lambda agents: genuine(
+            replace(agents, track_width=0.9 * agents.track_width)
+        ),
+    ),
     "contact: walls and obstacles are thinner": (touch, "capsule_time", shorter(0.98)),
     "contact: agents are smaller": (
         touch, "disc_time",

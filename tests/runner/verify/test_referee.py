@@ -11,7 +11,7 @@ from benchnav.verify.finding import Report
 from benchnav.verify.part_check import Pair
 from benchnav.verify.resimulation import resimulate
 from tests.runner.verify.faulty import play, scenes
-from tests.worlds import agents, disc, random_world, walls, world
+from tests.worlds import agents, disc, limited_world, random_world, walls, world
 
 pytest.importorskip("fcl")
 
@@ -43,6 +43,7 @@ def test_it_agrees_with_the_kernels(contact, unicycle):
         judge(
             pair_of(random_world(seed, contact=contact, unicycle=unicycle, steps=60), seed), report
         )
+    judge(pair_of(limited_world(0, contact=contact, steps=60)), report)
     assert report.findings == []
     assert report.counts["judged events"] > 10
     assert report.counts["judged states"] > 500

@@ -16,7 +16,7 @@ from benchnav.verify.part_check import PartCheck
 from benchnav.verify.reference.reference_check import check_twin
 from benchnav.verify.reference.sample import sampled
 from tests.runner.verify.faulty import FAULTS, JUDGED, play
-from tests.worlds import random_world
+from tests.worlds import limited_world, random_world
 
 
 @pytest.mark.parametrize("contact", list(ContactRule))
@@ -29,6 +29,17 @@ def test_it_agrees_with_the_kernels(contact, unicycle):
     assert report.findings == []
     assert report.counts["twin decisions"] > 50
     assert report.counts["twin events"] > 5
+    assert sum(report.notes.values()) < 0.1 * report.counts["twin decisions"]
+
+
+@pytest.mark.parametrize("contact", list(ContactRule))
+def test_it_agrees_with_all_dynamics_and_limits(contact):
+    report = Report()
+    for seed in range(6):
+        drawn = limited_world(seed, contact=contact, steps=60)
+        check_twin(drawn, play(drawn, seed), f"seed {seed}", report)
+    assert report.findings == []
+    assert report.counts["twin decisions"] > 50
     assert sum(report.notes.values()) < 0.1 * report.counts["twin decisions"]
 
 
