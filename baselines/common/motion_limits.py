@@ -63,23 +63,18 @@ def has_limits(limits: FloatArray) -> BoolArray:
     return limited
 
 
-def signed_speed(velocity: FloatArray, heading: FloatArray) -> FloatArray:
-    """Return the speed (…) [m/s] of bodies that drive along their heading; < 0 backwards."""
-    speed = np.sqrt(np.sum(velocity**2, axis=-1))
-    ahead = velocity[..., 0] * np.cos(heading) + velocity[..., 1] * np.sin(heading)
-    return np.where(ahead < 0.0, -speed, speed)
-
-
 @kernel
 def curvature(limits: FloatArray) -> float:
     """Return the largest curvature [1/m] of a car's path."""
-    return math.tan(limits[STEER]) / limits[BASE]
+    most: float = math.tan(limits[STEER]) / limits[BASE]
+    return most
 
 
 @kernel
 def top_speed(limits: FloatArray) -> float:
     """Return the largest speed [m/s] straight ahead."""
-    return min(limits[TOP], limits[WHEEL])
+    top: float = min(limits[TOP], limits[WHEEL])
+    return top
 
 
 @kernel
@@ -141,6 +136,22 @@ def reached(
 
 
 @kernel
+def reach_in_turn(
+    plan: FloatArray, v0: float, w0: float, steering: float, limits: FloatArray, dt: float,
+    tick: float,
+) -> None:  # fmt: skip
+    """Change the twists of a plan (H, 2) to the nearest that a body reaches one after another.
+
+    The first must be reached within ``dt`` [s], each other one within ``tick`` [s].
+    """
+    for t in range(len(plan)):
+        time = dt if t == 0 else tick
+        v0, w0 = reached(limits, v0, w0, steering, plan[t, 0], plan[t, 1], time)
+        steering = steered(limits, v0, w0, steering)
+        plan[t, 0], plan[t, 1] = v0, w0
+
+
+@kernel
 def steered(limits: FloatArray, v: float, w: float, steering: float) -> float:
     """Return the steering angle [rad] of a car that drives (v, w); it keeps it while it stands."""
     if limits[KIND] != _CAR or v == 0.0:
@@ -148,13 +159,12 @@ def steered(limits: FloatArray, v: float, w: float, steering: float) -> float:
     return math.atan(w * limits[BASE] / v)
 
 
-@kernel
-def steered_all(
-    twist: FloatArray, before: FloatArray, limits: FloatArray, steering: FloatArray
-) -> None:
-    """Write the `steered` angles (N,) of cars that drive twists (N, 2), ``before`` (N,) that."""
-    for i in range(len(steering)):
-        steering[i] = steered(limits[i], twist[i, 0], twist[i, 1], before[i])
+def steering_after(twist: FloatArray, steering: FloatArray, limits: FloatArray) -> FloatArray:
+    """Return the `steered` angles (…) [rad] of bodies (…, 13) that drive twists (…, 2)."""
+    v, w = twist[..., 0], twist[..., 1]
+    turned = (limits[..., KIND] == _CAR) & (v != 0.0)
+    ratio = np.divide(w * limits[..., BASE], v, out=np.zeros_like(v), where=turned)
+    return np.where(turned, np.arctan(ratio), steering)
 
 
 @kernel

@@ -10,6 +10,7 @@ from benchnav.navigation import (
     Briefing,
     CommandKind,
     Controller,
+    DynamicsName,
     Guide,
     Navigator,
     Need,
@@ -18,6 +19,14 @@ from benchnav.navigation import (
 )
 
 from .waypoint import towards
+
+TURN_ON_THE_SPOT: frozenset[DynamicsName] = frozenset(
+    {"holonomic", "unicycle", "differential-drive"}
+)
+"""The dynamics of bodies that can turn on the spot, as the policies do that learned on unicycles.
+
+Wheels and limits of acceleration delay their twists, but do not change their meaning.
+"""
 
 
 class Pilot(ABC):
@@ -64,6 +73,7 @@ class _Piloted:
     """The common part of a navigator and a controller with a pilot."""
 
     command: ClassVar[CommandKind] = "twist"
+    drives: ClassVar[frozenset[DynamicsName]] = TURN_ON_THE_SPOT
     pilot: Pilot
 
     @property

@@ -12,6 +12,7 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation import (
     Briefing,
     Controller,
+    DynamicsName,
     Guide,
     Need,
     Observation,
@@ -20,6 +21,7 @@ from benchnav.navigation import (
     Training,
 )
 
+from ..common.policy_runner import TURN_ON_THE_SPOT
 from ..common.twist_conversion import as_velocity
 from ..learned.recurrent_ppo.controller import RecurrentPPOPlusController
 from ..learned.recurrent_ppo.policy_at_work import PolicyConfig
@@ -52,12 +54,13 @@ class OrcaPpo(Controller):
 
     ORCA assumes that a body can execute its commands, and that others avoid it too. Therefore the
     policy of `recurrent-ppo-plus`, which learned on unicycles among obstacles that
-    never yield, drives unicycles, and every agent that has just sensed a dynamic
-    obstacle; ORCA drives all others. The policy is better with goals than with waypoints,
+    never yield, drives unicycles and differential drives, and every agent that has just sensed a
+    dynamic obstacle; ORCA drives all others. The policy is better with goals than with waypoints,
     and avoids obstacles itself: unless the path is a detour, its target is the goal.
     """
 
     Config = OrcaPpoConfig
+    drives: ClassVar[frozenset[DynamicsName]] = TURN_ON_THE_SPOT
     adapts_clearance: ClassVar[bool] = True
 
     def __init__(self, config: PluginConfig | None = None) -> None:
@@ -87,15 +90,15 @@ class OrcaPpo(Controller):
         for row, briefing in zip(rows.tolist(), briefings, strict=True):
             self._kept.put(
                 row,
-                unicycle=briefing.dynamics == Dynamics.UNICYCLE,
+                turning=briefing.dynamics != Dynamics.HOLONOMIC,
                 dt=np.full(len(briefing), briefing.dt),
                 wary=np.full(len(briefing), -np.inf),  # [s] end of wariness
             )
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
         rows, agents = observation.rows, observation.active.shape[1]
-        unicycle, dt = (self._kept.take(name, rows, agents) for name in ("unicycle", "dt"))
-        learned = observation.active & (unicycle | self._wary(observation))
+        turning, dt = (self._kept.take(name, rows, agents) for name in ("turning", "dt"))
+        learned = observation.active & (turning | self._wary(observation))
         velocity = np.zeros((*learned.shape, 2))
         other = observation.active & ~learned
         if other.any():
@@ -103,7 +106,7 @@ class OrcaPpo(Controller):
         if learned.any():
             shown = self._goals_if_direct(observation, guide)
             twist = self._policy.steer(replace(observation, active=learned), shown)
-            as_velocity(learned, unicycle, observation.heading, dt, twist, velocity)
+            as_velocity(learned, turning, observation.heading, dt, twist, velocity)
         return velocity
 
     def _wary(self, observation: Observation) -> BoolArray:

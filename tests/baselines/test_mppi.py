@@ -3,6 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchnav_baselines.common.motion_limits import LIMITS
 from benchnav_baselines.controllers.mppi.controller import Mppi
 from benchnav_baselines.controllers.mppi.cost import cost_of, edge_distances
 from benchnav_baselines.controllers.mppi.kernel import control
@@ -92,6 +93,7 @@ def test_noise_runs_straight_between_knots_and_stays_within_limits():
     np.testing.assert_allclose(out[:, 1], [0.5, 2.5, 3.0, 2.5, 0.5])
 
 
+UNLIMITED = np.zeros(1, bool), np.zeros((1, LIMITS)), np.zeros(1)
 WEIGHTS = np.array([8.0, 1.5, 0.7, 0.3, 0.4, 2.5, 1.1])
 
 
@@ -184,7 +186,7 @@ def test_a_decision_equals_its_slow_twin():
     out = np.zeros((1, steps, 2))
     control(
         0, 1, np.ones(1, bool), np.zeros((1, 2)), np.zeros(1), np.array([[2.0, 0.5]]),
-        np.array([9.0]), body[None], plan[None], *(a[None] for a in near), kind[None],
+        np.array([9.0]), body[None], plan[None], *UNLIMITED, *(a[None] for a in near), kind[None],
         np.array([1]), edges[0][None], edges[1][None], np.array([1]), noise[None], 0.2,
         np.array([0.3, 0.4]), temperature, gamma, 0.05, WEIGHTS, out,
     )  # fmt: skip
@@ -216,9 +218,9 @@ def test_where_the_mean_touches_the_best_sample_is_taken():
     out = np.zeros((1, 8, 2))
     control(
         0, 1, np.ones(1, bool), np.zeros((1, 2)), np.zeros(1), np.array([[4.0, 0.0]]),
-        np.array([9.0]), body[None], plan, *post, np.array([[int(Kind.AGENT)]], np.int8),
-        np.array([1]), nothing, nothing, np.array([0]), noise, 0.2, np.array([0.4, 0.5]), 1.0, 0.0,
-        0.05, weights, out,
+        np.array([9.0]), body[None], plan, *UNLIMITED, *post,
+        np.array([[int(Kind.AGENT)]], np.int8), np.array([1]), nothing, nothing, np.array([0]),
+        noise, 0.2, np.array([0.4, 0.5]), 1.0, 0.0, 0.05, weights, out,
     )  # fmt: skip
     expected = 2.25 * (1 - 2 * np.arange(8) / 7)  # one of both ways round, unmixed
     assert np.abs(np.abs(out[0, :, 1]) - np.abs(expected)).max() < 1e-9

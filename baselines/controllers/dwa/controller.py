@@ -20,13 +20,7 @@ from benchnav.navigation import (
 from benchnav.threads import run_rows
 
 from ...common.kernel_inputs import bodies_of, flat, sensed
-from ...common.motion_limits import (
-    BACKWARDS,
-    has_limits,
-    limits_of,
-    signed_speed,
-    steered_all,
-)
+from ...common.motion_limits import has_limits, limits_of, steering_after
 from .kernel import Search, choose
 
 
@@ -92,7 +86,7 @@ class DynamicWindow(Controller):
             limits = limits_of(briefing)
             self._table.put(
                 int(row), body=bodies_of(briefing), limits=limits, limited=has_limits(limits),
-                last=np.zeros((len(briefing), 2)),
+                last=np.zeros((len(briefing), 3)),
             )  # fmt: skip
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
@@ -102,20 +96,20 @@ class DynamicWindow(Controller):
             self._table.take(name, observation.rows, agents)
             for name in ("body", "last", "limits", "limited")
         )
-        speed = np.sqrt(np.sum(observation.velocity**2, axis=-1))
-        if limits[..., BACKWARDS].any():
-            speed = signed_speed(observation.velocity, observation.heading)
+        moving = np.sqrt(np.sum(observation.velocity**2, axis=-1))
+        # the limits of a body hold for its last command, also after a contact
+        now = np.where(limited, last[..., 0], moving)
         position, velocity, radius, _, count, start, end, _, _, edges = sensed(observation)
         arrays = (
             observation.active, observation.position, observation.heading,
-            np.concatenate([speed[..., None], last], axis=-1), guide.target, guide.remaining, body,
-            limited, limits, position, velocity, radius, count, start, end, edges,
+            np.concatenate([now[..., None], last[..., 1:]], axis=-1), guide.target,
+            guide.remaining, body, limited, limits, position, velocity, radius, count, start, end,
+            edges,
         )  # fmt: skip
         answer = np.zeros((rows, 2))
         run_rows(choose, rows, *flat(rows, arrays), self._search, answer)
         twist = answer.reshape(worlds, agents, 2)
-        steering = np.zeros(rows)
-        steered_all(answer, last[..., 1].ravel(), limits.reshape(rows, -1), steering)
-        now = np.stack([twist[..., 1], steering.reshape(worlds, agents)], axis=-1)
+        steering = steering_after(twist, last[..., 2], limits)
+        now = np.concatenate([twist, steering[..., None]], axis=-1)
         self._table.write("last", observation.rows, now)
         return twist

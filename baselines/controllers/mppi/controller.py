@@ -21,6 +21,7 @@ from benchnav.navigation import (
 from benchnav.threads import run_rows
 
 from ...common.kernel_inputs import bodies_of, flat, sensed
+from ...common.motion_limits import has_limits, limits_of, steering_after
 from .kernel import control
 
 
@@ -74,7 +75,8 @@ class MppiConfig(PluginConfig):
 class Mppi(Controller):
     """Samples random variations of its last plan, and averages them with weights exp(−cost / λ).
 
-    It commands twists; holonomic bodies follow them too.
+    It commands twists; holonomic bodies follow them too. Every sample holds only twists that the
+    body reaches one after another within its limits of acceleration, wheels and steering.
     """
 
     Config = MppiConfig
@@ -90,17 +92,24 @@ class Mppi(Controller):
         for row, briefing in zip(rows, briefings, strict=True):
             self._streams[int(row)] = agent_streams(briefing)
             plan = np.zeros((len(briefing), self.config.steps, 2))
-            self._table.put(int(row), body=bodies_of(briefing), plan=plan)
+            limits = limits_of(briefing)
+            self._table.put(
+                int(row), body=bodies_of(briefing), plan=plan, limits=limits,
+                limited=has_limits(limits), steering=np.zeros(len(briefing)),
+            )  # fmt: skip
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
         worlds, agents = observation.active.shape
         rows, c = worlds * agents, self.config
-        body, plan = (self._table.take(name, observation.rows, agents) for name in ("body", "plan"))
+        body, plan, limited, limits, steering = (
+            self._table.take(name, observation.rows, agents)
+            for name in ("body", "plan", "limited", "limits", "steering")
+        )
         position, velocity, radius, kind, count, start, end, _, _, edges = sensed(observation)
         arrays = (
             observation.active, observation.position, observation.heading, guide.target,
-            guide.remaining, body, plan, position, velocity, radius, kind, count, start, end,
-            edges,
+            guide.remaining, body, plan, limited, limits, steering, position, velocity, radius,
+            kind, count, start, end, edges,
         )  # fmt: skip
         new = plan.reshape(rows, *plan.shape[2:]).copy()
         weights = np.array(
@@ -113,7 +122,10 @@ class Mppi(Controller):
         )  # fmt: skip
         plan = new.reshape(plan.shape)
         self._table.write("plan", observation.rows, plan)
-        return plan[:, :, 0].copy()
+        twist = plan[:, :, 0].copy()
+        steering = steering_after(twist, steering, limits)
+        self._table.write("steering", observation.rows, steering)
+        return twist
 
     def _noise(self, observation: Observation) -> FloatArray:
         """Draw standard normals (B·A, S, M, 2), each active agent's from its own stream."""

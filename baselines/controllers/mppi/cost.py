@@ -76,7 +76,7 @@ def cost_of(
         if back < margin and not turned:
             turned = True
             total += weights[5] * (steps - t) / steps
-        moved += v * tick
+        moved += abs(v) * tick
         wall = _edges(x, y, start, end, far, edges, within, moved) - body[0]
         if gap < margin or wall < 0.5 * margin:
             rest = steps - t

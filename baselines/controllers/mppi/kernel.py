@@ -11,6 +11,7 @@ import numpy as np
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.kernels import kernel
 
+from ...common.motion_limits import BACKWARDS, reach_in_turn
 from .cost import cost_of, edge_distances
 from .weights import disturbed, moved_on, weigh
 
@@ -60,6 +61,7 @@ def averaged(weight: FloatArray, tried: FloatArray, mean: FloatArray) -> None:
 def control(
     low: int, high: int, active: BoolArray, here: FloatArray, heading: FloatArray,
     target: FloatArray, remaining: FloatArray, body: FloatArray, plan: FloatArray,
+    limited: BoolArray, limits: FloatArray, steering: FloatArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
     count: IntArray, start: FloatArray, end: FloatArray, edges: IntArray, noise: FloatArray,
     tick: float, spread: FloatArray, temperature: float, control_cost: float, margin: float,
@@ -76,7 +78,10 @@ def control(
         target: (N, 2) [m].
         remaining: (N,) [m] of the path.
         body: (N, 6) see `baselines.common.kernel_inputs.BODY`.
-        plan: (N, H, 2) the last plans; zero if there is none.
+        plan: (N, H, 2) the last plans; zero if there is none. Their first twist is the current.
+        limited: (N,) whether the body has more limits than speed and turn rate.
+        limits: (N, 13) see `baselines.common.motion_limits`.
+        steering: (N,) [rad] angle of a car's front wheels.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].
         radius: (N, K) [m].
@@ -116,7 +121,11 @@ def control(
         edge_distances(x, y, start[i], end[i], edges[i], far)
         sigma[0], sigma[1] = spread[0] * me[2], spread[1] * me[3]
         bottom[0], bottom[1], top[0], top[1] = 0.0, -me[3], me[2], me[3]
+        if limits[i, BACKWARDS] > 0.0:
+            bottom[0] = -me[2]
         moved_on(plan[i], me[4] / tick, base)
+        if limited[i]:
+            reach_in_turn(base, last[0], last[1], steering[i], limits[i], me[4], tick)
         gx, gy = target[i, 0], target[i, 1]
         final = remaining[i] <= math.sqrt((gx - x) ** 2 + (gy - y) ** 2) + me[5]
         all_touch, best = True, 0
@@ -127,6 +136,8 @@ def control(
                 tried[k] = 0.0  # an addition: standing still is always a sample
             else:
                 disturbed(base, noise[i, k], sigma, bottom, top, tried[k])
+            if limited[i] and k > 0:
+                reach_in_turn(tried[k], last[0], last[1], steering[i], limits[i], me[4], tick)
             cost[k], touches = cost_of(
                 tried[k], tick, x, y, heading[i], last, gx, gy, final, me, margin,
                 p, u, r, kinds, n, start[i], end[i], far, edges[i], weights,
@@ -137,6 +148,8 @@ def control(
             all_touch = all_touch and touches
         weigh(cost, temperature, weight)
         averaged(weight, tried, mean)
+        if limited[i]:
+            reach_in_turn(mean, last[0], last[1], steering[i], limits[i], me[4], tick)
         _, touches = cost_of(
             mean, tick, x, y, heading[i], last, gx, gy, final, me, margin,
             p, u, r, kinds, n, start[i], end[i], far, edges[i], weights,

@@ -18,7 +18,8 @@ from benchnav.navigation import (
 )
 from benchnav.threads import run_rows
 
-from .kernel import OWN, avoid, prepare
+from ...common.motion_limits import has_limits, limits_of
+from .kernel import OWN, avoid, avoid_within_limits, prepare
 
 LEAST_MARGIN = 1e-3  # [m] at edges: without a margin, rounding causes contacts
 LEAST = 64  # with fewer agents, a second thread costs more than it saves
@@ -41,6 +42,12 @@ class OrcaConfig(PluginConfig):
         0.05,
         ge=0,
         description="[m] added to the agent's own radius, for edges; less on a narrow path",
+    )
+    tracking_error: float = Field(
+        0.1,
+        gt=0,
+        description="[m] by which a body that cannot take a velocity at once may stray; its disc"
+        " is enlarged by it. Used for cars, wheels and limits of acceleration; less near objects",
     )
     neighbours: int = Field(10, ge=0, description="nearest neighbours that are considered")
     perturbation: float = Field(
@@ -71,7 +78,11 @@ class Avoidance:
             own[:, 1] = briefing.max_speed
             own[:, 2] = briefing.preferred_speed
             own[:, 3] = briefing.dt
-            self._table.put(int(row), own=own, offset=offset * self.config.perturbation)
+            limits = limits_of(briefing)
+            self._table.put(
+                int(row), own=own, offset=offset * self.config.perturbation, limits=limits,
+                limited=has_limits(limits),
+            )  # fmt: skip
 
     def velocity(
         self, observation: Observation, target: FloatArray, clearance: FloatArray | None = None
@@ -92,11 +103,21 @@ class Avoidance:
         edge_margin = np.full(rows, config.edge_margin)
         if clearance is not None:
             edge_margin = np.minimum(edge_margin, np.maximum(clearance.ravel(), LEAST_MARGIN))
-        run_rows(
-            avoid, rows, own, observation.active.ravel(), *_sensed(observation),
+        sensed = tuple(_sensed(observation))
+        active, limited = observation.active, self._table.take("limited", observation.rows, agents)
+        bounds = (
             config.neighbours, config.margin, edge_margin, 1.0 / config.time_horizon,
-            1.0 / config.time_horizon_obstacle, answer, least=LEAST,
+            1.0 / config.time_horizon_obstacle,
         )  # fmt: skip
+        if limited.any():
+            limits = self._table.take("limits", observation.rows, agents)
+            bodies = (observation.heading, target, limits)
+            run_rows(
+                avoid_within_limits, rows, own, (active & limited).ravel(), *_flat(rows, bodies),
+                *sensed, *bounds, config.tracking_error, answer, least=LEAST,
+            )  # fmt: skip
+            active = active & ~limited
+        run_rows(avoid, rows, own, active.ravel(), *sensed, *bounds, answer, least=LEAST)
         return answer.reshape(worlds, agents, 2)
 
 

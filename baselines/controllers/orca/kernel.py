@@ -9,13 +9,19 @@ import math
 
 import numpy as np
 
-from benchnav.arena import Kind
+from benchnav.arena import Dynamics, Kind
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
+from benchnav.geometry import cos_sin
 from benchnav.kernels import kernel, kernel_without_allocation
 
+from ...common.car import car_direction
+from ...common.motion_limits import BACKWARDS, KIND
 from .half_plane import covers, edge_half_plane, neighbour_half_plane
 from .program import least_excess, nearest_permitted
+from .trackable import MOST, trackable, tracking_error, widest_turn
 
+_HOLONOMIC, _CAR = float(Dynamics.HOLONOMIC), float(Dynamics.ACKERMANN)
+LEAST_ERROR = 0.01  # [m] ε of a body that is close to an object
 _MOVER = int(Kind.DYNAMIC)
 OWN = 9  # columns: x, y, vx, vy, preferred vx, preferred vy, radius, speed limit, 1 / step
 
@@ -57,15 +63,15 @@ def prepare(
 def edge_rows(
     i: int, px: float, py: float, vx: float, vy: float, radius: float, rate: float,
     start: FloatArray, end: FloatArray, before: FloatArray, after: FloatArray,
-    start_convex: BoolArray, end_convex: BoolArray, count: int, planes: FloatArray,
+    start_convex: BoolArray, end_convex: BoolArray, count: int, first: int, planes: FloatArray,
 ) -> int:  # fmt: skip
-    """Write the half-planes of agent i's edges; return their number."""
-    n = 0
+    """Write the half-planes of agent i's edges from row ``first`` on; return the next free row."""
+    n = first
     for k in range(count):
         ax, ay = start[i, k, 0] - px, start[i, k, 1] - py
         bx, by = end[i, k, 0] - px, end[i, k, 1] - py
         covered = False
-        for j in range(n):
+        for j in range(first, n):
             row = (planes[j, 0], planes[j, 1], planes[j, 2], planes[j, 3])
             if covers(row, ax, ay, bx, by, radius, rate):
                 covered = True
@@ -123,45 +129,134 @@ def avoid(
     """
     size = position.shape[1] + start.shape[1]
     planes, projected = np.empty((size, 4)), np.empty((size, 4))
-    _avoid_in_rows(
-        low, high, own, active, position, velocity, radius, kind, count, start, end, before, after,
-        start_convex, end_convex, edge_count, most, margin, edge_margin, rate, edge_rate, answer,
-        planes, projected,
-    )  # fmt: skip
+    for i in range(low, high):
+        if active[i]:
+            _avoid_row(
+                i, own, position, velocity, radius, kind, count, start, end, before, after,
+                start_convex, end_convex, edge_count, most, margin, edge_margin, rate, edge_rate,
+                0, answer, planes, projected,
+            )  # fmt: skip
 
 
-@kernel_without_allocation
-def _avoid_in_rows(
-    low: int, high: int, own: FloatArray, active: BoolArray,
+@kernel
+def avoid_within_limits(
+    low: int, high: int, own: FloatArray, active: BoolArray, heading: FloatArray,
+    target: FloatArray, limits: FloatArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
     count: IntArray,
     start: FloatArray, end: FloatArray, before: FloatArray, after: FloatArray,
     start_convex: BoolArray, end_convex: BoolArray, edge_count: IntArray,
     most: int, margin: float, edge_margin: FloatArray, rate: float, edge_rate: float,
-    answer: FloatArray, planes: FloatArray, projected: FloatArray,
+    error: float, answer: FloatArray,
 ) -> None:  # fmt: skip
+    """Write velocities [m/s] that bodies with limits can track, like `avoid`.
+
+    Args:
+        low: first row.
+        high: one past the last row.
+        own: (N, 9) see `OWN`; radii are enlarged.
+        active: (N,).
+        heading: (N,) [rad].
+        target: (N, 2) [m] where the preferred velocity leads.
+        limits: (N, 13) see `baselines.common.motion_limits`.
+        position: (N, K, 2) as in `avoid`, like all arguments from here to ``edge_rate``.
+        velocity: (N, K, 2).
+        radius: (N, K).
+        kind: (N, K).
+        count: (N,).
+        start: (N, E, 2).
+        end: (N, E, 2).
+        before: (N, E, 2).
+        after: (N, E, 2).
+        start_convex: (N, E).
+        end_convex: (N, E).
+        edge_count: (N,).
+        most: see `avoid`.
+        margin: [m].
+        edge_margin: (N,) [m]; reduced by the enlargement.
+        rate: [1/s].
+        edge_rate: [1/s].
+        error: [m] the largest tracking error; less near other objects.
+        answer: (N, 2).
+    """
+    size = MOST + position.shape[1] + start.shape[1]
+    planes, projected = np.empty((size, 4)), np.empty((size, 4))
     for i in range(low, high):
         if not active[i]:
             continue
-        px, py, vx, vy, wx, wy = own[i, 0], own[i, 1], own[i, 2], own[i, 3], own[i, 4], own[i, 5]
-        own_radius, speed, step_rate = own[i, 6], own[i, 7], own[i, 8]
-        fixed = 0
-        if edge_count[i] > 0:
-            fixed = edge_rows(
-                i, px, py, vx, vy, own_radius + edge_margin[i], edge_rate, start, end, before,
-                after, start_convex, end_convex, edge_count[i], planes,
-            )  # fmt: skip
-        n = fixed
-        for k in range(min(count[i], most)):
-            row = neighbour_half_plane(
-                position[i, k, 0] - px, position[i, k, 1] - py,
-                vx - velocity[i, k, 0], vy - velocity[i, k, 1], vx, vy,
-                own_radius + margin + margin + radius[i, k], rate, step_rate,
-                1.0 if kind[i, k] == _MOVER else 0.5,
-            )  # fmt: skip
-            planes[n, 0], planes[n, 1], planes[n, 2], planes[n, 3] = row
-            n += 1
-        reached, x, y = nearest_permitted(planes, n, speed, wx, wy, False)
-        if reached < n:
-            x, y = least_excess(planes, n, fixed, reached, speed, x, y, projected)
-        answer[i, 0], answer[i, 1] = x, y
+        strays = tracking_error(
+            own[i, 0], own[i, 1], own[i, 6], position[i], radius[i], min(count[i], most),
+            start[i], end[i], edge_count[i], LEAST_ERROR, error,
+        )  # fmt: skip
+        course = heading[i]
+        if limits[i, KIND] != _HOLONOMIC:
+            course = _chosen_course(
+                own[i], heading[i], target[i, 0], target[i, 1], limits[i], strays
+            )
+        hard = trackable(limits[i], course, own[i, 2], own[i, 3], strays, planes)
+        own[i, 6] += strays
+        edge_margin[i] = max(edge_margin[i] - strays, 0.0)
+        _avoid_row(
+            i, own, position, velocity, radius, kind, count, start, end, before, after,
+            start_convex, end_convex, edge_count, most, margin, edge_margin, rate, edge_rate,
+            hard, answer, planes, projected,
+        )  # fmt: skip
+
+
+@kernel
+def _chosen_course(
+    own: FloatArray, heading: float, tx: float, ty: float, limits: FloatArray, error: float
+) -> float:
+    """Return the direction [rad] of the front, or of the rear if the body drives backwards.
+
+    The preferred velocity of a car is turned to a direction that it can take.
+    """
+    c, s = cos_sin(heading)
+    if limits[KIND] == _CAR:
+        backwards, direction = car_direction(
+            limits, own[0], own[1], heading, c * own[2] + s * own[3], tx, ty,
+            widest_turn(limits, error),
+        )  # fmt: skip
+        speed = math.sqrt(own[4] * own[4] + own[5] * own[5])
+        dc, ds = cos_sin(direction)
+        own[4], own[5] = speed * dc, speed * ds
+    else:
+        backwards = limits[BACKWARDS] > 0.0 and c * own[4] + s * own[5] < 0.0
+    return heading + math.pi if backwards else heading
+
+
+@kernel_without_allocation
+def _avoid_row(
+    i: int, own: FloatArray,
+    position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
+    count: IntArray,
+    start: FloatArray, end: FloatArray, before: FloatArray, after: FloatArray,
+    start_convex: BoolArray, end_convex: BoolArray, edge_count: IntArray,
+    most: int, margin: float, edge_margin: FloatArray, rate: float, edge_rate: float,
+    hard: int, answer: FloatArray, planes: FloatArray, projected: FloatArray,
+) -> None:  # fmt: skip
+    """Write the velocity of row i; the first ``hard`` rows of ``planes`` limit it already."""
+    px, py, vx, vy, wx, wy = own[i, 0], own[i, 1], own[i, 2], own[i, 3], own[i, 4], own[i, 5]
+    own_radius, speed, step_rate = own[i, 6], own[i, 7], own[i, 8]
+    n = hard
+    if edge_count[i] > 0:
+        n = edge_rows(
+            i, px, py, vx, vy, own_radius + edge_margin[i], edge_rate, start, end, before,
+            after, start_convex, end_convex, edge_count[i], hard, planes,
+        )  # fmt: skip
+    fixed = n
+    for k in range(min(count[i], most)):
+        row = neighbour_half_plane(
+            position[i, k, 0] - px, position[i, k, 1] - py,
+            vx - velocity[i, k, 0], vy - velocity[i, k, 1], vx, vy,
+            own_radius + margin + margin + radius[i, k], rate, step_rate,
+            1.0 if kind[i, k] == _MOVER else 0.5,
+        )  # fmt: skip
+        planes[n, 0], planes[n, 1], planes[n, 2], planes[n, 3] = row
+        n += 1
+    reached, x, y = nearest_permitted(planes, n, speed, wx, wy, False)
+    if hard > 0 and reached < fixed:
+        fixed = hard  # no velocity that it can track keeps off all edges
+    if reached < n:
+        x, y = least_excess(planes, n, fixed, reached, speed, x, y, projected)
+    answer[i, 0], answer[i, 1] = x, y

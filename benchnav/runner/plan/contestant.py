@@ -115,7 +115,8 @@ class ContestantFactory:
             training=reported.training or (led.training if led else None),
             fingerprint=reported.fingerprint, rehearsal=reported.rehearsal, leader=led,
             unfit=dict(zip(self.sensings, reported.unfit, strict=False)),
-            drives=reported.drives, uses_map=reported.uses_map, mode=ISOLATED if separate else IN_PROCESS, places=places,
+            drives=reported.drives, uses_map=reported.uses_map,
+            mode=ISOLATED if separate else IN_PROCESS, places=places,
         )  # fmt: skip
         if contestant.missing_extra:
             return contestant
