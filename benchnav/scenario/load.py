@@ -8,7 +8,6 @@ from benchnav.config.validation import validate
 from benchnav.config.yaml_reader import read_yaml, read_yaml_text
 from benchnav.errors import ScenarioError
 from benchnav.scenario.parameters import Given, Reference, resolve
-from benchnav.scenario.robots.registry import names as robot_names
 from benchnav.scenario.robots.robot import KEYS as BODY_KEYS
 from benchnav.scenario.robots.team_keys import with_robots
 from benchnav.scenario.scenario import Scenario
@@ -92,11 +91,11 @@ def _allow_references(node: Any) -> None:
 
 
 def _offer_robots(team: dict[str, Any], choice: dict[str, Any]) -> None:
-    """Offer the names of robots, which give a team the keys that it must have otherwise."""
-    name = [{"enum": robot_names()}, {"type": "string"}, {"$ref": "#/$defs/Reference"}]
-    choice["properties"]["type"] = {**choice["properties"]["type"], "anyOf": name}
-    del choice["properties"]["type"]["type"]
-    team["properties"]["robot"]["anyOf"] += name
+    """Allow a parameter as a robot's name, and a robot in place of the keys that it gives."""
+    reference = {"$ref": "#/$defs/Reference"}
+    name = choice["properties"]["type"]
+    name["anyOf"] = [{"type": name.pop("type")}, reference]
+    team["properties"]["robot"]["anyOf"].append(reference)
     body = [key for key in team["required"] if key in BODY_KEYS]
     team["required"] = [key for key in team["required"] if key not in BODY_KEYS]
     team["anyOf"] = [{"required": ["robot"]}, {"required": body}]

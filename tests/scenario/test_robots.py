@@ -173,7 +173,9 @@ def test_a_wrong_file_is_reported_with_its_line(tmp_path):
 
 
 def test_null_is_no_robot():
-    assert complaint(TEXT.replace("pepper", "null"))== "f.yaml:4: teams[0].max_speed must be given."
+    assert (
+        complaint(TEXT.replace("pepper", "null")) == "f.yaml:4: teams[0].max_speed must be given."
+    )
 
 
 def test_an_unknown_name_in_python():
@@ -197,6 +199,8 @@ def test_the_schemas_know_robots():
     mapping = TEXT.replace("pepper", "{type: {parameter: r}, acceleration_limits: {parameter: a}}")
     assert scenario.is_valid(read_yaml_text(mapping, "f").data)
     assert not scenario.is_valid(read_yaml_text(TEXT.replace("    robot: pepper\n", ""), "f").data)
+    offered = benchnav.schema("scenario")["$defs"]["Team"]["properties"]["robot"]["anyOf"][0]
+    assert set(SHIPPED) <= set(offered["enum"])  # an editor completes them
     robot = jsonschema.Draft202012Validator(json_schema())
     for name, (file,) in robot_files().items():
         assert robot.is_valid(read_yaml(file.path).data), name

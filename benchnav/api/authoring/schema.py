@@ -27,5 +27,17 @@ def schema(kind: str = "scenario") -> dict[str, Any]:
     elif kind == "robot":
         from benchnav.scenario.robots.robot import json_schema
     else:
-        from benchnav.scenario.load import json_schema
+        return _scenario_schema()
     return json_schema()
+
+
+def _scenario_schema() -> dict[str, Any]:
+    """Return the schema of scenario files, which offers the names of the installed robots."""
+    from benchnav.scenario.load import json_schema
+    from benchnav.scenario.robots.registry import names
+
+    found = json_schema()
+    offered = {"enum": names()}
+    found["$defs"]["Team"]["properties"]["robot"]["anyOf"].insert(0, offered)
+    found["$defs"]["RobotChoice"]["properties"]["type"]["anyOf"].insert(0, offered)
+    return found

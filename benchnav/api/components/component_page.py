@@ -1,7 +1,7 @@
 """Pages of components: ``python -m benchnav.api.components.component_page docs/components``.
 
 One page for each navigator, planner and controller of benchnav, from its docstring and its
-declared parameters; a test compares the pages with the stored ones.
+declared parameters, and one page for all robots; a test compares the pages with the stored ones.
 """
 
 import inspect
@@ -12,10 +12,12 @@ from pathlib import Path
 from benchnav.api.components.kind import REGISTRIES, Kind
 from benchnav.api.components.parameter_text import answers, drives, needs, parameters
 from benchnav.api.components.plugin_page import sentence
+from benchnav.api.components.robot_table import robot_table
 from benchnav.plugins import Registry
 
 KINDS = (Kind.NAVIGATORS, Kind.PLANNERS, Kind.CONTROLLERS)
 INDEX = "README.md"
+ROBOTS = "robots.md"
 SHIPPED = ("benchnav.", "benchnav_baselines.")
 SHARED = {  # packages of several components: their docstrings describe none of these
     "benchnav.navigation",
@@ -49,7 +51,13 @@ def pages() -> dict[str, str]:
                 made[file] = "\n".join(_page(registry, name)) + "\n"
                 rows.append(f"| [{name}]({file}) | {_cell(sentence(registry.load(name)))} |")
         index += [*rows, ""]
-    return {INDEX: "\n".join(index), **made}
+    index += [
+        "## Robots",
+        "",
+        f"[Bodies and limits of the robots]({ROBOTS}), with their sources.",
+        "",
+    ]
+    return {INDEX: "\n".join(index), ROBOTS: robot_table(), **made}
 
 
 def _page(registry: Registry, name: str) -> Iterator[str]:
