@@ -11,6 +11,7 @@ from pydantic import (
     model_serializer,
 )
 
+from benchnav.config.document import shown
 from benchnav.scenario.base import Spec
 from benchnav.scenario.sampling.sampler import PositiveScalar, Scalar, support
 
@@ -82,6 +83,10 @@ class Ackermann(_Dynamics):
 
 
 def _named(value: Any) -> Any:
+    if not isinstance(value, str | dict | _Dynamics):
+        raise ValueError(
+            f"must be the name of a type, or a mapping with `type`; got {shown(value)}"
+        )
     return {"type": value} if isinstance(value, str) else value
 
 

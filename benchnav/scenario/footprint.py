@@ -1,10 +1,11 @@
 """Footprints of a team's bodies: their shapes in the plane, along the heading."""
 
 import math
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
+from benchnav.config.document import shown
 from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Spec
 from benchnav.scenario.sampling.sampler import PositiveScalar, support
@@ -82,4 +83,14 @@ def _circumscribed(length: float, width: float, corner: float) -> float:
     return math.sqrt(x * x + y * y) + corner
 
 
-Footprint = Annotated[DiscFootprint | Capsule | RoundedBox, Field(discriminator="type")]
+def _mapping(value: Any) -> Any:
+    if not isinstance(value, dict | Spec | None):
+        raise ValueError(
+            "must be a mapping such as {type: capsule, length: 0.8, width: 0.4};"
+            f" got {shown(value)}"
+        )
+    return value
+
+
+_Any = Annotated[DiscFootprint | Capsule | RoundedBox, Field(discriminator="type")]
+Footprint = Annotated[_Any, BeforeValidator(_mapping, json_schema_input_type=_Any)]

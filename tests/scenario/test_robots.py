@@ -163,7 +163,10 @@ def test_a_wrong_robot_draws_one_complaint(written, message):
 
 def test_a_wrong_file_is_reported_with_its_line(tmp_path):
     text = TEXT.replace("pepper", "cart.yaml")
-    assert "cart.yaml:1: cannot be read: No such file or directory." in complaint(text, tmp_path)
+    assert complaint(text, tmp_path) == (
+        "f.yaml:5: teams[0].robot must name a robot's file, relative to the scenario's own;"
+        f" {tmp_path / 'cart.yaml'} is not a file."
+    )
     (tmp_path / "cart.yaml").write_text(CART.replace("max_speed: 1.2", "max_speed: fast"))
     assert "cart.yaml:4: team.max_speed must be a number" in complaint(text, tmp_path)
     (tmp_path / "cart.yaml").write_text(CART.replace("  radius: measured", "  radios: measured"))

@@ -52,6 +52,11 @@ def _keys(team: Mapping[str, Any], where: str, folder: Path) -> dict[str, Any]:
     name, limits = fields.get("type"), fields.get("acceleration_limits", True)
     if not isinstance(name, str) or not isinstance(limits, bool):
         return Robot("", "", _STUB, {}).keys_beside(team, True)
+    if name.endswith(SUFFIXES) and not _is_file(folder / name):
+        raise ScenarioError(
+            f"{where} must name a robot's file, relative to the scenario's own; {folder / name} is"
+            " not a file."
+        )
     try:
         return find_robot(name, folder).keys_beside(team, limits)
     except UnknownPluginError:
@@ -60,6 +65,13 @@ def _keys(team: Mapping[str, Any], where: str, folder: Path) -> dict[str, Any]:
             f" {shown(name)!r}.{did_you_mean(name[:100], names())} 'benchnav list robots' shows all"
             " robots."
         ) from None
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
 
 
 def _placed(team: Place, keys: Iterable[PathKey]) -> Place:
