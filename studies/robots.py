@@ -6,10 +6,11 @@ acceleration limits. ``--seeds N`` is for a first look.
 """
 
 import argparse
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -166,18 +167,20 @@ def _differences(free: Stratum, limited: Stratum, navigator: str) -> Any:
 
 def page(evidence: Evidence) -> str:
     """Return the page in Markdown."""
-    suite = evidence.run.manifest.suite
+    manifest = evidence.run.manifest
+    suite, version = manifest.suite, manifest.versions["benchnav"]
     seeds = suite["seeds"][1] - suite["seeds"][0]
     lines = [
         "# Robots: bodies, noise and acceleration limits",
         "",
-        f"The suite `{suite['name']}@{suite['version']}` with {seeds} seeds of the test split, run"
-        " and written by `python -m studies.robots`. It drives four robots with their published"
-        " limits through the four scenarios of the"
-        " [family `robots`](../../scenarios/robots/README.md), with exact and with noisy senses."
-        " [Bodies](../bodies.md) describes the robots, [observations](../observations.md) the"
-        " senses.",
-        "",
+        *_prose(
+            f"The suite `{suite['name']}@{suite['version']}` with {seeds} seeds of the test split,"
+            f" run with benchnav {version} on {manifest.created[:10]}, and written by `python -m"
+            " studies.robots`. It drives four robots with their published limits through the four"
+            " scenarios of the [family `robots`](../../scenarios/robots/README.md), with exact and"
+            " with noisy senses. [Bodies](../bodies.md) describes the robots,"
+            " [observations](../observations.md) the senses."
+        ),
         *table(("robot", "body"), [(f"`{r}`", find_robot(r).title) for r in evidence.robots]),
         *_copes(evidence),
         *_noise(evidence),
@@ -186,21 +189,38 @@ def page(evidence: Evidence) -> str:
     return "\n".join(lines).rstrip() + "\n"
 
 
+def _prose(text: str) -> list[str]:
+    """Return the lines of a paragraph, with an empty one after it."""
+    return [*wrap(text, 115, break_long_words=False, break_on_hyphens=False), ""]
+
+
 def _copes(evidence: Evidence) -> Iterator[str]:
     yield "## Who copes with which body"
     yield ""
-    yield (
+    yield from _prose(
         "Success in % of the agents, mean over the four scenarios, exact senses; in parentheses the"
         " share of agents that collided. Bold: not significantly worse than any other navigator."
         f" {ABSENT}: does not drive this body."
     )
-    yield ""
     yield from _table(evidence, evidence.robots, _success_cell)
+    yield from table(
+        ("scenario", *(f"`{robot}`" for robot in evidence.robots)),
+        [(f"`{name}`", *cells) for name, cells in _by_scenario(evidence).items()],
+    )
+    yield from _prose("The second table is the mean success in % of all these navigators.")
+
+
+def _by_scenario(evidence: Evidence) -> dict[str, list[str]]:
+    """Return scenario → the mean success of all navigators for each robot."""
+    found: dict[str, list[str]] = {}
     for robot in evidence.robots:
-        found = evidence.successes[robot].values()
-        best = sorted(f"`{r.navigator}`" for r in found if r.rank_low == 1)
-        yield f"- `{robot}`: {', '.join(best)}"
-    yield ""
+        values: dict[str, list[float]] = {}
+        for r in evidence.boards[robot].records:
+            if (r.metric, r.perception) == ("success", "exact") and "/" in r.scenario:
+                values.setdefault(r.scenario.partition("@")[0], []).append(r.value)
+        for name, each in values.items():
+            found.setdefault(name, []).append(f"{100 * np.nanmean(each):.0f}")
+    return found
 
 
 def _success_cell(evidence: Evidence, robot: str, navigator: str) -> str:
@@ -215,28 +235,35 @@ def _success_cell(evidence: Evidence, robot: str, navigator: str) -> str:
 def _noise(evidence: Evidence) -> Iterator[str]:
     yield "## Price of noise"
     yield ""
-    yield (
+    yield from _prose(
         "Success with exact senses minus success with noisy senses, in the same worlds, in"
         " percentage points with 95 % intervals; bold if the interval excludes 0."
     )
-    yield ""
-    yield from _table(
-        evidence, [*evidence.robots, EVERY], lambda e, r, n: e.price_of_noise(r, n).text
-    )
+    price = Evidence.price_of_noise
+    yield from _table(evidence, [*evidence.robots, EVERY], lambda e, r, n: price(e, r, n).text)
+    yield from _prose(f"Over all robots, noise costs {_range(evidence, price)}.")
 
 
 def _limits(evidence: Evidence) -> Iterator[str]:
     yield "## Price of acceleration limits"
     yield ""
-    yield (
+    yield from _prose(
         "Success of the same robot without its acceleration limits minus success with them, in the"
         " same worlds of `robots/yard` and `robots/plaza`, exact senses, in percentage points with"
         " 95 % intervals; bold if the interval excludes 0."
     )
-    yield ""
-    yield from _table(
-        evidence, [*evidence.robots, EVERY], lambda e, r, n: e.price_of_limits(r, n).text
-    )
+    price = Evidence.price_of_limits
+    yield from _table(evidence, [*evidence.robots, EVERY], lambda e, r, n: price(e, r, n).text)
+    yield from _prose(f"Over all robots, acceleration limits cost {_range(evidence, price)}.")
+
+
+def _range(evidence: Evidence, price: Callable[[Evidence, str, str], Interval]) -> str:
+    """Return the smallest and the largest price, each with its navigator."""
+    prices = {name: price(evidence, EVERY, name) for name in evidence.navigators}
+    known = [name for name in prices if np.isfinite(prices[name].value)]
+    low, high = (pick(known, key=lambda name: prices[name].value) for pick in (min, max))
+    texts = [f"{prices[name].text.strip('*')} points (`{name}`)" for name in (low, high)]
+    return f"from {texts[0]} to {texts[1]}"
 
 
 def _table(evidence: Evidence, columns: Sequence[str], cell: Any) -> list[str]:

@@ -155,13 +155,20 @@ def _team(team: "Team") -> str:
     many = "" if support(team.count)[1] == 1 else "s"
     text = (
         f"{team.name}: {number(team.count)} {team.dynamics.type} {team.role}{many},"
-        f" {_body(team)}, {number(speed)} m/s; start {start}, goal {goal}"
+        f" {_robot(team)}{_body(team)}, {number(speed)} m/s; start {start}, goal {goal}"
     )
     if team.goal.type == "region" and team.goal.min_distance:
         text += f" at least {team.goal.min_distance:g} m away"
     if not team.evaluated:
         text += f"; background, driven by {team.driver.type}"
     return text + (f"; does not see {', '.join(team.ignores)}" if team.ignores else "")
+
+
+def _robot(team: "Team") -> str:
+    if team.robot is None:
+        return ""
+    limits = "" if team.robot.acceleration_limits else " without acceleration limits"
+    return f"robot {team.robot.type}{limits}, "
 
 
 def _body(team: "Team") -> str:

@@ -361,7 +361,6 @@ class Twin:
         within = name == "body" and not solid.is_disc and inside(local, solid.loops)
         return -gap - 2.0 * r if within else gap
 
-
     def _shape_gap(self, i: int, name: str, k: int, local: FloatArray) -> float:
         """Return the gap [m] of a body that is not a disc; local: its centre in the partner's frame."""
         if name == "solid":
