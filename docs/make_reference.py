@@ -8,6 +8,7 @@ import ast
 import inspect
 import re
 from collections.abc import Iterator
+from dataclasses import fields, is_dataclass
 from enum import IntEnum
 from pathlib import Path
 from typing import Any
@@ -64,6 +65,7 @@ GROUPS = {  # heading → picture in images/keys and its text, and types; any ot
     "Obstacles": ("obstacles", "gaps and moved obstacles", "StaticGroup DynamicGroup"),
     "Motion laws": ("laws", "motion laws", "BackAndForth WaypointLoop CircleLaw RecordedTrack"),
     "Teams": ("", "", "Team NavigatorChoice"),
+    "Dynamics": ("", "", "Holonomic Unicycle DifferentialDrive Ackermann"),
     "Starts": ("starts", "starts", "RegionStart CircleStart GridStart PackedStart PointsStart"),
     "Goals": (
         "goals",
@@ -87,7 +89,8 @@ def observations() -> str:
     for record in (AgentView, Observation, Rays, Neighbours, Edges, Map, Briefing):
         doc = inspect.getdoc(record) or ""
         parts += [f"## {record.__name__}", "", doc, "", "| field | meaning |", "|---|---|"]
-        parts += [f"| `{name}` | {_cell(text)} |" for name, text in _fields(record)]
+        rows = [*_fields(record), *_inherited(record)]
+        parts += [f"| `{name}` | {_cell(text)} |" for name, text in rows]
         parts.append("")
     parts += ["## Enumerations", "", "| class | values |", "|---|---|"]
     parts += [f"| `{kind.__name__}` | {_members(kind)} |" for kind in (Kind, Role, Dynamics)]
@@ -104,6 +107,13 @@ def _fields(record: type) -> Iterator[tuple[str, str]]:
             yield node.target.id, comment or ast.unparse(node.annotation)
         elif isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
             yield node.name, (ast.get_docstring(node) or "").partition("\n")[0]
+
+
+def _inherited(record: type) -> Iterator[tuple[str, str]]:
+    """Name and comment of each field of the record's base classes."""
+    for base in filter(is_dataclass, record.__bases__):
+        names = {field.name for field in fields(base)}
+        yield from (row for row in _fields(base) if row[0] in names)
 
 
 def _members(kind: type[IntEnum]) -> str:

@@ -85,10 +85,11 @@ def _named(value: Any) -> Any:
     return {"type": value} if isinstance(value, str) else value
 
 
-AnyDynamics = Holonomic | Unicycle | DifferentialDrive | Ackermann
+_Mapping = Annotated[
+    Holonomic | Unicycle | DifferentialDrive | Ackermann, Field(discriminator="type")
+]
 DynamicsSpec = Annotated[
-    AnyDynamics,
-    Field(discriminator="type"),
-    BeforeValidator(_named, json_schema_input_type=Literal["holonomic", "unicycle"] | AnyDynamics),
+    _Mapping,
+    BeforeValidator(_named, json_schema_input_type=Literal["holonomic", "unicycle"] | _Mapping),
 ]
 """Dynamics as a mapping with ``type``, or as the type's name where it needs no further key."""

@@ -7,7 +7,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Distance, Length, Name, Point, Spec
 from benchnav.scenario.canonical import added_field
-from benchnav.scenario.dynamics import DynamicsSpec, Holonomic
+from benchnav.scenario.dynamics import Ackermann, DifferentialDrive, DynamicsSpec, Holonomic
 from benchnav.scenario.footprint import Footprint, Range
 from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import Count, PositiveScalar, Scalar, support
@@ -216,6 +216,24 @@ class Team(Spec):
                 raise FieldError(
                     ("preferred_speed",), f"must be ≤ max_speed ({top[1]:g}); got {preferred[1]:g}"
                 )
+        self._check_dynamics()
         if self.evaluated and self.driver.params:
             raise FieldError(("driver",), "takes no parameters if it is `evaluated`")
         return self
+
+    def _check_dynamics(self) -> None:
+        drive, fastest = self.dynamics, support(self.max_speed)[1]
+        if isinstance(drive, DifferentialDrive):
+            wheel = support(drive.max_wheel_speed)[0]
+            if fastest > wheel:
+                raise FieldError(
+                    ("max_speed",),
+                    f"must be ≤ dynamics.max_wheel_speed ({wheel:g}), the speed of both wheels"
+                    f" straight ahead; got {fastest:g}",
+                )
+        if isinstance(drive, Ackermann) and self.max_turn_acceleration is not None:
+            raise FieldError(
+                ("max_turn_acceleration",),
+                "does not apply to ackermann, whose turn rate follows from its speed and steering"
+                " angle; give dynamics.max_steering_rate instead",
+            )
