@@ -70,13 +70,17 @@ class Canvas:
             (x - r, y - r, x + r, y + r), fill=fill, outline=outline, width=self._width(width)
         )
 
+    def polygon(self, points: FloatArray, *, fill: str) -> None:
+        """Fill a polygon with corners ``points`` (N, 2)."""
+        self._draw.polygon(self._places(points), fill=fill)
+
     def line(self, points: FloatArray, color: str, width: float = 1.0) -> None:
         """Draw a line through ``points`` (N, 2)."""
         self._draw.line(self._places(points), fill=color, width=self._width(width), joint="curve")
 
-    def heading(self, place: FloatArray, radius: float, angle: float) -> None:
-        """Draw the heading [rad] of an agent on its disc."""
-        ahead = radius * np.array([math.cos(angle), math.sin(angle)])
+    def heading(self, place: FloatArray, length: float, angle: float) -> None:
+        """Draw the heading [rad] of an agent on its body, as a line of a length [m]."""
+        ahead = length * np.array([math.cos(angle), math.sin(angle)])
         self.line(np.array([place, place + ahead]), PAPER, 2.0)
 
     def cross(self, place: FloatArray, color: str, arm: float = 4.0, width: float = 2.0) -> None:

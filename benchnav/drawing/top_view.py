@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from benchnav.arena.outline import outline, placed
 from benchnav.arena.solid import is_outside
 from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, Extent, FloatArray
@@ -27,6 +28,7 @@ class TopView:
             finer: see `Canvas`.
         """
         self.world = world
+        self.outlines = [outline(world.agents, a) for a in range(len(world.agents))]
         self.background = Canvas(_area(world, span), size, finer)
         for solid in sorted(world.solids, key=is_outside, reverse=True):
             self.background.solid(solid)
@@ -53,9 +55,14 @@ class TopView:
             picture.solid(body.solid.moved(place))
         agents = self.world.agents
         for a in np.flatnonzero(present[: len(agents)]):
-            radius = float(agents.radius[a])
-            picture.disc(position[a], radius, fill=agent_color(self.world, int(a)))
-            picture.heading(position[a], radius, float(heading[a]))
+            shape, color = self.outlines[a], agent_color(self.world, int(a))
+            ahead = float(agents.radius[a])
+            if shape is None:
+                picture.disc(position[a], ahead, fill=color)
+            else:
+                picture.polygon(placed(shape, position[a], float(heading[a])), fill=color)
+                ahead = float(agents.half_length[a])
+            picture.heading(position[a], ahead, float(heading[a]))
         return picture
 
     def ring(self, picture: Canvas, agent: int, place: FloatArray) -> None:

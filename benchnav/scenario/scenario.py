@@ -304,6 +304,8 @@ def _room_problems(scenario: Scenario) -> Iterator[Problem]:
             else:
                 continue
             if most > room:
+                if team.footprint is not None:
+                    text += ". Enlarge the region, or shrink the footprint"
                 yield (
                     ("teams", i, key),
                     f"must have room for all of {team.name!r}, up to {most} agents; {text}",

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from benchnav.arena.outline import outline, placed
 from benchnav.arena.solid import Kind, Solid, is_outside
 from benchnav.arena.world import World
 from benchnav.arrays import Extent, FloatArray
@@ -109,14 +110,19 @@ def draw_agents(
     axes: Axes, world: World, position: FloatArray, heading: FloatArray, here: Any = None
 ) -> None:
     """Draw the bodies of agents at ``position`` (A, 2) [m]; only those in ``here`` (A,)."""
-    from matplotlib.patches import Circle
+    from matplotlib.patches import Circle, Polygon
 
     for a, (x, y) in enumerate(position):
         if here is not None and not here[a]:
             continue
-        radius = float(world.agents.radius[a])
-        axes.add_patch(Circle((x, y), radius, color=agent_color(world, a), linewidth=0, zorder=4))
-        tip = 1.6 * radius * np.array([np.cos(heading[a]), np.sin(heading[a])])
+        length, shape = 1.6 * float(world.agents.radius[a]), outline(world.agents, a)
+        style: dict[str, Any] = {"color": agent_color(world, a), "linewidth": 0, "zorder": 4}
+        if shape is None:
+            axes.add_patch(Circle((x, y), float(world.agents.radius[a]), **style))
+        else:
+            axes.add_patch(Polygon(placed(shape, position[a], float(heading[a])), **style))
+            length = 1.2 * float(world.agents.half_length[a])
+        tip = length * np.array([np.cos(heading[a]), np.sin(heading[a])])
         axes.plot([x, x + tip[0]], [y, y + tip[1]], color=INK, linewidth=0.7, zorder=5)
 
 

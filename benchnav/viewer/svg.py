@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from benchnav.arena.outline import outline, placed
 from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray
@@ -18,7 +19,7 @@ def world_svg(world: World, marks: Iterable[str] = ()) -> str:
     ``marks`` are SVG elements to draw above, in metres with y upwards.
     """
     bodies = Simulation([world]).body_position[0]
-    starts = _discs(world, world.agents.start)
+    starts = _agents(world, world.agents.start, world.agents.heading)
     return _svg(world, [*_scene(world, bodies), *_goals(world), *starts, *marks])
 
 
@@ -31,7 +32,7 @@ def episode_svg(episode: Episode) -> str:
         for a in range(len(world.agents))
     ]
     failed = episode.status[-1] != int(Status.ARRIVED)
-    ends = _discs(world, episode.position[-1], failed)
+    ends = _agents(world, episode.position[-1], episode.heading[-1], failed)
     scene = _scene(world, episode.body_position[-1])
     return _svg(world, [*scene, *_goals(world), *paths, *ends])
 
@@ -79,14 +80,18 @@ def _goals(world: World) -> Iterator[str]:
         )
 
 
-def _discs(world: World, position: FloatArray, hollow: BoolArray | None = None) -> Iterator[str]:
+def _agents(
+    world: World, position: FloatArray, heading: FloatArray, hollow: BoolArray | None = None
+) -> Iterator[str]:
     """Yield agents at ``position`` (A, 2) [m]; agents in ``hollow`` (A,) are not filled."""
     for a, (x, y) in enumerate(position):
         fill = "#fff" if hollow is not None and hollow[a] else agent_color(world, a)
-        yield (
-            f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{world.agents.radius[a]:.3f}" fill="{fill}"'
-            f' stroke="{agent_color(world, a)}" stroke-width="0.08"/>'
-        )
+        shape = outline(world.agents, a)
+        body = f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{world.agents.radius[a]:.3f}"'
+        if shape is not None:
+            corners = placed(shape, position[a], float(heading[a]))
+            body = f'<polygon points="{_points(corners)}"'
+        yield f'{body} fill="{fill}" stroke="{agent_color(world, a)}" stroke-width="0.08"/>'
 
 
 def _points(points: FloatArray) -> str:

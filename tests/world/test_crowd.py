@@ -69,7 +69,9 @@ def test_cells_find_the_first_touch(crowd, side):
     for own in range(hashed[-1]):
         i = spots["index"][own]
         reach = crowd["radius"][i] + WIDEST + 1.001 * (speed[i] + speed.max()) * H
-        found = next_agent(own, H, reach, side, hashed, spots, motion, near)
+        found = next_agent(
+            own, H, reach, side, False, crowd, hashed, spots, motion, near
+        )
         assert found == first_of_all(crowd, i, H)
         touches += found[1] >= 0
     assert 50 < touches < 300
@@ -90,7 +92,7 @@ def test_lists_find_the_first_touch(crowd):
         if crowd["radius"][i] + WIDEST + way > distance[order[-1]]:
             continue
         listed = np.array([LISTED, *order], np.int32)
-        found = listed_agent(own, H, way, WIDEST, spots, listed, motion)
+        found = listed_agent(own, H, way, WIDEST, False, crowd, spots, listed, motion)
         assert found == first_of_all(crowd, i, H)
         touches += found[1] >= 0
     assert touches > 30

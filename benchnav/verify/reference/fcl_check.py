@@ -3,6 +3,8 @@
 There are three checks. At the start of an event, the two partners touch. At every state until
 its end, they are close, and overlap no deeper than recorded. And without an event, no
 agent overlaps anything, at a state or on the path between two states.
+
+Agents that are not discs are judged at states only, because headings between them are not stored.
 """
 
 import math
@@ -69,14 +71,20 @@ class _Judgement:
         """Yield events that do not start with a touch; only what never yields may start deeper."""
         c = self.episode.contacts
         for n, partner in enumerate(self.partners):
-            at = self._place_at(n, partner)
-            if at is None:
+            at, i = self._place_at(n, partner), int(c.agent[n])
+            if at is None or self._turns(i, partner):
                 continue
-            gap = self._gap(int(c.agent[n]), self.touched[n], partner, at)
+            gap = self._gap(i, self.touched[n], 0, partner, at)
             if gap > TOUCH:
                 yield f"{self._named(n)}: they are {gap:.9f} m apart then"
             elif gap < -TOUCH and partner[0] != "bodies":
                 yield f"{self._named(n)}: they overlap by {-gap:.9f} m then"
+
+    def _turns(self, i: int, partner: Partner) -> bool:
+        """Whether the gap of agent i and a partner depends on a heading."""
+        name, k = partner
+        shaped = self.scene.shapes.shaped
+        return bool(shaped[i] or (name == "agents" and shaped[k]))
 
     def _place_at(self, n: int, partner: Partner) -> FloatArray | None:
         """Return the partner's position at the start of event n; None if its own event is older."""
@@ -107,7 +115,7 @@ class _Judgement:
             first = math.floor(c.start[n] / self.dt) + 1
             for t in range(first, min(math.ceil(c.end[n] / self.dt - 1e-9), len(e.position))):
                 i, at = int(c.agent[n]), self._stored(partner, t)
-                gap = self._gap(i, e.position[t, i], partner, at)
+                gap = self._gap(i, e.position[t, i], t, partner, at)
                 if gap > RELEASE + TOUCH:
                     yield f"{self._named(n)}: they are {gap:.6f} m apart at {t * self.dt:.3f} s"
                     break
@@ -123,12 +131,17 @@ class _Judgement:
         place: FloatArray = array[t, k]
         return place
 
-    def _gap(self, i: int, place: FloatArray, partner: Partner, at: FloatArray) -> float:
-        """Return the gap in the scene; for a centre within a body, the depth as in the kernels."""
+    def _gap(
+        self, i: int, place: FloatArray, t: int, partner: Partner, at: FloatArray
+    ) -> float:
+        """Return the gap in the scene, with the headings of state t.
+
+        For the centre of a disc within a body, it is the depth as in the kernels.
+        """
         name, k = partner
-        gap = self.scene.gap(i, place, partner, at)
+        gap = self.scene.gap(i, place, self.episode.heading[t], partner, at)
         solid = self.world.bodies[k].solid if name == "bodies" else None
-        if solid is None or solid.is_disc or not inside(place - at, solid.loops):
+        if solid is None or self.scene.shapes.shaped[i] or solid.is_disc or not inside(place - at, solid.loops):
             return gap
         radius = float(self.world.agents.radius[i])
         away = gap if gap > 0.0 else radius + gap  # from the rim or the centre to the surface
@@ -144,7 +157,7 @@ class _Judgement:
                 for partner, place, at in self._near(int(i), t, places, present):
                     if (int(i), partner) in reported or self._covered(int(i), partner, t):
                         continue
-                    gap = self._gap(int(i), place, partner, at)
+                    gap = self._gap(int(i), place, t, partner, at)
                     if gap < -OVERLAP:
                         reported.add((int(i), partner))
                         name, k = partner
@@ -172,6 +185,8 @@ class _Judgement:
         here: FloatArray = e.position[t, i][None]
         begin, end = t * self.dt, (t + 1) * self.dt
         disturbed = (c.agent == i) & (c.start <= end) & (c.end >= begin)
+        if self.scene.shapes.shaped[i]:
+            return here
         if t == len(e.executed) or disturbed.any() or e.status[t + 1, i] != int(Status.ACTIVE):
             return here
         drive, heading = e.executed[t, i], float(e.heading[t, i])

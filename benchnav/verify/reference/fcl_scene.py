@@ -14,8 +14,10 @@ import trimesh
 from benchnav.arena.solid import Solid
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray
+from benchnav.verify.reference.reference_footprint import Footprints
 
 HALF = 10.0  # [m] half height of side walls: more than the width of any agent
+FLAT = 1e-7  # [m] thickness of a core that has none
 _MAX_CONTACTS = 64  # triangles per pair that python-fcl reports
 
 
@@ -25,19 +27,34 @@ class Scene:
     def __init__(self, world: World) -> None:
         self.solids = [_object(solid) for solid in world.solids]
         self.bodies = [_object(body.solid) for body in world.bodies]
-        self.agents = [fcl.CollisionObject(fcl.Sphere(float(r))) for r in world.agents.radius]
+        self.shapes = Footprints(world.agents)
+        self.agents = [self._agent(world, i) for i in range(len(world.agents))]
 
-    def gap(self, i: int, place: FloatArray, other: tuple[str, int], at: FloatArray) -> float:
+    def _agent(self, world: World, i: int) -> Any:
+        """Return the disc of an agent as a sphere; of another shape, its core as a flat box."""
+        if not self.shapes.shaped[i]:
+            return fcl.CollisionObject(fcl.Sphere(float(world.agents.radius[i])))
+        x, y = 2.0 * self.shapes.core(i, 0.0).max(axis=0)
+        return fcl.CollisionObject(fcl.Box(x, max(y, FLAT), FLAT))
+
+    def gap(
+        self, i: int, place: FloatArray, heading: FloatArray, other: tuple[str, int], at: FloatArray
+    ) -> float:
         """Return the gap [m] between agent i at ``place`` (2,) and a partner at ``at`` (2,).
 
-        Negative: the depth of the overlap; for a shape that contains the agent's centre, how
-        far the agent extends out of it.
+        ``heading`` (A,) [rad] turns agents that are not discs. Negative: the depth of the overlap;
+        for a shape that contains the agent's centre, how far the agent extends out of it. Of
+        agents that are not discs, it is at most the depth at which their cores meet.
         """
         name, k = other
         agent, partner = self.agents[i], getattr(self, name)[k]
-        _move(agent, place)
+        both = [i, k] if name == "agents" else [i]
+        margin = sum(float(self.shapes.rounding[a]) for a in both if self.shapes.shaped[a])
+        _move(agent, place, float(heading[i]))
         if name != "solids":
-            _move(partner, at)
+            _move(partner, at, float(heading[k]) if name == "agents" else 0.0)
+        if margin > 0.0:
+            return max(0.0, float(fcl.distance(agent, partner))) - margin
         found = fcl.CollisionResult()
         request = fcl.CollisionRequest(num_max_contacts=_MAX_CONTACTS, enable_contact=True)
         if fcl.collide(agent, partner, request, found):
@@ -45,8 +62,9 @@ class Scene:
         return max(0.0, float(fcl.distance(agent, partner)))
 
 
-def _move(thing: Any, place: FloatArray) -> None:
-    thing.setTransform(fcl.Transform(np.array([place[0], place[1], 0.0])))
+def _move(thing: Any, place: FloatArray, heading: float) -> None:
+    turn = np.array([math.cos(0.5 * heading), 0.0, 0.0, math.sin(0.5 * heading)])
+    thing.setTransform(fcl.Transform(turn, np.array([place[0], place[1], 0.0])))
 
 
 def _object(solid: Solid) -> Any:

@@ -6,11 +6,15 @@ from typing import NamedTuple
 import numpy as np
 import shapely
 
+from benchnav.arena.outline import outline
 from benchnav.arena.solid import Kind, Solid, is_outside, signed_area
+from benchnav.arena.world import World
 from benchnav.arrays import Extent, FloatArray, IntArray
 
-HEIGHT = {Kind.WALL: 1.5, Kind.STATIC: 1.0, Kind.DYNAMIC: 1.0}  # [m]
 AGENT_HEIGHT = 1.2  # [m]
+HEIGHT = {
+    Kind.WALL: 1.5, Kind.STATIC: 1.0, Kind.DYNAMIC: 1.0, Kind.AGENT: AGENT_HEIGHT
+}  # [m]  # fmt: skip
 RIM = 0.2  # [m] how thick the wall around a walled arena is drawn
 _SIDES = 24  # of a disc
 _THIN = 0.02  # [m] half of how thick a wall without area is drawn
@@ -31,6 +35,15 @@ def extrude(solid: Solid, bounds: Extent) -> Mesh:
     vertices = np.vstack([np.zeros((0, 3)), *(part.vertices for part in parts)])
     triangles = [part.triangles + n for part, n in zip(parts, first[:-1], strict=True)]
     return Mesh(vertices, np.vstack([np.zeros((0, 3), np.int64), *triangles]))
+
+
+def extrude_agents(world: World) -> list[Mesh | None]:
+    """Return the meshes of the agents about their centres; None for a disc."""
+    shapes = [outline(world.agents, a) for a in range(len(world.agents))]
+    return [
+        None if shape is None else extrude(Solid(Kind.AGENT, (shape,)), world.bounds)
+        for shape in shapes
+    ]
 
 
 def _polygons(solid: Solid, bounds: Extent) -> list[shapely.Polygon]:

@@ -20,7 +20,7 @@ from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.system.plain_file import writing
-from benchnav.viewer.recordings.extrusion import AGENT_HEIGHT, Mesh, extrude
+from benchnav.viewer.recordings.extrusion import AGENT_HEIGHT, Mesh, extrude, extrude_agents
 from benchnav.viewer.replay.senses import sensed
 
 FRAME = "world"
@@ -51,6 +51,7 @@ class _Log:
         self._schemas = schemas
         self._episode = episode
         self._scans = sensed(episode, agents)
+        self._shapes = extrude_agents(episode.world)
         self._leaves = analyse(episode).trajectories.leaves
 
     def messages(self) -> Iterable[tuple[float, str, Any]]:
@@ -88,20 +89,31 @@ class _Log:
             entity.timestamp.FromNanoseconds(round(time * 1e9))
         return self._make("SceneUpdate", entities=entities)
 
-    def _mesh(self, name: str, mesh: Mesh, color: tuple[float, float, float]) -> Any:
+    def _mesh(
+        self, name: str, mesh: Mesh, color: tuple[float, float, float], pose: Any = None
+    ) -> Any:
         triangles = self._make(
             "TriangleListPrimitive",
             points=[self._make("Point3", x=x, y=y, z=z) for x, y, z in mesh.vertices],
-            indices=mesh.triangles.ravel().tolist(), color=self._color(color), pose=self._pose(),
+            indices=mesh.triangles.ravel().tolist(), color=self._color(color),
+            pose=self._pose() if pose is None else pose,
         )  # fmt: skip
         return self._make("SceneEntity", id=name, frame_id=FRAME, triangles=[triangles])
 
     def _discs(self, t: int) -> list[Any]:
-        """Return cylinders for the agents that are present; a cylinder vanishes with its agent."""
+        """Return cylinders or meshes for the agents that are present; they vanish with them."""
         episode, agents = self._episode, self._episode.world.agents
         here = np.flatnonzero(t < self._leaves)
         out = []
         for a in here:
+            shape = self._shapes[a]
+            if shape is not None:
+                color = rgb(agent_color(episode.world, int(a)))
+                pose = self._pose(episode.position[t, a], 0.0, episode.heading[t, a])
+                entity = self._mesh(f"agent-{a}", shape, color, pose)
+                entity.lifetime.FromNanoseconds(round(episode.world.clock.dt * 1.5e9))
+                out.append(entity)
+                continue
             size = self._make(
                 "Vector3", x=2 * agents.radius[a], y=2 * agents.radius[a], z=AGENT_HEIGHT
             )

@@ -1,6 +1,7 @@
 """An episode as a recording for the Rerun viewer: a 3-D scene and charts over time.
 
-Entities: ``arena`` and ``bodies/M`` (meshes), ``agents`` (cylinders), ``trails/A``, ``hits/A`` (ray
+Entities: ``arena`` and ``bodies/M`` (meshes), ``agents`` (cylinders), ``shapes/A``
+(meshes of agents that are not discs), ``trails/A``, ``hits/A`` (ray
 hits) and ``charts/collision_probability/A`` of the agents whose senses are recorded. x and y lie
 on the floor [m], z is up; the timeline ``time`` is that of the episode [s].
 """
@@ -18,7 +19,7 @@ from benchnav.errors import MissingExtraError
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.scenario.condition import condition
 from benchnav.system.plain_file import writing
-from benchnav.viewer.recordings.extrusion import AGENT_HEIGHT, extrude
+from benchnav.viewer.recordings.extrusion import AGENT_HEIGHT, extrude, extrude_agents
 from benchnav.viewer.replay.senses import Senses, sensed
 
 _FLOOR = 0.02  # [m] trails are drawn so far above the floor
@@ -73,11 +74,22 @@ def _mesh(rerun: Any, mesh: Any, color: tuple[float, float, float]) -> Any:
 def _log_motion(rerun: Any, stream: Any, episode: Episode) -> None:
     agents, leaves = episode.world.agents, analyse(episode).trajectories.leaves
     colors = np.array([rgb(agent_color(episode.world, a)) for a in range(len(agents))])
+    meshes = extrude_agents(episode.world)
+    for a, mesh in enumerate(meshes):
+        if mesh is not None:
+            shape = _mesh(rerun, mesh, rgb(agent_color(episode.world, a)))
+            stream.log(f"shapes/{a}", shape, static=True)
     for t, time in enumerate(episode.times):
         stream.set_time("time", duration=float(time))
         for m, place in enumerate(episode.body_position[t]):
             stream.log(f"bodies/{m}", rerun.Transform3D(translation=[*place, 0.0]))
         here = np.flatnonzero(t < leaves)
+        for a in np.flatnonzero([mesh is not None for mesh in meshes]):
+            seen = t < leaves[a]
+            place = [*episode.position[t, a], 0.0 if seen else -1e3]  # below the floor: gone
+            turn = rerun.RotationAxisAngle([0.0, 0.0, 1.0], radians=float(episode.heading[t, a]))
+            stream.log(f"shapes/{a}", rerun.Transform3D(translation=place, rotation=turn))
+        trailed, here = here, here[[meshes[a] is None for a in here]]
         centers = np.column_stack(
             [episode.position[t, here], np.full(len(here), 0.5 * AGENT_HEIGHT)]
         )
@@ -87,7 +99,7 @@ def _log_motion(rerun: Any, stream: Any, episode: Episode) -> None:
             labels=[str(a) for a in here], show_labels=False,
         )  # fmt: skip
         stream.log("agents", discs)
-        stream.log("trails", _trails(rerun, episode, t, here, colors))
+        stream.log("trails", _trails(rerun, episode, t, trailed, colors))
 
 
 def _trails(rerun: Any, episode: Episode, t: int, here: IntArray, colors: Any) -> Any:

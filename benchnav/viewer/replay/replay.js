@@ -421,7 +421,7 @@ class View {
   }
 
   drawAgents(c, pixel, k) {
-    const { radius } = this.scene.agents,
+    const { radius, outline } = this.scene.agents,
       ink = colour("ink");
     this.byColour((colour, members) => {
       const discs = new Path2D(),
@@ -433,12 +433,17 @@ class View {
           r = radius[a];
         const over = this.status(a, k) !== ACTIVE;
         const path = over ? still : discs;
-        path.moveTo(x + r, y);
-        path.arc(x, y, r, 0, 2 * Math.PI);
+        const shape = outline?.[a],
+          heading = this.value(this.scene.heading, a, k);
+        if (shape) this.addOutline(path, shape, x, y, heading);
+        else {
+          path.moveTo(x + r, y);
+          path.arc(x, y, r, 0, 2 * Math.PI);
+        }
         if (this.count > CROWD) continue;
-        const heading = this.value(this.scene.heading, a, k);
+        const ahead = shape ? 1.2 * shape[0] : 1.6 * r;
         headings.moveTo(x, y);
-        headings.lineTo(x + 1.6 * r * Math.cos(heading), y + 1.6 * r * Math.sin(heading));
+        headings.lineTo(x + ahead * Math.cos(heading), y + ahead * Math.sin(heading));
       }
       c.fillStyle = c.strokeStyle = colour;
       c.fill(discs);
@@ -452,6 +457,19 @@ class View {
     if (this.hasChosen() && this.present(a, k)) {
       this.ring(c, pixel, this.at(a, k), radius[a]);
     }
+  }
+
+  /** The outline of a body that is not a disc: x, y of its corners, turned by its heading. */
+  addOutline(path, shape, x, y, heading) {
+    const cos = Math.cos(heading),
+      sin = Math.sin(heading);
+    for (let n = 0; n < shape.length; n += 2) {
+      const px = x + cos * shape[n] - sin * shape[n + 1],
+        py = y + sin * shape[n] + cos * shape[n + 1];
+      if (n === 0) path.moveTo(px, py);
+      else path.lineTo(px, py);
+    }
+    path.closePath();
   }
 
   /** A cross where an agent vanished without arrival. */

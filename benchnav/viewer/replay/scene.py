@@ -4,6 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from benchnav.arena.agents import Agents
+from benchnav.arena.outline import outline
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import World
 from benchnav.arrays import FloatArray, IntArray
@@ -119,12 +121,19 @@ def _agents(episode: Episode) -> dict[str, Any]:
     agents, names = episode.world.agents, episode.world.teams
     found = analyse(episode)
     return {
-        "radius": _numbers(agents.radius), "team": agents.team.tolist(), "teams": list(names),
+        "radius": _numbers(agents.radius),
+        "outline": [_outline(agents, a) for a in range(len(agents))], "team": agents.team.tolist(), "teams": list(names),
         "goal": _numbers(agents.goal), "evaluated": agents.evaluated.tolist(),
         "success": found.success.tolist(), "end": attempt_ends(episode),
         "last": found.trajectories.last.tolist(), "leaves": found.trajectories.leaves.tolist(),
         "colour": [color_number(episode.world, a) for a in range(len(agents))],
     }  # fmt: skip
+
+
+def _outline(agents: Agents, a: int) -> list[float] | None:
+    """Return x, y of the corners of a body that heads along +x [m]; None: a disc."""
+    shape = outline(agents, a)
+    return None if shape is None else _numbers(shape.ravel())
 
 
 def _shape(solid: Solid) -> dict[str, Any]:
