@@ -9,6 +9,10 @@ import pytest
 import torch
 import yaml
 from benchnav_baselines.learned.recurrent_ppo.learning import checkpoint
+from benchnav_baselines.learned.recurrent_ppo.learning.courses import (
+    training_pools,
+    validation_batches,
+)
 from benchnav_baselines.learned.recurrent_ppo.learning.recipe import Course, Recipe
 from benchnav_baselines.learned.recurrent_ppo.learning.segments import WEIGHTS, Training
 from benchnav_baselines.learned.recurrent_ppo.weights import read_weights
@@ -166,9 +170,21 @@ def test_patience_counts_checkpoints_without_a_better_one():
 def test_the_hash_is_of_what_decides_the_weights():
     recipe = tiny()
     assert recipe.hash == tiny(description="other words").hash
-    others = [tiny(rows=3), tiny(gamma=0.9), tiny(encoder="paper"), tiny(sequence=7),
-              tiny(network={"lstm_layers": 1, "lstm_size": 9})]  # fmt: skip
-    assert len({recipe.hash, *(other.hash for other in others)}) == 6
+    assert recipe.hash == tiny(perception="exact").hash
+    others = [
+        tiny(rows=3), tiny(gamma=0.9), tiny(encoder="paper"), tiny(sequence=7),
+        tiny(perception="noisy"), tiny(network={"lstm_layers": 1, "lstm_size": 9}),
+    ]  # fmt: skip
+    assert len({recipe.hash, *(other.hash for other in others)}) == 7
+
+
+def test_a_recipe_trains_and_validates_in_its_perception_track():
+    for perception, noisy in (("exact", False), ("noisy", True)):
+        recipe = tiny(perception=perception)
+        (pool,) = training_pools(recipe, recipe.stages[0])
+        assert (pool.noise is not None) is noisy
+        (batch,) = validation_batches(recipe).values()
+        assert (batch._senses is not None) is noisy
 
 
 @pytest.fixture
