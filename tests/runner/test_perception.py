@@ -130,7 +130,7 @@ def test_a_selection_replaces_the_perceptions_of_the_suite(write):
         ("perception: []\n", r"suite\.yaml:\d+: perception must have at least 1 entries"),
         (
             "perceptions: [noisy]\n",
-            r"suite\.yaml:\d+: perceptions is not a known key\. Did you mean 'perception'",
+            r":\d+: perceptions is not a known key\. Did you mean 'perception'",
         ),
         ("blocks: [{perception: [noisy]}]\n", r"blocks\[0\]\.perception must be among the suite's"),
         ("perception: [noisy, noisy]\n", r"perception\[1\] must not repeat another"),
