@@ -104,7 +104,7 @@ def test_the_command_line_chooses_the_perception(scenario_file, tmp_path, capsys
         assert command(capsys, "replay", run, name, "--out", page)[0] == 0
         assert '"perception":"noisy"' in page.read_text().replace(": ", ":")
     found, _, err = command(capsys, "replay", run, "orca/tiny/open@1/known/nosy/0")
-    assert (found, "Did you mean 'orca/tiny/open@1/known/noisy/0'?" in err) == (2, True)
+    assert (found, "Did you mean 'orca/tiny/open@1/known/noisy/0'" in err) == (2, True)
     for arguments in (common[:-2], ("watch", scenario_file, "orca")):
         found, _, err = command(capsys, *arguments, "--perception", "noise")
         assert (found, "Did you mean 'noisy'?" in err) == (2, True)

@@ -53,7 +53,7 @@ def test_scenarios_show_each_condition(site):
     (page,) = site.glob("scenarios/trap*.html")
     text = page.read_text()
     for heading in ("Track known", "Track known, noisy perception", "Track unknown"):
-        assert f"<h2>{heading}</h2>" in text
+        assert f">{heading}</h2>" in text
 
 
 def test_two_navigators_are_compared_within_a_condition(site):
@@ -66,5 +66,5 @@ def test_two_navigators_are_compared_within_a_condition(site):
 
 def test_a_report_of_exact_perception_says_nothing_about_it(report):
     for path in report.rglob("*.html"):
-        if path.parent.name != "replays":
+        if path.parent.name != "replays" and path.name != "about.html":  # the command that ran it
             assert "perception" not in path.read_text().lower(), path
