@@ -64,8 +64,9 @@ GROUPS = {  # heading → picture in images/keys and its text, and types; any ot
     "Shapes": ("shapes", "shapes", "Box Disc Polygon Polyline Mesh Occupancy"),
     "Obstacles": ("obstacles", "gaps and moved obstacles", "StaticGroup DynamicGroup"),
     "Motion laws": ("laws", "motion laws", "BackAndForth WaypointLoop CircleLaw RecordedTrack"),
-    "Teams": ("", "", "Team NavigatorChoice"),
+    "Teams": ("", "", "Team RobotChoice NavigatorChoice"),
     "Dynamics": ("", "", "Holonomic Unicycle DifferentialDrive Ackermann"),
+    "Footprints": ("", "", "DiscFootprint Capsule RoundedBox"),
     "Starts": ("starts", "starts", "RegionStart CircleStart GridStart PackedStart PointsStart"),
     "Goals": (
         "goals",
@@ -78,6 +79,7 @@ GROUPS = {  # heading → picture in images/keys and its text, and types; any ot
         "sensors, arrival and contacts",
         "Clock Rules Sensing Rays Nearest",
     ),
+    "Noise": ("", "", "NoiseSpec RayErrors NeighbourErrors EdgeErrors OdometryErrors"),
     "Numbers": ("", "", "Uniform Normal Choice Integers Parameter Reference"),
 }
 Schema = dict[str, Any]

@@ -57,7 +57,7 @@ class Interval:
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """What the run found, by robot."""
+    """The results of the run, by robot."""
 
     run: RunFolder
     values: StoredValues

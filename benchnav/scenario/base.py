@@ -13,6 +13,17 @@ class Spec(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
 
+def with_tuples(value: Any) -> Any:
+    """Return plain data with tuples in place of lists.
+
+    A `BeforeValidator` receives and returns Python data, also of a file; pydantic then demands
+    tuples where it would accept the lists of JSON.
+    """
+    if isinstance(value, dict):
+        return {key: with_tuples(part) for key, part in value.items()}
+    return tuple(map(with_tuples, value)) if isinstance(value, list) else value
+
+
 FAR = 1e5  # [m] largest distance of a coordinate from the origin
 
 

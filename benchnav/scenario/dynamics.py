@@ -12,7 +12,7 @@ from pydantic import (
 )
 
 from benchnav.config.document import shown
-from benchnav.scenario.base import Spec
+from benchnav.scenario.base import Spec, with_tuples
 from benchnav.scenario.sampling.sampler import PositiveScalar, Scalar, support
 
 
@@ -87,7 +87,7 @@ def _named(value: Any) -> Any:
         raise ValueError(
             f"must be the name of a type, or a mapping with `type`; got {shown(value)}"
         )
-    return {"type": value} if isinstance(value, str) else value
+    return {"type": value} if isinstance(value, str) else with_tuples(value)
 
 
 _Mapping = Annotated[

@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from benchnav.config.document import shown
 from benchnav.config.validation import FieldError
-from benchnav.scenario.base import Spec
+from benchnav.scenario.base import Spec, with_tuples
 from benchnav.scenario.sampling.sampler import PositiveScalar, support
 
 Range = tuple[float, float]
@@ -89,7 +89,7 @@ def _mapping(value: Any) -> Any:
             "must be a mapping such as {type: capsule, length: 0.8, width: 0.4};"
             f" got {shown(value)}"
         )
-    return value
+    return with_tuples(value)
 
 
 _Any = Annotated[DiscFootprint | Capsule | RoundedBox, Field(discriminator="type")]

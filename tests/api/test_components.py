@@ -33,8 +33,8 @@ def test_descriptions_are_those_of_the_command(monkeypatch, tmp_path, capfd):
 def test_all_kinds_are_a_dict():
     found = benchnav.available()
     assert list(found) == [
-        "navigators", "planners", "controllers", "scenarios", "suites", "metrics", "trainers",
-        "recipes",
+        "navigators", "planners", "controllers", "scenarios", "robots", "suites", "metrics",
+        "trainers", "recipes",
     ]  # fmt: skip
     assert found["scenarios"]["trap/u"] == "A dead end between start and goal"
     assert "quick" in found["suites"]

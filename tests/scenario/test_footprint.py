@@ -63,7 +63,7 @@ def test_a_world_survives_its_stored_form(load):
     ("body", "message"),
     [
         ("heading: goal", "s.yaml:4: teams[0].radius must be given, or `footprint` for other"
-         " shapes."),
+         " shapes, or `robot`."),
         ("radius: 0.3\n    " + CAPSULE, "s.yaml:5: teams[0].radius must be left out, because it"
          " follows from `footprint`; remove one."),
         ("footprint: {type: capsule, length: 0.3, width: 0.4}",
@@ -86,7 +86,9 @@ def test_bad_footprints_are_one_sentence_with_its_place(load, body, message):
 
 def test_a_footprint_larger_than_its_start_region_says_so(tmp_path):
     path = tmp_path / "s.yaml"
-    text = TEXT.format(body=BOX.replace("length: 0.5", "length: 20")).replace("bounds", "walled: true\nbounds")
+    text = TEXT.format(body=BOX.replace("length: 0.5", "length: 20")).replace(
+        "bounds", "walled: true\nbounds"
+    )
     path.write_text(text)
     with pytest.raises(ScenarioError) as error:
         load_scenario(path)

@@ -144,10 +144,10 @@ def test_a_parameter_may_be_text_or_true_or_false(tmp_path):
     path = _file(tmp_path, TYPED)
     default = find(str(path))
     assert default.identity == "tests/small@1"
-    assert (default.teams[0].dynamics, default.sensing.occlusion) == ("unicycle", True)
+    assert (default.teams[0].dynamics.type, default.sensing.occlusion) == ("unicycle", True)
     found = find(f"{path}:drive=holonomic,hidden=false,contact=stop")
     assert found.identity == "tests/small@1:contact=stop,drive=holonomic,hidden=false"
-    assert (found.teams[0].dynamics, found.sensing.occlusion) == ("holonomic", False)
+    assert (found.teams[0].dynamics.type, found.sensing.occlusion) == ("holonomic", False)
     assert found.rules.contact == "stop"
     again = found.placed_in(tmp_path, split_parameters(found.identity)[1])
     assert again.identity == found.identity  # as verify rebuilds it

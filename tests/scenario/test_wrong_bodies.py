@@ -8,6 +8,8 @@ import re
 import pytest
 
 from benchnav.cli.main import status
+from benchnav.scenario.load import scenario_from_text
+from benchnav.scenario.sampling.sampler import support
 from tests.plain_scenario import PLAIN
 
 BODY = "radius: 0.2\n    max_speed: 1"
@@ -32,6 +34,15 @@ def said(tmp_path, monkeypatch, capsys):
         return line
 
     return validate
+
+
+def test_right_ones_may_be_drawn():
+    key = CAR.replace("wheelbase: 0.3", "wheelbase: {uniform: [0.3, 0.4]}")
+    body = CAPSULE.replace("length: 1", "length: {choice: [0.8, 1]}")
+    (team,) = scenario_from_text(
+        PLAIN.replace(BODY, f"{body}\n    max_speed: 1\n    {key}"), "f"
+    ).teams
+    assert (support(team.dynamics.wheelbase), team.outer_radius) == ((0.3, 0.4), (0.4, 0.5))
 
 
 @pytest.mark.parametrize(
@@ -112,7 +123,8 @@ def test_a_footprint_larger_than_its_start_region(said):
     text = PLAIN.replace(BODY, f"{CAPSULE.replace('1', '3')}\n    max_speed: 1")
     assert said(text.replace(start, region)) == (
         "f.yaml:7: teams[0].start must have room for all of 'one', up to 1 agents; the region holds"
-        " at most 0 agents of radius 1.5 m that are 0 m apart, in the densest packing."
+        " at most 0 agents of radius 1.5 m that are 0 m apart, in the densest packing. Enlarge the"
+        " region, or shrink the footprint."
     )
 
 
