@@ -91,8 +91,8 @@ def _find_in_rows(
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
     velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, agents: AnyArray,
-    form: FloatArray, around: FloatArray, at: IntArray, window: IntArray, best: FloatArray, exact: IntArray,
-    place: IntArray, ranked: IntArray, given: FloatArray, given_bits: IntArray,
+    form: FloatArray, around: FloatArray, at: IntArray, window: IntArray, best: FloatArray,
+    exact: IntArray, place: IntArray, ranked: IntArray, given: FloatArray, given_bits: IntArray,
     smallest: FloatArray, bits: IntArray, sizes: IntArray, fixed: FloatArray, blockers: IntArray,
 ) -> None:  # fmt: skip
     """Sort the candidates of `LANES` agents together, or those of one agent by insertion.

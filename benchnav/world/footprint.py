@@ -45,9 +45,7 @@ def sum_with_agent(a: Any, b: Any) -> tuple[Four, Four]:
 
 
 @kernel_without_allocation
-def agents_time(
-    fx: float, fy: float, wx: float, wy: float, left: float, a: Any, b: Any
-) -> float:
+def agents_time(fx: float, fy: float, wx: float, wy: float, left: float, a: Any, b: Any) -> float:
     """Return the time until agent a touches b, from its relative position and velocity.
 
     It is inf if they cannot touch within ``left`` [s].
@@ -110,4 +108,4 @@ def depth_within(a: Any, body: Any, shapes: AnyArray) -> float:
             extent = a.core_length * abs(dx * a.axis_x + dy * a.axis_y) / d
             extent += a.core_width * abs(dy * a.axis_x - dx * a.axis_y) / d
         least = min(least, d + extent + c.r)
-    return least + a.rounding
+    return least + float(a.rounding)

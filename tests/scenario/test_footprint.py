@@ -39,7 +39,8 @@ def test_sizes_are_drawn_and_the_radius_follows(load):
     assert len(set(agents.half_length)) == 4
     assert ((agents.half_length >= 0.4) & (agents.half_length <= 0.6)).all()
     assert (agents.radius == agents.half_length).all()
-    assert (agents.rounding == 0.2).all() and (agents.inner_radius == 0.2).all()
+    assert (agents.rounding == 0.2).all()
+    assert (agents.inner_radius == 0.2).all()
     box = build(load(BOX), "test", 0).agents
     assert box.radius == pytest.approx(np.hypot(0.15, 0.3) + 0.1)
     assert (box.inner_radius == 0.25).all()
@@ -86,7 +87,9 @@ def test_bad_footprints_are_one_sentence_with_its_place(load, body, message):
 
 def test_a_footprint_larger_than_its_start_region_says_so(tmp_path):
     path = tmp_path / "s.yaml"
-    text = TEXT.format(body=BOX.replace("length: 0.5", "length: 20")).replace("bounds", "walled: true\nbounds")
+    text = TEXT.format(body=BOX.replace("length: 0.5", "length: 20")).replace(
+        "bounds", "walled: true\nbounds"
+    )
     path.write_text(text)
     with pytest.raises(ScenarioError) as error:
         load_scenario(path)

@@ -87,9 +87,7 @@ def _gap(twin: "Twin", i: int, place: _Place, pose: _Pose) -> tuple[FloatArray, 
         normal, apart = away_from(at - twin.position[k], hull)
         return normal, apart - float(shapes.rounding[i] + shapes.rounding[k])
     capsules = twin.capsule(p)[None] if name == "solid" else twin.carried(k)
-    found = [
-        (away_from(at, difference(core, c[:4].reshape(2, 2))), float(c[4])) for c in capsules
-    ]
+    found = [(away_from(at, difference(core, c[:4].reshape(2, 2))), float(c[4])) for c in capsules]
     (normal, apart), radius = min(found, key=lambda one: one[0][1] - one[1])
     return normal, apart - radius - float(shapes.rounding[i])
 
