@@ -1,4 +1,4 @@
-"""Panels of starts, goals, regions, sensors and rules, for ``make_key_pictures.py``."""
+"""Panels of footprints, starts, goals, regions, sensors and rules, for ``make_key_pictures.py``."""
 
 import math
 from typing import Any
@@ -23,6 +23,51 @@ from key_sketch import (
     team,
 )
 from matplotlib.patches import Polygon, Rectangle, Wedge
+
+
+def footprint_panels() -> list[Panel]:
+    """Return the panels of footprints."""
+
+    def body(footprint: str) -> str:
+        return (
+            f"teams:\n  - {{name: t, footprint: {footprint}, max_speed: 1, heading: 0,"
+            " start: {type: points, points: [[0, 0]]}, goal: {type: points, points: [[4, 0]]}}\n"
+        )
+
+    def around(axes: Any, radius: float) -> None:
+        disc(axes, (0.0, 0.0), radius, INK, fill=False)
+        arrow(axes, (0.0, 0.0), (radius + 1.2, 0.0), PAPER if radius < 1.0 else MOVER)
+
+    def round_(axes: Any) -> None:
+        dimension(axes, (0.0, 0.0), (1.06, 1.06), "radius", (-0.7, 0.3))
+        arrow(axes, (0.0, 0.0), (3.0, 0.0), MOVER)
+        label(axes, (3.7, 0.0), "heading", MOVER)
+
+    def capsule(axes: Any) -> None:
+        around(axes, 2.0)
+        dimension(axes, (-2.0, -1.3), (2.0, -1.3), "length", (0.0, -0.3))
+        dimension(axes, (-1.2, -0.8), (-1.2, 0.8), "width", (0.75, 0.35))
+        label(axes, (0.0, 2.6), "around it: the circle of `radius`")
+
+    def box(axes: Any) -> None:
+        around(axes, 2.087)
+        dimension(axes, (-1.8, -1.6), (1.8, -1.6), "length", (0.0, -0.3))
+        dimension(axes, (-1.3, -1.2), (-1.3, 1.2), "width", (0.75, 0.35))
+        disc(axes, (1.4, 0.8), 0.4, PAPER, fill=False)
+        label(axes, (3.2, 1.4), "corner_radius")
+
+    return [
+        Panel("{type: disc}", round_, body("{type: disc, radius: 1.5}"), starts=True),
+        Panel(
+            "{type: capsule}", capsule, body("{type: capsule, length: 4, width: 1.6}"), starts=True
+        ),
+        Panel(
+            "{type: rounded-box}",
+            box,
+            body("{type: rounded-box, length: 3.6, width: 2.4, corner_radius: 0.4}"),
+            starts=True,
+        ),
+    ]
 
 
 def start_panels() -> list[Panel]:

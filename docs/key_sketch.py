@@ -5,9 +5,10 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from matplotlib.patches import Circle, PathPatch, Rectangle
+from matplotlib.patches import Circle, PathPatch, Polygon, Rectangle
 from matplotlib.path import Path as Outline
 
+from benchnav.arena.outline import outline, placed
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import World
 from benchnav.generation.build import build
@@ -109,9 +110,13 @@ def draw_world(axes: Any, world: World, starts: bool, goals: bool) -> None:
     for body, place in zip(world.bodies, places, strict=False):
         solid(axes, body.solid.moved(place), MOVER)
     agents = world.agents
-    for start, goal, radius in zip(agents.start, agents.goal, agents.radius, strict=True):
-        if starts:
-            disc(axes, tuple(start), float(radius))
+    for a, (start, goal) in enumerate(zip(agents.start, agents.goal, strict=True)):
+        shape = outline(agents, a)
+        if starts and shape is None:
+            disc(axes, tuple(start), float(agents.radius[a]))
+        elif starts:
+            turned = placed(shape, start, float(agents.heading[a]))
+            axes.add_patch(Polygon(turned, color=AGENT, linewidth=0, zorder=4))
         if goals:
             arrow(axes, tuple(start), tuple(goal), "#8fa1ad")
             axes.plot(*goal, "x", color=GOAL, markersize=5, mew=1.4, zorder=6)

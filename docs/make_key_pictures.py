@@ -11,7 +11,13 @@ from pathlib import Path
 
 import matplotlib
 from key_panels_arena import law_panels, obstacle_panels, shape_panels, wall_panels
-from key_panels_team import episode_panels, goal_panels, region_panels, start_panels
+from key_panels_team import (
+    episode_panels,
+    footprint_panels,
+    goal_panels,
+    region_panels,
+    start_panels,
+)
 from key_sketch import PAPER, VIEW, Panel, draw_panel
 from matplotlib import pyplot
 
@@ -46,6 +52,7 @@ PICTURES: dict[str, tuple[Callable[[], list[Panel]], int]] = {
     "shapes": (shape_panels, 3),
     "obstacles": (obstacle_panels, 3),
     "laws": (law_panels, 2),
+    "footprints": (footprint_panels, 3),
     "starts": (start_panels, 3),
     "goals": (goal_panels, 2),
     "regions": (region_panels, 3),

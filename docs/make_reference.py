@@ -66,7 +66,7 @@ GROUPS = {  # heading → picture in images/keys and its text, and types; any ot
     "Motion laws": ("laws", "motion laws", "BackAndForth WaypointLoop CircleLaw RecordedTrack"),
     "Teams": ("", "", "Team RobotChoice NavigatorChoice"),
     "Dynamics": ("", "", "Holonomic Unicycle DifferentialDrive Ackermann"),
-    "Footprints": ("", "", "DiscFootprint Capsule RoundedBox"),
+    "Footprints": ("footprints", "footprints", "DiscFootprint Capsule RoundedBox"),
     "Starts": ("starts", "starts", "RegionStart CircleStart GridStart PackedStart PointsStart"),
     "Goals": (
         "goals",

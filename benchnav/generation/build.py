@@ -25,7 +25,7 @@ from benchnav.generation.static_obstacles import Piece, draw_pieces
 from benchnav.generation.teams import Crowd, draw_numbers, place_team
 from benchnav.geometry.rotation import angle_of
 from benchnav.scenario.sampling.packing import most_that_fit
-from benchnav.scenario.sampling.sampler import sample, support
+from benchnav.scenario.sampling.sampler import sample
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.team import RegionStart, Team
 from benchnav.scenario.terms import SPLITS

@@ -4,17 +4,17 @@ import numpy as np
 
 from benchnav.arrays import FloatArray
 from benchnav.generation.teams import draw_numbers
-from benchnav.scenario.footprint import DiscFootprint, RoundedBox
+from benchnav.scenario.footprint import Capsule, RoundedBox
 from benchnav.scenario.team import Team
 
 
 def draw_bodies(team: Team, count: int, rng: np.random.Generator) -> dict[str, FloatArray]:
     """Return the columns `radius`, and for other shapes than discs those of the shape, (count,)."""
     shape = team.footprint
-    if shape is None or isinstance(shape, DiscFootprint):
-        radius = team.radius if shape is None else shape.radius
-        assert radius is not None  # `Team` checks that one of them is given
-        return {"radius": draw_numbers(radius, count, rng)}
+    if team.disc_radius is not None:
+        return {"radius": draw_numbers(team.disc_radius, count, rng)}
+    if not isinstance(shape, Capsule | RoundedBox):
+        raise TypeError(f"A team must have a radius or a footprint; got {shape!r}.")
     length = 0.5 * draw_numbers(shape.length, count, rng)
     width = 0.5 * draw_numbers(shape.width, count, rng)
     corner = width.copy()

@@ -91,7 +91,8 @@ def add_contact_time(
 def min_clearance(episode: Episode) -> FloatArray:
     """(A,) [m] smallest gap to walls, obstacles and other agents; NaN if there are none.
 
-    Negative for an overlap. Exact for motion that is straight between states.
+    Negative for an overlap. Exact for motion that is straight between states. In worlds with bodies
+    that are not discs, it is the gap between the shapes, at four times of each step.
     """
     clearance = analyse(episode).encounters.clearance
     return np.where(np.isfinite(clearance), clearance, np.nan)
@@ -110,6 +111,7 @@ def min_time_to_collision(episode: Episode) -> FloatArray:
 
     It covers walls, obstacles and agents. 0 for an agent that touches something, charged or
     not; at most 5 s, which is also the value of an agent without a collision course within 5 s.
+    A body that is not a disc counts as the circle around it.
     """
     found, contacts = analyse(episode), episode.contacts
     time = found.encounters.time_to_collision.copy()

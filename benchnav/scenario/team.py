@@ -9,7 +9,7 @@ from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Distance, Length, Name, Point, Spec
 from benchnav.scenario.canonical import added_field, label_field
 from benchnav.scenario.dynamics import Ackermann, DifferentialDrive, DynamicsSpec, Holonomic
-from benchnav.scenario.footprint import Footprint, Range
+from benchnav.scenario.footprint import DiscFootprint, Footprint, Range
 from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import Count, PositiveScalar, Scalar, support
 
@@ -175,7 +175,9 @@ class Team(Spec):
     footprint: Footprint | None = added_field(
         None, "0.3.0", description="shape of the body along its heading; default: a disc"
     )
-    max_speed: PositiveScalar = Field(description="largest speed [m/s]")
+    max_speed: PositiveScalar = Field(
+        description="largest speed [m/s]; must be given, unless a `robot` gives it"
+    )
     preferred_speed: PositiveScalar | None = Field(
         None, description="desired speed [m/s]; default: `max_speed`"
     )
@@ -220,9 +222,17 @@ class Team(Spec):
         return self.driver.type == "evaluated"
 
     @property
+    def disc_radius(self) -> Scalar | None:
+        """Return the radius [m] of bodies that are discs; None for other shapes."""
+        shape = self.footprint
+        return shape.radius if isinstance(shape, DiscFootprint) else self.radius
+
+    @property
     def outer_radius(self) -> Range:
         """Return the least and the largest radius [m] of the circle around a body."""
-        return support(self.radius) if self.footprint is None else self.footprint.outer_radius
+        if self.radius is not None:
+            return support(self.radius)
+        return (0.0, 0.0) if self.footprint is None else self.footprint.outer_radius
 
     @model_validator(mode="after")
     def _check(self) -> "Team":

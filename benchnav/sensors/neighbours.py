@@ -94,8 +94,8 @@ def _find_in_rows(
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
     velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, agents: AnyArray,
     form: FloatArray, identity: IntArray, around: FloatArray, at: IntArray, window: IntArray,
-    best: FloatArray, exact: IntArray,
-    place: IntArray, ranked: IntArray, given: FloatArray, given_bits: IntArray,
+    best: FloatArray, exact: IntArray, place: IntArray, ranked: IntArray, given: FloatArray,
+    given_bits: IntArray,
     smallest: FloatArray, bits: IntArray, sizes: IntArray, fixed: FloatArray, blockers: IntArray,
 ) -> None:  # fmt: skip
     """Sort the candidates of `LANES` agents together, or those of one agent by insertion.

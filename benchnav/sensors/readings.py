@@ -11,7 +11,6 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 
-
 FORM = ("heading", "half_length", "half_width", "rounding")  # of `Neighbours`
 _ZERO: Any = None
 

@@ -143,7 +143,8 @@ def find_all_in_crowd(
                 )  # fmt: skip
             else:
                 meeting, partner = next_agent(
-                    own, world.h, far, world.cells, world.shaped, agents, hashed, spots, motion, near
+                    own, world.h, far, world.cells, world.shaped, agents, hashed, spots, motion,
+                    near,
                 )  # fmt: skip
             find_next(
                 i, meeting, partner, world.h, world.tolerance, agents, bodies, shapes, capsules,

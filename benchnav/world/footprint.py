@@ -108,4 +108,4 @@ def depth_within(a: Any, body: Any, shapes: AnyArray) -> float:
             extent = a.core_length * abs(dx * a.axis_x + dy * a.axis_y) / d
             extent += a.core_width * abs(dy * a.axis_x - dx * a.axis_y) / d
         least = min(least, d + extent + c.r)
-    return least + a.rounding
+    return least + float(a.rounding)

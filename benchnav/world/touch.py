@@ -177,4 +177,4 @@ def body_gap(a: Any, body: Any, shapes: AnyArray) -> float:
         return gap
     if a.shaped:
         return -depth_within(a, body, shapes)
-    return -gap - 2.0 * a.radius
+    return -gap - 2.0 * float(a.radius)

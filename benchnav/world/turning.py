@@ -3,8 +3,8 @@
 Agents turn at the end of a substep, one after another. A turn is divided into pieces in which no
 point of the core moves more than SWING. If a piece would overlap something, it is a contact with
 the contact rule's effect: under `slide`, the body gives way along the normal, so that it can
-turn away from a wall; if there is no room to give way, or under the other rules, the rest of the turn
-is refused. A turn leaves no overlap deeper than SLACK that was not there before. Between
+turn away from a wall; if there is no room to give way, or under the other rules, the rest of the
+turn is refused. A turn leaves no overlap deeper than SLACK that was not there before. Between
 two pieces, a corner may be deeper by the sagitta of its arc, at most SWING² / (8 r) for its
 distance r to the centre.
 """

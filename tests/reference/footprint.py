@@ -10,7 +10,10 @@ def sum_hull(gx, gy):
     """Return the corners (V, 2) of all signed sums of half segments, counter-clockwise."""
     signs = product((-1.0, 1.0), repeat=len(gx))
     points = {
-        (sum(s * g for s, g in zip(sign, gx)), sum(s * g for s, g in zip(sign, gy)))
+        (
+            sum(s * g for s, g in zip(sign, gx, strict=False)),
+            sum(s * g for s, g in zip(sign, gy, strict=False)),
+        )
         for sign in signs
     }
     return np.array(_hull(sorted(points)))

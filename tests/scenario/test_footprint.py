@@ -39,7 +39,8 @@ def test_sizes_are_drawn_and_the_radius_follows(load):
     assert len(set(agents.half_length)) == 4
     assert ((agents.half_length >= 0.4) & (agents.half_length <= 0.6)).all()
     assert (agents.radius == agents.half_length).all()
-    assert (agents.rounding == 0.2).all() and (agents.inner_radius == 0.2).all()
+    assert (agents.rounding == 0.2).all()
+    assert (agents.inner_radius == 0.2).all()
     box = build(load(BOX), "test", 0).agents
     assert box.radius == pytest.approx(np.hypot(0.15, 0.3) + 0.1)
     assert (box.inner_radius == 0.25).all()

@@ -69,9 +69,7 @@ def test_cells_find_the_first_touch(crowd, side):
     for own in range(hashed[-1]):
         i = spots["index"][own]
         reach = crowd["radius"][i] + WIDEST + 1.001 * (speed[i] + speed.max()) * H
-        found = next_agent(
-            own, H, reach, side, False, crowd, hashed, spots, motion, near
-        )
+        found = next_agent(own, H, reach, side, False, crowd, hashed, spots, motion, near)
         assert found == first_of_all(crowd, i, H)
         touches += found[1] >= 0
     assert 50 < touches < 300

@@ -173,8 +173,8 @@ def _robot(team: "Team") -> str:
 
 def _body(team: "Team") -> str:
     shape = team.footprint
-    if shape is None or shape.type == "disc":
-        return f"radius {number(team.radius if shape is None else shape.radius)} m"
+    if team.disc_radius is not None or shape is None or shape.type == "disc":
+        return f"radius {number(team.disc_radius or 0.0)} m"
     return f"{shape.type} of {number(shape.length)} m × {number(shape.width)} m"
 
 

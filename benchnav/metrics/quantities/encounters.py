@@ -19,6 +19,7 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time, nearest_on_segment
 from benchnav.geometry.sweep import segment_distance2
 from benchnav.kernels import kernel, kernel_without_allocation
+from benchnav.metrics.quantities.footprint_gaps import lower_gaps
 from benchnav.metrics.quantities.trajectory import Trajectories
 
 TTC_CAP = 5.0  # [s] later collisions do not count
@@ -60,8 +61,16 @@ def things_of(world: World, body_position: FloatArray) -> Things:
     return Things(capsules, owner, offset, np.array(jumps, np.bool_))
 
 
-def encounters(trajectories: Trajectories, radius: FloatArray, things: Things) -> Encounters:
-    """Return clearance, time to collision and nearest agents of agents with ``radius`` (A,) [m]."""
+def encounters(
+    trajectories: Trajectories, radius: FloatArray, things: Things,
+    shapes: tuple[FloatArray, FloatArray] | None = None,
+) -> Encounters:  # fmt: skip
+    """Return clearance, time to collision and nearest agents of agents with ``radius`` (A,) [m].
+
+    ``shapes`` are those of `shapes_of` with the headings (A, T+1) [rad], in worlds with bodies
+    that are not discs. Clearance and gaps are then those of the shapes; the other results are
+    those of the circles around them.
+    """
     t = trajectories
     shape = t.position.shape[:2]
     found = Encounters(
@@ -71,6 +80,12 @@ def encounters(trajectories: Trajectories, radius: FloatArray, things: Things) -
     top = t.speed.max(axis=1, initial=0.0)
     meet_things(t.position, t.velocity, t.duration, t.last, radius, top, t.dt, *things, *found[:2])
     meet_agents(t.position, t.velocity, t.duration, t.last, t.leaves, radius, top, t.dt, *found)
+    if shapes is not None:
+        found.clearance[:], found.gap[:] = math.inf, RECORDED
+        lower_gaps(
+            t.position, t.velocity, t.duration, t.last, t.leaves, shapes[1], shapes[0],
+            radius, t.dt, *things, found.clearance, found.gap,
+        )  # fmt: skip
     return found
 
 

@@ -15,6 +15,7 @@ from benchnav.arrays import BoolArray, ByteArray, FloatArray
 from benchnav.episode.episode import Contacts, Episode, Status
 from benchnav.metrics.quantities.density import frame_times, voronoi_density
 from benchnav.metrics.quantities.encounters import Encounters, encounters, things_of
+from benchnav.metrics.quantities.footprint_gaps import shapes_of
 from benchnav.metrics.quantities.lowpass import smooth_velocities
 from benchnav.metrics.quantities.trajectory import Trajectories, cut, positions_at
 
@@ -66,6 +67,7 @@ class Analysis(Endings):
     world: World
     trajectories: Trajectories
     body_position: FloatArray  # (T+1, M, 2) [m]
+    heading: FloatArray  # (T+1, A) [rad]
     status: ByteArray  # (T+1, A) of Status
     decision: FloatArray  # (T,) [s]
 
@@ -149,7 +151,10 @@ class Analysis(Endings):
     def encounters(self) -> Encounters:
         """The smallest distances between agents and obstacles."""
         things = things_of(self.world, self.body_position)
-        return encounters(self.trajectories, self.world.agents.radius, things)
+        agents, shapes = self.world.agents, None
+        if (agents.rounding > 0.0).any():
+            shapes = shapes_of(agents), np.ascontiguousarray(self.heading.T)
+        return encounters(self.trajectories, agents.radius, things, shapes)
 
 
 # The attribute of an episode. A global cache here would give navigators access to episodes.
@@ -164,7 +169,7 @@ def analyse(episode: Episode) -> Analysis:
         found = Analysis(
             failed=ends.failed, active_at_end=ends.active_at_end, arrival=ends.arrival,
             contacts=ends.contacts, world=episode.world, trajectories=cut(episode),
-            body_position=episode.body_position, status=episode.status,
+            body_position=episode.body_position, heading=episode.heading, status=episode.status,
             decision=episode.timings.decision,
         )  # fmt: skip
         vars(episode)[_KEPT] = found

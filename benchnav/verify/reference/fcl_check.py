@@ -131,9 +131,7 @@ class _Judgement:
         place: FloatArray = array[t, k]
         return place
 
-    def _gap(
-        self, i: int, place: FloatArray, t: int, partner: Partner, at: FloatArray
-    ) -> float:
+    def _gap(self, i: int, place: FloatArray, t: int, partner: Partner, at: FloatArray) -> float:
         """Return the gap in the scene, with the headings of state t.
 
         For the centre of a disc within a body, it is the depth as in the kernels.
@@ -141,7 +139,12 @@ class _Judgement:
         name, k = partner
         gap = self.scene.gap(i, place, self.episode.heading[t], partner, at)
         solid = self.world.bodies[k].solid if name == "bodies" else None
-        if solid is None or self.scene.shapes.shaped[i] or solid.is_disc or not inside(place - at, solid.loops):
+        if (
+            solid is None
+            or self.scene.shapes.shaped[i]
+            or solid.is_disc
+            or not inside(place - at, solid.loops)
+        ):
             return gap
         radius = float(self.world.agents.radius[i])
         away = gap if gap > 0.0 else radius + gap  # from the rim or the centre to the surface

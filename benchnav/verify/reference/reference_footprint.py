@@ -22,7 +22,8 @@ class Footprints:
         self._half = np.stack([agents.half_length, agents.half_width], axis=1)
         self._half = np.where(rounded[:, None], self._half - agents.rounding[:, None], 0.0)
         self.rounding: FloatArray = np.where(rounded, agents.rounding, agents.radius)
-        self.shaped: BoolArray = (self._half > 0.0).any(axis=1)  # (A,) False: a disc
+        shaped: BoolArray = np.any(self._half > 0.0, axis=1)
+        self.shaped = shaped  # (A,) False: a disc
 
     def reach(self, i: int) -> float:
         """Return the radius [m] of the circle around the core of agent i."""

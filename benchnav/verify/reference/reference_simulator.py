@@ -80,7 +80,7 @@ class Twin:
 
     def carried(self, m: int) -> FloatArray:
         """Return the capsules (P, 5) of body m where it is."""
-        moved = self._carried[self._owner == m].copy()
+        moved: FloatArray = self._carried[self._owner == m].copy()
         moved[:, :4] += np.tile(self.bodies[m], 2)
         return moved
 
@@ -249,12 +249,12 @@ class Twin:
                     c = self._fixed[k]
                     hull = difference(core, c[:4].reshape(2, 2))
                     fixed[row, k] = touch_time(p, v, hull, float(c[4] + shapes.rounding[i]))
-                for k, c in enumerate(self._carried):
-                    m = self._owner[k]
+                for q, c in enumerate(self._carried):
+                    m = self._owner[q]
                     hull = difference(core, c[:4].reshape(2, 2))
                     reach = float(c[4] + shapes.rounding[i])
                     moved = p - self.bodies[m], v - self._carry[m]
-                    bodies[row, k] = touch_time(*moved, hull, reach)
+                    bodies[row, q] = touch_time(*moved, hull, reach)
             pairs = self.present & (shapes.shaped | shapes.shaped[i])
             for j in np.flatnonzero(pairs):
                 if j == i:
@@ -362,7 +362,7 @@ class Twin:
         return -gap - 2.0 * r if within else gap
 
     def _shape_gap(self, i: int, name: str, k: int, local: FloatArray) -> float:
-        """Return the gap [m] of a body that is not a disc; local: its centre in the partner's frame."""
+        """Return the gap [m] of a body that is not a disc, with its centre at ``local`` (2,)."""
         if name == "solid":
             numbers = [p for p, solid in enumerate(self._solid) if solid == k]
             return min(gap_to(self, i, (("solid", p), p))[1] for p in numbers)

@@ -84,7 +84,7 @@ def _log_motion(rerun: Any, stream: Any, episode: Episode) -> None:
         for m, place in enumerate(episode.body_position[t]):
             stream.log(f"bodies/{m}", rerun.Transform3D(translation=[*place, 0.0]))
         here = np.flatnonzero(t < leaves)
-        for a in np.flatnonzero([mesh is not None for mesh in meshes]):
+        for a in [a for a, mesh in enumerate(meshes) if mesh is not None]:
             seen = t < leaves[a]
             place = [*episode.position[t, a], 0.0 if seen else -1e3]  # below the floor: gone
             turn = rerun.RotationAxisAngle([0.0, 0.0, 1.0], radians=float(episode.heading[t, a]))

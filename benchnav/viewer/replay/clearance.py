@@ -13,7 +13,8 @@ _ROOM = 2_000_000  # distances that are held at a time
 def clearance(episode: Episode, agent: int) -> FloatArray:
     """Return the gaps (T+1,) [m] of an agent to the nearest object; negative for an overlap.
 
-    The objects are walls, obstacles, and other agents that are present; inf: there is none.
+    The objects are walls, obstacles, and other agents that are present; inf: there is none. A body
+    that is not a disc counts as the circle around it.
     """
     world = episode.world
     here = episode.position[:, agent]  # (T+1, 2)

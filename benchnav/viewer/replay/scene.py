@@ -122,7 +122,8 @@ def _agents(episode: Episode) -> dict[str, Any]:
     found = analyse(episode)
     return {
         "radius": _numbers(agents.radius),
-        "outline": [_outline(agents, a) for a in range(len(agents))], "team": agents.team.tolist(), "teams": list(names),
+        "outline": [_outline(agents, a) for a in range(len(agents))],
+        "team": agents.team.tolist(), "teams": list(names),
         "goal": _numbers(agents.goal), "evaluated": agents.evaluated.tolist(),
         "success": found.success.tolist(), "end": attempt_ends(episode),
         "last": found.trajectories.last.tolist(), "leaves": found.trajectories.leaves.tolist(),
