@@ -31,7 +31,8 @@ OBSERVATIONS = """# Observations
 
 Axes: B worlds of this call, A agents that the navigator drives in each world (padded), R rays,
 K neighbours, E edges. Metres, seconds, radians; x right, y up, heading counter-clockwise from +x.
-Positions and velocities are in the world frame.
+Positions and velocities are in the world frame; in the perception track `noisy`, they are in the
+[odometry frame](senses.md) of each agent.
 
 ## Rows
 
