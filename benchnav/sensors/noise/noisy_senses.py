@@ -16,7 +16,7 @@ from benchnav.sensors.noise.neighbour_noise import disturb_neighbours
 from benchnav.sensors.noise.odometry import drift, estimate_own_state, turn_back
 from benchnav.sensors.noise.ray_noise import disturb_rays
 from benchnav.sensors.readings import Edges, Neighbours, Rays
-from benchnav.sensors.sense import EDGES, LEAST, NEIGHBOURS, sense
+from benchnav.sensors.sense import EDGES, LEAST, NEIGHBOURS, ray_angles, sense
 from benchnav.threads import run_rows
 from benchnav.world.simulation import Simulation
 
@@ -42,6 +42,9 @@ class NoisySenses:
         self._last = np.zeros((*chosen.shape, 3))
         self._done = np.full(simulation.B, -1)  # decisions at the last call; -1: not started
         self._delay = Delay(noise.delay)
+        sensor = simulation.worlds[0].sensing.rays
+        angles = np.zeros(0) if sensor is None else ray_angles(sensor)
+        self._fan = np.array([cos_sin(angle) for angle in angles]).reshape(-1, 2).T.copy()
 
     def begin(self, rows: IntArray, keys: AnyArray) -> None:
         """Start the worlds in ``rows`` (N,) with the noise of ``keys`` (N, 2) of uint64."""
@@ -101,7 +104,7 @@ class NoisySenses:
         s, n = self._simulation, self.noise.rays
         sensor = s.worlds[0].sensing.rays
         assert sensor is not None  # noqa: S101 - there are readings
-        fan_x, fan_y = np.array([cos_sin(a) for a in out.angle]).T.copy()
+        fan_x, fan_y = self._fan
         run_rows(
             disturb_rays, chosen.size, chosen, out.angle, fan_x, fan_y, float(sensor.range),
             sensor.thick, n.noise, n.relative_noise, n.quadratic_noise, n.dropout,

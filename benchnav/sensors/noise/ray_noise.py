@@ -39,17 +39,17 @@ def disturb_rays(
         gx, gy = a.x + e[X] - a.goal_x, a.y + e[Y] - a.goal_y
         gx, gy = ca * gx + sa * gy, ca * gy - sa * gx
         for r in range(len(angle)):
-            first, second = draw(keys[b, 0], keys[b, 1], step, i, RAY, r)
-            shift, faster = two_normals(first)
             d = distance[b, k, r]
-            outside = abs(angle[r]) > 0.5 * view
             if kind[b, k, r] != _NOTHING:
+                first, second = draw(keys[b, 0], keys[b, 1], step, i, RAY, r)
+                shift, faster = two_normals(first)
                 d = max(d + (noise + relative * d + quadratic * d * d) * shift, 0.0)
                 if kind[b, k, r] == _DYNAMIC and approach_noise > 0.0:
                     approach[b, k, r] += approach_noise * faster
-            if outside or d >= limit or uniform(second) < dropout:
-                d, kind[b, k, r], approach[b, k, r] = limit, _NOTHING, 0.0
-            distance[b, k, r] = d
+                outside = abs(angle[r]) > 0.5 * view
+                if outside or d >= limit or uniform(second) < dropout:
+                    d, kind[b, k, r], approach[b, k, r] = limit, _NOTHING, 0.0
+                distance[b, k, r] = d
             goal[b, k, r] = goal_distance(gx, gy, fan_x[r], fan_y[r], worlds[b].tolerance + own, d)
 
 
