@@ -8,12 +8,16 @@ import math
 
 import numpy as np
 
+from benchnav.arena import Dynamics
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.kernels import kernel
 
-from ...common.motion_limits import BACKWARDS, reach_in_turn
+from ...common.car import car_target
+from ...common.motion_limits import BACKWARDS, KIND, reach_in_turn
 from .cost import cost_of, edge_distances
 from .weights import disturbed, moved_on, weigh
+
+_CAR = float(Dynamics.ACKERMANN)
 
 
 @kernel
@@ -128,6 +132,9 @@ def control(
             reach_in_turn(base, last[0], last[1], steering[i], limits[i], me[4], tick)
         gx, gy = target[i, 0], target[i, 1]
         final = remaining[i] <= math.sqrt((gx - x) ** 2 + (gy - y) ** 2) + me[5]
+        if limited[i] and limits[i, KIND] == _CAR:
+            replaced, gx, gy = car_target(limits[i], x, y, heading[i], last[0], gx, gy)
+            final = final and not replaced
         all_touch, best = True, 0
         for k in range(samples):
             if k == 0:
