@@ -45,17 +45,21 @@ def car_direction(
 
 @kernel
 def car_target(
-    limits: FloatArray, x: float, y: float, heading: float, speed: float, tx: float, ty: float
-) -> tuple[bool, float, float]:
+    limits: FloatArray, x: float, y: float, heading: float, speed: float, tx: float, ty: float,
+    backing: bool,
+) -> tuple[bool, float, float]:  # fmt: skip
     """Return (replaced, x, y [m] of a target that a car can drive to directly).
 
     It is (tx, ty) if it can. Otherwise it lies in the direction in which the car begins its way,
-    so that a search over a short time does not prefer to stand.
+    so that a search over a short time does not prefer to stand; behind the car if it is
+    ``backing``.
     """
     backwards, direction = car_direction(limits, x, y, heading, speed, tx, ty, WIDEST)
     c, s = cos_sin(heading)
     ahead, aside = c * (tx - x) + s * (ty - y), c * (ty - y) - s * (tx - x)
     r = 1.0 / curvature(limits)
+    if backing:
+        backwards, direction = True, heading + math.pi + math.copysign(BACK_TURN, aside)
     inside = ahead * ahead + (abs(aside) - r) ** 2 < r * r
     if not backwards and not inside and abs(math.atan2(aside, ahead)) <= WIDEST:
         return False, tx, ty

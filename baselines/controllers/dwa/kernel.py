@@ -154,7 +154,7 @@ def body_window(
 def choose(
     low: int, high: int, active: BoolArray, here: FloatArray, heading: FloatArray,
     last: FloatArray, target: FloatArray, remaining: FloatArray, body: FloatArray,
-    limited: BoolArray, limits: FloatArray,
+    limited: BoolArray, limits: FloatArray, backing: BoolArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, count: IntArray,
     start: FloatArray, end: FloatArray, edges: IntArray,
     search: Search, answer: FloatArray,
@@ -173,6 +173,7 @@ def choose(
         body: (N, 6) see `baselines.common.kernel_inputs.BODY`.
         limited: (N,) whether the body has more limits than speed and turn rate.
         limits: (N, 13) see `baselines.common.motion_limits`.
+        backing: (N,) whether a car drives backwards because it stood.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].
         radius: (N, K) [m].
@@ -201,7 +202,7 @@ def choose(
             brake, turn_brake = min(brake, limits[i, BRAKE]), min(turn_brake, limits[i, TURN_UP])
             car = limits[i, KIND] == _CAR
             if car:
-                _, tx, ty = car_target(limits[i], x, y, heading[i], now, tx, ty)
+                _, tx, ty = car_target(limits[i], x, y, heading[i], now, tx, ty, backing[i])
             top = min(body[i, 2], stopping_speed(remaining[i], brake, dt))
             body_window(now, turn, last[i, 2], top, limits[i], dt, search, vs, ws)
         else:

@@ -122,8 +122,8 @@ def _wheel_share(limits: FloatArray) -> float:
     """Return the share of top speed and turn rate together that the wheels can make."""
     if limits[KIND] != _WHEELS:
         return 1.0
-    wheel = top_speed(limits) + limits[TRACK] * limits[TURN]
-    return min(limits[WHEEL] / wheel, 1.0)
+    wheel: float = top_speed(limits) + limits[TRACK] * limits[TURN]
+    return min(float(limits[WHEEL]) / wheel, 1.0)
 
 
 @kernel
