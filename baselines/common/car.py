@@ -10,6 +10,9 @@ from .motion_limits import BACKWARDS, curvature
 
 WELL_OUTSIDE = 1.2  # of the radius: a car drives backwards until the target is this far outside
 
+WIDEST = 1.2  # [rad] from its front: the farthest direction that a car is sent to
+BACK_TURN = 0.5  # [rad] by which a car that drives backwards turns its front to the target
+
 
 @kernel
 def car_direction(
@@ -33,8 +36,33 @@ def car_direction(
         circle = WELL_OUTSIDE * r if speed < 0.0 else r
         behind = ahead < 0.0 and ahead * ahead + aside * aside < 4.0 * r * r
         if away < circle or behind:
-            return True, heading + math.pi + math.copysign(min(widest, 0.5), aside)
+            return True, heading + math.pi + math.copysign(min(widest, BACK_TURN), aside)
     elif away < r:
         return False, heading
     angle = math.atan2(aside, ahead)
     return False, heading + min(max(angle, -widest), widest)
+
+
+@kernel
+def car_target(
+    limits: FloatArray, x: float, y: float, heading: float, speed: float, tx: float, ty: float,
+    backing: bool,
+) -> tuple[bool, float, float]:  # fmt: skip
+    """Return (replaced, x, y [m] of a target that a car can drive to directly).
+
+    It is (tx, ty) if it can. Otherwise it lies in the direction in which the car begins its way,
+    so that a search over a short time does not prefer to stand; behind the car if it is
+    ``backing``.
+    """
+    backwards, direction = car_direction(limits, x, y, heading, speed, tx, ty, WIDEST)
+    c, s = cos_sin(heading)
+    ahead, aside = c * (tx - x) + s * (ty - y), c * (ty - y) - s * (tx - x)
+    r = 1.0 / curvature(limits)
+    if backing:
+        backwards, direction = True, heading + math.pi + math.copysign(BACK_TURN, aside)
+    inside = ahead * ahead + (abs(aside) - r) ** 2 < r * r
+    if not backwards and not inside and abs(math.atan2(aside, ahead)) <= WIDEST:
+        return False, tx, ty
+    distance = max(math.sqrt(ahead * ahead + aside * aside), 2.0 * r)
+    c, s = cos_sin(direction)
+    return True, x + distance * c, y + distance * s

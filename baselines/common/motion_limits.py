@@ -78,12 +78,16 @@ def top_speed(limits: FloatArray) -> float:
 
 
 @kernel
-def speed_window(limits: FloatArray, v0: float, dt: float) -> tuple[float, float]:
+def speed_window(limits: FloatArray, v0: float, w0: float, dt: float) -> tuple[float, float]:
     """Return the lowest and the highest speed [m/s] that a body reaches within ``dt`` [s].
 
-    A body that reverses its direction stops in between.
+    A body that reverses its direction stops in between. Wheels that must still turn the body leave
+    less speed.
     """
     top = top_speed(limits)
+    if limits[KIND] == _WHEELS:
+        turning = max(abs(w0) - limits[TURN_UP] * dt, 0.0)
+        top = min(top, max(limits[WHEEL] - limits[TRACK] * turning, 0.0))
     up, down = limits[SPEED_UP] * dt, limits[BRAKE] * dt
     if v0 > 0.0:
         low, high = max(v0 - down, 0.0), v0 + up
@@ -129,7 +133,7 @@ def reached(
     limits: FloatArray, v0: float, w0: float, steering: float, v: float, w: float, dt: float
 ) -> tuple[float, float]:
     """Return the twist nearest to (v, w) that a body reaches within ``dt`` [s], speed first."""
-    low, high = speed_window(limits, v0, dt)
+    low, high = speed_window(limits, v0, w0, dt)
     v = min(max(v, low), high)
     low, high = turn_window(limits, w0, steering, v, dt)
     return v, min(max(w, low), high)

@@ -13,11 +13,10 @@ from benchnav.kernels import kernel
 from benchnav.navigation import Briefing, Controller, Guide, Observation, PluginConfig, RowTable
 
 from ..common.approach import approach
-from ..common.car import car_direction
+from ..common.car import WIDEST, car_direction
 from ..common.motion_limits import BRAKE, KIND, STEP, has_limits, limits_of, stopping_speed
 
 _CAR = float(Dynamics.ACKERMANN)
-WIDEST = 1.2  # [rad] from its front: the farthest direction that a car is sent to
 
 
 class PathFollowing(Controller):

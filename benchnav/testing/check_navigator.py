@@ -32,7 +32,7 @@ from benchnav.testing.requirement import (
     require_config,
     require_same,
 )
-from benchnav.testing.scenes import USUAL, renumbered, scene
+from benchnav.testing.scenes import USUAL, renumbered, scene, with_bodies
 from benchnav.testing.sensings import accepted
 
 Make = Callable[[], Navigator]
@@ -181,9 +181,15 @@ def check_map(make: Make, worlds: Worlds) -> None:
     require_same(without, with_map, name, "with a map as without: its uses_map is False")
 
 
+def check_bodies(make: Make, worlds: Worlds) -> None:
+    """Check the commands for all bodies that the navigator drives, with limits of acceleration."""
+    drives = make().drives
+    check_answer(make, tuple(with_bodies(world, drives) for world in worlds))
+
+
 CHECKS: tuple[Callable[[Make, Worlds], None], ...] = (
     check_answer, check_repeatable, check_batch, check_order_of_agents,
-    check_rows, check_map,
+    check_rows, check_map, check_bodies,
 )  # fmt: skip
 
 
@@ -202,13 +208,15 @@ def _scenes(navigator: Navigator, sensing: Sensing | None) -> Worlds:
     require(
         not reason, f"{name} must accept the sensing that it is checked with. It says: {reason}."
     )
-    return _drawn(chosen)
+    return _drawn(chosen, navigator.drives)
 
 
 @lru_cache
-def _drawn(sensing: Sensing) -> Worlds:
+def _drawn(sensing: Sensing, drives: frozenset[str]) -> Worlds:
     drawn = scene(1, 3), scene(2, 5), scene(3, 1)
-    return tuple(replace(world, sensing=sensing) for world in drawn)
+    usual = drives >= {"holonomic", "unicycle"}
+    bodies = drawn if usual else tuple(with_bodies(world, drives) for world in drawn)
+    return tuple(replace(world, sensing=sensing) for world in bodies)
 
 
 def _call(

@@ -1,6 +1,7 @@
 """Small random worlds for the checks of navigators: walls, obstacles, a mover, agents."""
 
 import math
+from collections.abc import Collection
 from dataclasses import fields, replace
 
 import numpy as np
@@ -58,6 +59,25 @@ def _agents(rng: np.random.Generator, start: FloatArray, goal: FloatArray) -> Ag
         rng.choice([int(role) for role in Role], count).astype(np.int8),
         np.zeros(count, np.int64), np.zeros(count, np.int64),
     )  # fmt: skip
+
+
+def with_bodies(world: World, drives: Collection[str]) -> World:
+    """Return the world with bodies of these dynamics in turn, and with limits of acceleration."""
+    names = [kind for kind in Dynamics if kind.name.lower().replace("_", "-") in drives]
+    kinds = np.resize(np.array(names, np.int8), len(world.agents))
+    wheels, car = kinds == Dynamics.DIFFERENTIAL_DRIVE, kinds == Dynamics.ACKERMANN
+    limits = {
+        "max_acceleration": np.full(len(kinds), 1.0),
+        "max_deceleration": np.full(len(kinds), 2.0),
+        "max_turn_acceleration": np.where(car, np.inf, 4.0),
+        "track_width": np.where(wheels, 0.3, 0.0),
+        "max_wheel_speed": np.where(wheels, 1.0, np.inf),
+        "wheelbase": np.where(car, 0.3, 0.0),
+        "max_steering_angle": np.where(car, 0.6, np.inf),
+        "max_steering_rate": np.where(car, 2.0, np.inf),
+        "reverse": (kinds != Dynamics.HOLONOMIC) & (np.arange(len(kinds)) % 2 == 1),
+    }
+    return replace(world, agents=replace(world.agents, dynamics=kinds, **limits))
 
 
 def renumbered(world: World, order: IntArray) -> World:

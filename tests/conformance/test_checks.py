@@ -151,6 +151,10 @@ class Sideways(Good):
     command = "sideways"
 
 
+class Rider(Good):
+    drives = frozenset({"bike"})
+
+
 class Sly(Good):
     """Says that it uses no map, and does."""
 
@@ -190,6 +194,7 @@ def test_a_sound_navigator_passes(good):
         (Wordless, "Wordless.Config.pace must have a description with its unit."),
         (Lax, "Lax.Config must be frozen and forbid unknown keys: derive it from PluginConfig."),
         (Needy, "Needy must need a frozenset of ['rays', 'neighbours', 'edges', 'map']."),
+        (Rider, "Rider.drives must be a frozenset of ['ackermann', 'differential-drive', "),
         (Sideways, "Sideways.command must be 'velocity' or 'twist'. Got 'sideways' instead."),
     ],
 )

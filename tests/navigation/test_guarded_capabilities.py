@@ -62,6 +62,7 @@ LIES = {
     "uses_map": ("1", "its uses_map must be"),
     "required": ("'rays'", "its required"),
     "command": ("'teleport'", "its command must be 'velocity' or 'twist'"),
+    "drives": ("frozenset({'bike'})", "its drives"),
     "rehearsal": ("-1", "its rehearsal must be ≥ 0"),
     "leader": ("object()", "its leader"),
     "training": ("object()", "its training must be"),

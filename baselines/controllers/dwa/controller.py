@@ -19,6 +19,7 @@ from benchnav.navigation import (
 )
 from benchnav.threads import run_rows
 
+from ...common.backing import Backing
 from ...common.kernel_inputs import bodies_of, flat, sensed
 from ...common.motion_limits import has_limits, limits_of, steering_after
 from .kernel import Search, choose
@@ -64,7 +65,7 @@ class DynamicWindow(Controller):
     It commands twists, so that the checked motion is the executed one; holonomic bodies follow
     twists too. The window holds what the body can execute within a step: its accelerations, the
     speeds of its wheels, and the steering of a car, which tries curves instead of turns on the
-    spot. A body that can drive backwards tries that too.
+    spot. A body that can drive backwards tries that too; a car that stands for a second does so.
     """
 
     Config = DynamicWindowConfig
@@ -74,6 +75,7 @@ class DynamicWindow(Controller):
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
         self._table = RowTable()
+        self._backing = Backing()
         c = self.config
         self._search = Search(
             acceleration=c.acceleration, turn_acceleration=c.turn_acceleration, heading=c.heading,
@@ -82,6 +84,7 @@ class DynamicWindow(Controller):
         )  # fmt: skip
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        self._backing.reset(briefings, rows)
         for row, briefing in zip(rows, briefings, strict=True):
             limits = limits_of(briefing)
             self._table.put(
@@ -99,12 +102,13 @@ class DynamicWindow(Controller):
         moving = np.sqrt(np.sum(observation.velocity**2, axis=-1))
         # the limits of a body hold for its last command, also after a contact
         now = np.where(limited, last[..., 0], moving)
+        backing = self._backing.decide(observation, last[..., 0])
         position, velocity, radius, _, count, start, end, _, _, edges = sensed(observation)
         arrays = (
             observation.active, observation.position, observation.heading,
             np.concatenate([now[..., None], last[..., 1:]], axis=-1), guide.target,
-            guide.remaining, body, limited, limits, position, velocity, radius, count, start, end,
-            edges,
+            guide.remaining, body, limited, limits, backing, position, velocity, radius, count,
+            start, end, edges,
         )  # fmt: skip
         answer = np.zeros((rows, 2))
         run_rows(choose, rows, *flat(rows, arrays), self._search, answer)

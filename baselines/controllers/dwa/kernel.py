@@ -14,6 +14,7 @@ from benchnav.arena import Dynamics
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.kernels import kernel
 
+from ...common.car import car_target
 from ...common.motion_limits import (
     BRAKE,
     KIND,
@@ -137,7 +138,7 @@ def body_window(
     A turn rate of 0 is taken if it can be reached. A body that can drive backwards takes no more
     than ``top`` [m/s] either way.
     """
-    low, high = speed_window(limits, now, dt)
+    low, high = speed_window(limits, now, turn, dt)
     up, down = search.acceleration * dt, search.acceleration * dt
     low, high = max(low, now - down, min(-top, high)), min(high, now + up, max(top, low))
     evenly(low, max(high, low), vs)
@@ -153,7 +154,7 @@ def body_window(
 def choose(
     low: int, high: int, active: BoolArray, here: FloatArray, heading: FloatArray,
     last: FloatArray, target: FloatArray, remaining: FloatArray, body: FloatArray,
-    limited: BoolArray, limits: FloatArray,
+    limited: BoolArray, limits: FloatArray, backing: BoolArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, count: IntArray,
     start: FloatArray, end: FloatArray, edges: IntArray,
     search: Search, answer: FloatArray,
@@ -172,6 +173,7 @@ def choose(
         body: (N, 6) see `baselines.common.kernel_inputs.BODY`.
         limited: (N,) whether the body has more limits than speed and turn rate.
         limits: (N, 13) see `baselines.common.motion_limits`.
+        backing: (N,) whether a car drives backwards because it stood.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].
         radius: (N, K) [m].
@@ -194,10 +196,13 @@ def choose(
         standing = 0 if search.predict else count[i]
         moving = count[i] - standing
         now, turn = last[i, 0], last[i, 1]
+        tx, ty = target[i, 0], target[i, 1]
         brake, turn_brake, car = search.acceleration, search.turn_acceleration, False
         if limited[i]:
             brake, turn_brake = min(brake, limits[i, BRAKE]), min(turn_brake, limits[i, TURN_UP])
             car = limits[i, KIND] == _CAR
+            if car:
+                _, tx, ty = car_target(limits[i], x, y, heading[i], now, tx, ty, backing[i])
             top = min(body[i, 2], stopping_speed(remaining[i], brake, dt))
             body_window(now, turn, last[i, 2], top, limits[i], dt, search, vs, ws)
         else:
@@ -244,8 +249,9 @@ def choose(
                 free_share = min(min(dist, far) / far, time / horizon)
                 allowed += 1
                 ahead = facing(
-                    x, y, heading[i], vs[a], w, target[i, 0], target[i, 1], brake, turn_brake, dt
-                )
+                    x, y, course if car else heading[i], v if car else vs[a], w, tx, ty, brake,
+                    turn_brake, dt,
+                )  # fmt: skip
                 score[a, b] = (
                     search.heading * ahead
                     + search.distance * free_share

@@ -20,6 +20,7 @@ from benchnav.navigation import (
 )
 from benchnav.threads import run_rows
 
+from ...common.backing import Backing
 from ...common.kernel_inputs import bodies_of, flat, sensed
 from ...common.motion_limits import has_limits, limits_of, steering_after
 from .kernel import control
@@ -76,7 +77,8 @@ class Mppi(Controller):
     """Samples random variations of its last plan, and averages them with weights exp(−cost / λ).
 
     It commands twists; holonomic bodies follow them too. Every sample holds only twists that the
-    body reaches one after another within its limits of acceleration, wheels and steering.
+    body reaches one after another within its limits of acceleration, wheels and steering. A car
+    that stands for a second drives backwards, if it can.
     """
 
     Config = MppiConfig
@@ -86,9 +88,11 @@ class Mppi(Controller):
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
         self._table = RowTable()
+        self._backing = Backing()
         self._streams: dict[int, list[np.random.Generator]] = {}
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
+        self._backing.reset(briefings, rows)
         for row, briefing in zip(rows, briefings, strict=True):
             self._streams[int(row)] = agent_streams(briefing)
             plan = np.zeros((len(briefing), self.config.steps, 2))
@@ -105,11 +109,12 @@ class Mppi(Controller):
             self._table.take(name, observation.rows, agents)
             for name in ("body", "plan", "limited", "limits", "steering")
         )
+        backing = self._backing.decide(observation, plan[:, :, 0, 0])
         position, velocity, radius, kind, count, start, end, _, _, edges = sensed(observation)
         arrays = (
             observation.active, observation.position, observation.heading, guide.target,
-            guide.remaining, body, plan, limited, limits, steering, position, velocity, radius,
-            kind, count, start, end, edges,
+            guide.remaining, body, plan, limited, limits, steering, backing, position, velocity,
+            radius, kind, count, start, end, edges,
         )  # fmt: skip
         new = plan.reshape(rows, *plan.shape[2:]).copy()
         weights = np.array(

@@ -8,12 +8,17 @@ import math
 
 import numpy as np
 
+from benchnav.arena import Dynamics
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.kernels import kernel
 
-from ...common.motion_limits import BACKWARDS, reach_in_turn
+from ...common.car import car_target
+from ...common.motion_limits import BACKWARDS, KIND, reach_in_turn
 from .cost import cost_of, edge_distances
 from .weights import disturbed, moved_on, weigh
+
+_CAR = float(Dynamics.ACKERMANN)
+LEAST = 1e-3  # [m] by which a body with limits may come nearer to an edge
 
 
 @kernel
@@ -61,7 +66,7 @@ def averaged(weight: FloatArray, tried: FloatArray, mean: FloatArray) -> None:
 def control(
     low: int, high: int, active: BoolArray, here: FloatArray, heading: FloatArray,
     target: FloatArray, remaining: FloatArray, body: FloatArray, plan: FloatArray,
-    limited: BoolArray, limits: FloatArray, steering: FloatArray,
+    limited: BoolArray, limits: FloatArray, steering: FloatArray, backing: BoolArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
     count: IntArray, start: FloatArray, end: FloatArray, edges: IntArray, noise: FloatArray,
     tick: float, spread: FloatArray, temperature: float, control_cost: float, margin: float,
@@ -82,6 +87,7 @@ def control(
         limited: (N,) whether the body has more limits than speed and turn rate.
         limits: (N, 13) see `baselines.common.motion_limits`.
         steering: (N,) [rad] angle of a car's front wheels.
+        backing: (N,) whether a car drives backwards because it stood.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].
         radius: (N, K) [m].
@@ -119,6 +125,10 @@ def control(
             i, x, y, way, tick * steps, position, velocity, radius, kind, count[i], p, u, r, kinds
         )
         edge_distances(x, y, start[i], end[i], edges[i], far)
+        gap = margin
+        if limited[i]:  # it may leave a place that is nearer to an edge than the margin
+            for k in range(edges[i]):
+                gap = min(gap, max(2.0 * (far[k] - me[0]) - LEAST, 0.0))
         sigma[0], sigma[1] = spread[0] * me[2], spread[1] * me[3]
         bottom[0], bottom[1], top[0], top[1] = 0.0, -me[3], me[2], me[3]
         if limits[i, BACKWARDS] > 0.0:
@@ -128,6 +138,9 @@ def control(
             reach_in_turn(base, last[0], last[1], steering[i], limits[i], me[4], tick)
         gx, gy = target[i, 0], target[i, 1]
         final = remaining[i] <= math.sqrt((gx - x) ** 2 + (gy - y) ** 2) + me[5]
+        if limited[i] and limits[i, KIND] == _CAR:
+            replaced, gx, gy = car_target(limits[i], x, y, heading[i], last[0], gx, gy, backing[i])
+            final = final and not replaced
         all_touch, best = True, 0
         for k in range(samples):
             if k == 0:
@@ -139,7 +152,7 @@ def control(
             if limited[i] and k > 0:
                 reach_in_turn(tried[k], last[0], last[1], steering[i], limits[i], me[4], tick)
             cost[k], touches = cost_of(
-                tried[k], tick, x, y, heading[i], last, gx, gy, final, me, margin,
+                tried[k], tick, x, y, heading[i], last, gx, gy, final, me, gap,
                 p, u, r, kinds, n, start[i], end[i], far, edges[i], weights,
             )  # fmt: skip
             cost[k] += control_cost * temperature * leaving(base, tried[k], sigma)
@@ -151,7 +164,7 @@ def control(
         if limited[i]:
             reach_in_turn(mean, last[0], last[1], steering[i], limits[i], me[4], tick)
         _, touches = cost_of(
-            mean, tick, x, y, heading[i], last, gx, gy, final, me, margin,
+            mean, tick, x, y, heading[i], last, gx, gy, final, me, gap,
             p, u, r, kinds, n, start[i], end[i], far, edges[i], weights,
         )  # fmt: skip
         # an addition: the mean of paths around both sides of an obstacle leads into it

@@ -12,7 +12,8 @@ from .avoidance import Avoidance, OrcaConfig
 class OrcaController(Controller):
     """Optimal reciprocal collision avoidance with the guide's target as preferred direction.
 
-    At edges it keeps no more distance than its path does.
+    At edges it keeps no more distance than its path does. Bodies that cannot take a velocity at
+    once are driven as by the navigator `orca`.
     """
 
     Config = OrcaConfig

@@ -14,14 +14,16 @@ from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.geometry import cos_sin
 from benchnav.kernels import kernel, kernel_without_allocation
 
-from ...common.car import car_direction
+from ...common.car import BACK_TURN, car_direction
 from ...common.motion_limits import BACKWARDS, KIND
 from .half_plane import covers, edge_half_plane, neighbour_half_plane
 from .program import least_excess, nearest_permitted
 from .trackable import MOST, trackable, tracking_error, widest_turn
 
 _HOLONOMIC, _CAR = float(Dynamics.HOLONOMIC), float(Dynamics.ACKERMANN)
-LEAST_ERROR = 0.01  # [m] ε of a body that is close to an object
+BLOCKED = 0.05  # share of the preferred speed: a slower car, if it can, drives backwards
+STILL_BLOCKED = 0.3  # the same for a car that drives backwards already
+LEAST_ERROR = 0.03  # [m] ε of a body that is close to an object
 _MOVER = int(Kind.DYNAMIC)
 OWN = 9  # columns: x, y, vx, vy, preferred vx, preferred vy, radius, speed limit, 1 / step
 
@@ -188,41 +190,59 @@ def avoid_within_limits(
             own[i, 0], own[i, 1], own[i, 6], position[i], radius[i], min(count[i], most),
             start[i], end[i], edge_count[i], LEAST_ERROR, error,
         )  # fmt: skip
-        course = heading[i]
+        backwards, blocked = False, 0.0
         if limits[i, KIND] != _HOLONOMIC:
-            course = _chosen_course(
+            backwards, blocked = _chosen_way(
                 own[i], heading[i], target[i, 0], target[i, 1], limits[i], strays
             )
-        hard = trackable(limits[i], course, own[i, 2], own[i, 3], strays, planes)
         own[i, 6] += strays
         edge_margin[i] = max(edge_margin[i] - strays, 0.0)
-        _avoid_row(
-            i, own, position, velocity, radius, kind, count, start, end, before, after,
-            start_convex, end_convex, edge_count, most, margin, edge_margin, rate, edge_rate,
-            hard, answer, planes, projected,
-        )  # fmt: skip
+        for _ in range(2):
+            course = heading[i] + math.pi if backwards else heading[i]
+            hard = trackable(limits[i], course, own[i, 2], own[i, 3], strays, planes)
+            _avoid_row(
+                i, own, position, velocity, radius, kind, count, start, end, before, after,
+                start_convex, end_convex, edge_count, most, margin, edge_margin, rate, edge_rate,
+                hard, answer, planes, projected,
+            )  # fmt: skip
+            if backwards or answer[i, 0] ** 2 + answer[i, 1] ** 2 >= blocked * blocked:
+                break
+            backwards = True  # a car with no way ahead: back, with its front turning to the target
+            _turn_back(own[i], heading[i], target[i, 0], target[i, 1])
 
 
 @kernel
-def _chosen_course(
+def _chosen_way(
     own: FloatArray, heading: float, tx: float, ty: float, limits: FloatArray, error: float
-) -> float:
-    """Return the direction [rad] of the front, or of the rear if the body drives backwards.
+) -> tuple[bool, float]:
+    """Return (backwards, speed [m/s] below which its way counts as blocked, 0: never).
 
     The preferred velocity of a car is turned to a direction that it can take.
     """
     c, s = cos_sin(heading)
-    if limits[KIND] == _CAR:
-        backwards, direction = car_direction(
-            limits, own[0], own[1], heading, c * own[2] + s * own[3], tx, ty,
-            widest_turn(limits, error),
-        )  # fmt: skip
-        speed = math.sqrt(own[4] * own[4] + own[5] * own[5])
-        dc, ds = cos_sin(direction)
-        own[4], own[5] = speed * dc, speed * ds
-    else:
-        backwards = limits[BACKWARDS] > 0.0 and c * own[4] + s * own[5] < 0.0
-    return heading + math.pi if backwards else heading
+    if limits[KIND] != _CAR:
+        return limits[BACKWARDS] > 0.0 and c * own[4] + s * own[5] < 0.0, 0.0
+    ahead = c * own[2] + s * own[3]
+    backwards, direction = car_direction(
+        limits, own[0], own[1], heading, ahead, tx, ty, widest_turn(limits, abs(ahead), error)
+    )
+    speed = math.sqrt(own[4] * own[4] + own[5] * own[5])
+    dc, ds = cos_sin(direction)
+    own[4], own[5] = speed * dc, speed * ds
+    blocked = 0.0
+    if limits[BACKWARDS] > 0.0:
+        blocked = speed * (STILL_BLOCKED if ahead < 0.0 else BLOCKED)
+    return backwards, blocked
+
+
+@kernel
+def _turn_back(own: FloatArray, heading: float, tx: float, ty: float) -> None:
+    """Turn the preferred velocity of a car backwards, so that its front turns to the target."""
+    c, s = cos_sin(heading)
+    aside = c * (ty - own[1]) - s * (tx - own[0])
+    speed = math.sqrt(own[4] * own[4] + own[5] * own[5])
+    bc, bs = cos_sin(heading + math.pi + math.copysign(BACK_TURN, aside))
+    own[4], own[5] = speed * bc, speed * bs
 
 
 @kernel_without_allocation

@@ -15,6 +15,10 @@ class Orca(Navigator):
     Each of two agents makes half of the avoidance; near a dynamic obstacle, which never
     yields, an agent makes all of it. For a unicycle, the simulator converts the velocity
     into forward speed and turn rate.
+
+    A body that cannot take a velocity at once (a car, a differential drive, a body with limits of
+    acceleration) gets only velocities that it tracks closely, and a larger disc (NH-ORCA,
+    Alonso-Mora et al. 2013). A car that can drive backwards does so where it has no way ahead.
     """
 
     Config = OrcaConfig

@@ -57,7 +57,7 @@ def trackable(
         return _within_acceleration(limits, vx, vy, error, planes)
     c, s = cos_sin(course)
     if limits[KIND] == _CAR:
-        n = _wedge(limits, course, error, planes)
+        n = _wedge(limits, course, math.sqrt(vx * vx + vy * vy), error, planes)
     else:
         n = _turning_set(limits, c, s, error, planes)
     ahead = c * vx + s * vy
@@ -94,9 +94,7 @@ def _within_acceleration(
 @kernel
 def turn_time(limits: FloatArray, angle: float) -> float:
     """Return the time [s] in which a body turns by ``angle`` [rad] from rest to rest."""
-    rate: float = limits[TURN]
-    if limits[KIND] == _WHEELS:
-        rate = min(rate, limits[WHEEL] / limits[TRACK])
+    rate: float = limits[TURN] * _wheel_share(limits)
     up: float = limits[TURN_UP]
     if math.isinf(up):
         time = angle / rate
@@ -115,7 +113,17 @@ def trackable_speed(limits: FloatArray, angle: float, error: float) -> float:
     A body that turns in time t and drives at the best constant speed meanwhile strays by
     v t sin(angle / 2) (from Eq. 13 of the paper of 2013 with the optimal speed).
     """
-    return error / (turn_time(limits, angle) * math.sin(0.5 * angle))
+    slower = 1.0 - _wheel_share(limits)  # at most, while it turns
+    return error / (turn_time(limits, angle) * (math.sin(0.5 * angle) + slower))
+
+
+@kernel
+def _wheel_share(limits: FloatArray) -> float:
+    """Return the share of top speed and turn rate together that the wheels can make."""
+    if limits[KIND] != _WHEELS:
+        return 1.0
+    wheel: float = top_speed(limits) + limits[TRACK] * limits[TURN]
+    return min(float(limits[WHEEL]) / wheel, 1.0)
 
 
 @kernel
@@ -161,21 +169,23 @@ def _both(
 
 
 @kernel
-def widest_turn(limits: FloatArray, error: float) -> float:
+def widest_turn(limits: FloatArray, speed: float, error: float) -> float:
     """Return the largest angle [rad] from its front that a car tracks within ε.
 
     On a circle of radius r it turns by θ, and strays by |∫ (e^iφ − e^iθ) r dφ| ≤ r θ² / 2. While
-    its wheels turn to it, for a time t, it strays by v θ t / 2 more.
+    its wheels turn to it, for a time t, it strays by v θ t / 2 more; v is the current ``speed``.
     """
     r = 1.0 / curvature(limits)
-    late: float = 0.5 * top_speed(limits) * limits[STEER] / limits[STEER_RATE]
+    late: float = 0.5 * speed * limits[STEER] / limits[STEER_RATE]
     return min((math.sqrt(late * late + 2.0 * r * error) - late) / r, 0.5 * math.pi)
 
 
 @kernel
-def _wedge(limits: FloatArray, course: float, error: float, planes: FloatArray) -> int:
+def _wedge(
+    limits: FloatArray, course: float, speed: float, error: float, planes: FloatArray
+) -> int:
     """Write the two half-planes of directions that a car takes."""
-    angle = widest_turn(limits, error)
+    angle = widest_turn(limits, speed, error)
     for k in range(2):
         side = 1.0 - 2.0 * k
         c, s = cos_sin(course + side * angle)
