@@ -6,7 +6,7 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, ByteArray, FloatArray, IntArray
-from benchnav.geometry.rotation import TWO_PI, cos_sin
+from benchnav.geometry.rotation import TWO_PI, cos_sin, wrap
 from benchnav.kernels import kernel, kernel_without_allocation
 from benchnav.sensors.noise.draws import (
     FALSE_ALARM,
@@ -20,7 +20,9 @@ from benchnav.sensors.noise.odometry import HEADING, is_exact, placed
 from benchnav.sensors.noise.ray_noise import in_view
 
 _AGENT = int(Kind.AGENT)
-PX, PY, VX, VY, RADIUS, KIND, FAR = range(7)  # of a reading; FAR: squared distance
+PX, PY, VX, VY, RADIUS, KIND, FAR, TURN = range(8)  # of a reading; FAR: squared distance
+LENGTH, WIDTH, ROUNDING = range(8, 11)  # of a shape, whose heading is TURN; all 0: a disc
+COLUMNS = 11
 
 
 @kernel
@@ -28,19 +30,21 @@ def disturb_neighbours(
     low: int, high: int, chosen: IntArray, limit: float, position_noise: float,
     velocity_noise: float, missed: float, false_alarms: float, view: float, worlds: AnyArray,
     agents: AnyArray, keys: AnyArray, error: FloatArray, identity: IntArray, position: FloatArray,
-    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, heading: FloatArray,
+    half_length: FloatArray, half_width: FloatArray, rounding: FloatArray, count: IntArray,
 ) -> None:  # fmt: skip
     """Add noise to the readings of rows low:high of the flattened (B, chosen agents).
 
-    They stay sorted by distance. What happens to a neighbour depends on its ``identity``, not on
+    They stay sorted by distance. The draws for a neighbour depend on its ``identity``, not on
     its place in the list. A false alarm is a standing disc like the agent itself, anywhere in range
     and in view. The other arguments are those of `find_neighbours`, and the numbers of
     `NeighbourNoise`.
     """
-    readings = np.empty((position.shape[2] + 1, 7))
+    readings = np.zeros((position.shape[2] + 1, COLUMNS))
     _disturb_rows(
         low, high, chosen, limit, position_noise, velocity_noise, missed, false_alarms, view,
-        worlds, agents, keys, error, identity, position, velocity, radius, kind, count, readings,
+        worlds, agents, keys, error, identity, position, velocity, radius, kind, heading,
+        half_length, half_width, rounding, count, readings,
     )  # fmt: skip
 
 
@@ -49,7 +53,8 @@ def _disturb_rows(
     low: int, high: int, chosen: IntArray, limit: float, position_noise: float,
     velocity_noise: float, missed: float, false_alarms: float, view: float, worlds: AnyArray,
     agents: AnyArray, keys: AnyArray, error: FloatArray, identity: IntArray, position: FloatArray,
-    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, heading: FloatArray,
+    half_length: FloatArray, half_width: FloatArray, rounding: FloatArray, count: IntArray,
     readings: FloatArray,
 ) -> None:  # fmt: skip
     width, most = chosen.shape[1], position.shape[2]
@@ -81,7 +86,9 @@ def _disturb_rows(
             far = (x - a.x) * (x - a.x) + (y - a.y) * (y - a.y)
             if n > 0 and position_noise == 0.0:
                 far = max(far, readings[n - 1, FAR])  # the order of the sensor, whatever rounding
-            _insert(n, x, y, vx, vy, radius[b, k, s], float(kind[b, k, s]), far, readings)
+            at = _insert(n, x, y, vx, vy, radius[b, k, s], float(kind[b, k, s]), far, readings)
+            readings[at, TURN], readings[at, LENGTH] = heading[b, k, s], half_length[b, k, s]
+            readings[at, WIDTH], readings[at, ROUNDING] = half_width[b, k, s], rounding[b, k, s]
             n += 1
         if false_alarms > 0.0:
             first, second = draw(keys[b, 0], keys[b, 1], step, i, FALSE_ALARM, 0)
@@ -92,10 +99,14 @@ def _disturb_rows(
                 nx, ny = two_normals(second)
                 x, y = a.x + away * towards_x, a.y + away * towards_y
                 vx, vy = velocity_noise * nx, velocity_noise * ny
-                _insert(n, x, y, vx, vy, a.radius, float(_AGENT), away * away, readings)
+                at = _insert(n, x, y, vx, vy, a.radius, float(_AGENT), away * away, readings)
+                readings[at, TURN:] = 0.0
                 n += 1
         n = min(n, most)
-        _write(n, a.x, a.y, e, readings, position[b, k], velocity[b, k], radius[b, k], kind[b, k])
+        _write(
+            n, a.x, a.y, e, readings, position[b, k], velocity[b, k], radius[b, k], kind[b, k],
+            heading[b, k], half_length[b, k], half_width[b, k], rounding[b, k],
+        )  # fmt: skip
         count[b, k] = n
 
 
@@ -103,22 +114,24 @@ def _disturb_rows(
 def _insert(
     n: int, x: float, y: float, vx: float, vy: float, radius: float, kind: float, far: float,
     readings: FloatArray,
-) -> None:  # fmt: skip
-    """Insert a reading into n sorted ones, behind those that are as far."""
+) -> int:  # fmt: skip
+    """Insert a reading into n sorted ones, behind those that are as far; return its place."""
     at = n
     while at > 0 and readings[at - 1, FAR] > far:
-        for column in range(7):
+        for column in range(COLUMNS):
             readings[at, column] = readings[at - 1, column]
         at -= 1
     reading = readings[at]
     reading[PX], reading[PY], reading[VX], reading[VY] = x, y, vx, vy
     reading[RADIUS], reading[KIND], reading[FAR] = radius, kind, far
+    return at
 
 
 @kernel_without_allocation
 def _write(
     n: int, own_x: float, own_y: float, e: FloatArray, readings: FloatArray, position: FloatArray,
-    velocity: FloatArray, radius: FloatArray, kind: ByteArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, heading: FloatArray,
+    half_length: FloatArray, half_width: FloatArray, rounding: FloatArray,
 ) -> None:  # fmt: skip
     """Write n readings in the odometry frame; zero behind them."""
     exact, (c, s) = is_exact(e), cos_sin(e[HEADING])
@@ -130,6 +143,10 @@ def _write(
             vx, vy = reading[VX], reading[VY]
             reading[PX], reading[PY] = placed(reading[PX], reading[PY], own_x, own_y, c, s, e)
             reading[VX], reading[VY] = c * vx - s * vy, s * vx + c * vy
+            if reading[LENGTH] > 0.0:
+                reading[TURN] = wrap(reading[TURN] + e[HEADING])
         position[at, 0], position[at, 1] = reading[PX], reading[PY]
         velocity[at, 0], velocity[at, 1] = reading[VX], reading[VY]
         radius[at], kind[at] = reading[RADIUS], int(reading[KIND])
+        heading[at], half_length[at] = reading[TURN], reading[LENGTH]
+        half_width[at], rounding[at] = reading[WIDTH], reading[ROUNDING]

@@ -120,7 +120,8 @@ class NoisySenses:
             disturb_neighbours, chosen.size, chosen, float(sensor.range), n.position_noise,
             n.velocity_noise, n.missed, n.false_alarms, n.field_of_view, s.records, s.agents,
             self._keys, self.pose_error, identity, out.position, out.velocity, out.radius,
-            out.kind, out.count, least=LEAST,
+            out.kind, out.heading, out.half_length, out.half_width, out.rounding, out.count,
+            least=LEAST,
         )  # fmt: skip
 
     def _disturb_edges(self, chosen: IntArray, out: Edges, identity: IntArray) -> None:
