@@ -14,7 +14,7 @@ NO_MAP = "uses no map"
 
 @dataclass(frozen=True)
 class Price:
-    """What the same navigators lose in the same worlds: a paired difference, which never ranks."""
+    """A loss of the same navigators in the same worlds: a paired difference, which never ranks."""
 
     name: str
     axis: Literal["track", "perception"]

@@ -89,9 +89,9 @@ def test_episodes_of_any_shape_come_back_bit_for_bit(tools, shapes, seed):
 def test_parts_that_were_written_before_a_column_was_there_are_read(tools, monkeypatch):
     monkeypatch.setattr(state_codec, "can_code", lambda world: False)
     episodes = [tools.episode(np.random.default_rng(n), n) for n in range(3)]
-    for left, right in zip(
-        episodes, from_table(to_table(episodes).drop_columns(list(LATER))), strict=True
-    ):
+    table = to_table(episodes)
+    older = table.drop_columns([name for name in LATER if name in table.column_names])
+    for left, right in zip(episodes, from_table(older), strict=True):
         assert (right.timings.latency, right.timings.memory) == (None, None)
         timings = dataclasses.replace(left.timings, latency=None, memory=None)
         identity = dataclasses.replace(left.identity, navigator_hash="")

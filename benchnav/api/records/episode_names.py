@@ -7,7 +7,7 @@ from benchnav.api.records.episodes import Episodes, Place
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.from_runs import names_of_scenario
 from benchnav.scenario.condition import EXACT
-from benchnav.scenario.terms import PERCEPTIONS
+from benchnav.scenario.terms import TRACKS
 
 if TYPE_CHECKING:
     from benchnav.api.records.run import Run
@@ -31,7 +31,7 @@ def _find(run: "Run", name: str) -> Place:
         )
     subject, track, seed = parts
     perception = EXACT
-    if track in PERCEPTIONS:
+    if track not in TRACKS and subject.rpartition("/")[2] in TRACKS:
         perception, (subject, track) = track, subject.rsplit("/", 1)
     found = [
         place

@@ -8,7 +8,6 @@ import typer
 from benchnav.cli.console import put, say
 from benchnav.cli.viewing.episode_filter import EpisodeFilter
 from benchnav.cli.viewing.episode_list import print_list
-from benchnav.scenario.condition import condition
 from benchnav.text.file_name import file_name
 
 if TYPE_CHECKING:
@@ -98,6 +97,8 @@ def replay(
 
 def _file_name(places: "tuple[Place, ...]") -> str:
     """Return the default name of the page."""
+    from benchnav.scenario.condition import condition
+
     first = places[0]
     names = dict.fromkeys(place.navigator for place in places)
     scenario = first.scenario.split("@")[0]

@@ -49,7 +49,7 @@ def pages(data: ReportData) -> Iterator[Page]:
     }
     body = fill(
         "comparison.html", page=COMPARISON, several=len(labels) > 1, runs=shlex.join(runs),
-        more=list(more_seeds(data.folders)),
+        is_exact=data.is_exact, more=list(more_seeds(data.folders)),
         shared=_json(shared), pairs=pairs, script=href(COMPARISON, ASSETS / SCRIPT),
     )  # fmt: skip
     yield Page(COMPARISON, "Two navigators compared", body, COMPARISON, has_figures=True)

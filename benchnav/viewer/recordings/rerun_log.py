@@ -16,6 +16,7 @@ from benchnav.drawing.palette import FILL, agent_color, rgb
 from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
 from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.scenario.condition import condition
 from benchnav.system.plain_file import writing
 from benchnav.viewer.recordings.extrusion import AGENT_HEIGHT, extrude
 from benchnav.viewer.replay.senses import Senses, sensed
@@ -36,9 +37,10 @@ def save_rerun(episode: Episode, agents: IntArray, path: Path) -> None:
     with writing(path):
         path.open("wb").close()  # the library does not report an error
     identity = episode.identity
+    where = condition(identity.track, identity.perception)
     stream = rerun.RecordingStream(
         "benchnav",
-        recording_id=f"{identity.navigator}-{identity.scenario}-{identity.track}-{identity.seed}",
+        recording_id=f"{identity.navigator}-{identity.scenario}-{where}-{identity.seed}",
     )
     stream.save(str(path))
     _log_arena(rerun, stream, episode)

@@ -603,7 +603,7 @@ class View {
       if (this.status(a, k) === ARRIVED) arrived++;
       if (this.status(a, last) === ARRIVED) final++;
     }
-    const { navigator, scenario, track, seed } = this.scene;
+    const { navigator, scenario, condition, seed } = this.scene;
     const text =
       k >= last
         ? `${final} of ${total} arrived`
@@ -613,9 +613,10 @@ class View {
     const where =
       this.replay.views.length > 1 &&
       this.replay.views[0] !== this &&
-      this.replay.sameWorld(this.replay.views[0], this)
+      this.replay.sameWorld(this.replay.views[0], this) &&
+      this.replay.views[0].scene.condition === condition
         ? ` · ${text}`
-        : ` · ${text} · ${scenario} · ${track} · seed ${seed}`;
+        : ` · ${text} · ${scenario} · ${condition} · seed ${seed}`;
     this.caption.replaceChildren(element("b", {}, navigator), element("span", {}, where));
   }
 
@@ -793,7 +794,10 @@ class Replay {
     const items = lines.map(([, kind, text]) =>
       element("li", {}, element("i", { class: kind }), element("span", {}, text)),
     );
-    return [element("h2", {}, "Sensor readings"), element("ul", { class: "legend" }, ...items)];
+    const noisy = this.views.some((view) => view.scene.perception !== "exact");
+    const note = noisy ? [element("p", {}, "Without the noise that the navigator met.")] : [];
+    const list = element("ul", { class: "legend" }, ...items);
+    return [element("h2", {}, "Sensor readings"), ...note, list];
   }
 
   events() {

@@ -12,6 +12,7 @@ from benchnav.episode.episode import Contacts, Episode, Status
 from benchnav.metrics.attempt_ends import attempt_ends, partner_text
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.navigation.tracks import granted_map
+from benchnav.scenario.condition import condition
 from benchnav.verify.own_map import Origin, OwnMaps, map_changes, own_maps
 from benchnav.viewer.replay.clearance import clearance
 from benchnav.viewer.replay.packing import packed
@@ -32,8 +33,10 @@ def scene(episode: Episode, agents: IntArray, origin: Origin | None = None) -> d
     """
     world, identity = episode.world, episode.identity
     return {
-        "navigator": identity.navigator, "scenario": identity.scenario, "track": identity.track,
-        "seed": identity.seed, "failure": episode.failure, "dt": world.clock.dt,
+        "navigator": identity.navigator, "scenario": identity.scenario,
+        "condition": condition(identity.track, identity.perception),
+        "perception": identity.perception, "seed": identity.seed, "failure": episode.failure,
+        "dt": world.clock.dt,
         "horizon": world.clock.horizon, "bounds": list(world.bounds),
         "solids": [_shape(solid) for solid in world.solids],
         "bodies": [_shape(body.solid) for body in world.bodies],

@@ -34,7 +34,8 @@ class Senses:
 def sensed(episode: Episode, agents: IntArray) -> Senses | None:
     """Return what ``agents`` (n,) sensed, or None if the episode cannot be stepped again.
 
-    The episode is simulated again, so the readings are those that the navigator had.
+    The episode is simulated again, so the readings are those that the navigator had, without the
+    noise of noisy perception.
     """
     if not len(agents) or unfit(episode.world, episode):
         return None
