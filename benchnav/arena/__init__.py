@@ -8,6 +8,7 @@ if TYPE_CHECKING:
     from benchnav.arena.agents import Agents, Dynamics, Role
     from benchnav.arena.body import Body, Law, LawKind
     from benchnav.arena.mesh import Mesh
+    from benchnav.arena.noise import EdgeNoise, NeighbourNoise, Noise, OdometryNoise, RayNoise
     from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
     from benchnav.arena.solid import Kind, Solid
     from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
@@ -22,12 +23,17 @@ else:
             "Clock": "benchnav.arena.world",
             "ContactRule": "benchnav.arena.world",
             "Dynamics": "benchnav.arena.agents",
+            "EdgeNoise": "benchnav.arena.noise",
             "EdgeSensor": "benchnav.arena.sensing",
             "Kind": "benchnav.arena.solid",
             "Law": "benchnav.arena.body",
             "LawKind": "benchnav.arena.body",
             "Mesh": "benchnav.arena.mesh",
+            "NeighbourNoise": "benchnav.arena.noise",
             "NeighbourSensor": "benchnav.arena.sensing",
+            "Noise": "benchnav.arena.noise",
+            "OdometryNoise": "benchnav.arena.noise",
+            "RayNoise": "benchnav.arena.noise",
             "RaySensor": "benchnav.arena.sensing",
             "Role": "benchnav.arena.agents",
             "Rules": "benchnav.arena.world",
@@ -45,12 +51,17 @@ __all__ = [
     "Clock",
     "ContactRule",
     "Dynamics",
+    "EdgeNoise",
     "EdgeSensor",
     "Kind",
     "Law",
     "LawKind",
     "Mesh",
+    "NeighbourNoise",
     "NeighbourSensor",
+    "Noise",
+    "OdometryNoise",
+    "RayNoise",
     "RaySensor",
     "Role",
     "Rules",

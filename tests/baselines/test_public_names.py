@@ -19,8 +19,8 @@ EXCEPTIONS = frozenset({
     "capsule_grid", "pop", "push", "probability", "SIMPLIFY", "THIN", "section", "locked",
     "read_file", "granted",
     # what trainers need of a scenario and of the simulator
-    "RANGE", "RAYS", "Simulation", "Trainer", "TrainingReport", "build", "find", "ray_angles",
-    "sense",
+    "RANGE", "RAYS", "Simulation", "Trainer", "TrainingReport", "build", "find", "noise_of",
+    "ray_angles", "sense",
 })  # fmt: skip
 
 

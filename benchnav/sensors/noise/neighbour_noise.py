@@ -35,9 +35,9 @@ def disturb_neighbours(
 ) -> None:  # fmt: skip
     """Add noise to the readings of rows low:high of the flattened (B, chosen agents).
 
-    They stay sorted by distance. The draws for a neighbour depend on its ``identity``, not on
-    its place in the list. A false alarm is a standing disc like the agent itself, anywhere in range
-    and in view. The other arguments are those of `find_neighbours`, and the numbers of
+    They stay sorted by distance. The errors of a neighbour depend on its ``identity``, not on its
+    place in the list. A false alarm is a standing disc like the agent itself, anywhere in range and
+    in view. The other arguments are those of `find_neighbours`, and the numbers of
     `NeighbourNoise`.
     """
     readings = np.zeros((position.shape[2] + 1, COLUMNS))

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arena import World
-from benchnav.arena.noise import Noise
+from benchnav.arena import Noise, World
 from benchnav.envs import AgentBatch, AgentVecEnv, RewardWeights, encoder
 from benchnav.generation.build import build, noise_of
 from benchnav.navigation import Spec

@@ -11,7 +11,6 @@ from benchnav.config.validation import FieldError
 from benchnav.envs import ENCODERS, RewardWeights, encoder
 from benchnav.errors import did_you_mean
 from benchnav.navigation import Need
-from benchnav.scenario.terms import Perception
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Rate = Annotated[float, Field(gt=0, le=1)]
@@ -70,7 +69,9 @@ class Recipe(_Part):
     trainer: Literal["recurrent-ppo"] = "recurrent-ppo"
     description: str = Field("", max_length=5000)
     encoder: str = Field("ego", description=f"one of {', '.join(ENCODERS)}")
-    perception: Perception = Field("exact", description="perception track of all worlds")
+    perception: Literal["exact", "noisy"] = Field(
+        "exact", description="perception track of all worlds"
+    )
     courses: tuple[Course, ...] = Field(min_length=1, max_length=100)
     rows: int = Field(64, ge=1, le=4096, description="worlds that run side by side")
     rollout: int = Field(64, ge=2, le=4096, description="decisions a slot makes between updates")
