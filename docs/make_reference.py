@@ -30,7 +30,8 @@ OBSERVATIONS = """# Observations
 
 Axes: B worlds of this call, A agents that the navigator drives in each world (padded), R rays,
 K neighbours, E edges. Metres, seconds, radians; x right, y up, heading counter-clockwise from +x.
-Positions and velocities are in the world frame.
+Positions and velocities are in the world frame; in the perception track `noisy`, they are in the
+[odometry frame](senses.md) of each agent.
 
 ## Rows
 
@@ -76,6 +77,7 @@ GROUPS = {  # heading → picture in images/keys and its text, and types; any ot
         "sensors, arrival and contacts",
         "Clock Rules Sensing Rays Nearest",
     ),
+    "Noise": ("", "", "NoiseSpec RayErrors NeighbourErrors EdgeErrors OdometryErrors"),
     "Numbers": ("", "", "Uniform Normal Choice Integers Parameter Reference"),
 }
 Schema = dict[str, Any]

@@ -11,7 +11,7 @@ from benchnav.sensors.readings import Edges, Rays
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AgentView:
-    """The perception of one agent now, in the world frame.
+    """The perception of one agent now, in the world frame (noisy: in its odometry frame).
 
     Keep memory in ``state``. To keep it elsewhere, use (``row``, ``agent``) as its key:
     ``batch_index`` changes from call to call, because worlds that have ended are left out.

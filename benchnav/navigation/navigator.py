@@ -70,6 +70,7 @@ class Navigator(ABC):
     def command(self) -> CommandKind:
         """The kind of commands of `act`: planar velocities [m/s] in the world frame, or twists.
 
+        In the perception track `noisy`, velocities are in the odometry frame of the agent.
         A class may declare it: ``command = "twist"``.
         """
         return "velocity"

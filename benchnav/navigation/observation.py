@@ -1,8 +1,8 @@
 """The observation of the agents of one navigator, for a batch of worlds.
 
 Arrays start with (B, A): the worlds of this call and the agents that this
-navigator drives, padded; all other agents are neighbours. World frame. Sensors
-that the navigator does not need are None.
+navigator drives, padded; all other agents are neighbours. World frame; in the perception
+track `noisy`, the odometry frame of each agent. Sensors that the navigator does not need are None.
 """
 
 from dataclasses import dataclass

@@ -85,7 +85,9 @@ class RayErrors(_Sensor):
     )
     noise: float = _deviation(0.005, "[m] at any distance")
     relative_noise: float = _deviation(0.01, "as a share of the distance")
-    quadratic_noise: float = _deviation(0.0, "[1/m] as a share of the squared distance")
+    quadratic_noise: float = _deviation(
+        0.0, "[m] at 1 m of a part that grows with the squared distance"
+    )
     dropout: float = _probability(0.05, "a ray returns nothing")
     approach_noise: float = _deviation(0.1, "[m/s] of the approach speed")
     field_of_view: float = _view("rays return something")
