@@ -78,7 +78,8 @@ class Mppi(Controller):
 
     It commands twists; holonomic bodies follow them too. Every sample holds only twists that the
     body reaches one after another within its limits of acceleration, wheels and steering. A car
-    that stands for a second drives backwards, if it can.
+    drives backwards, if it can, where its target is too near beside or behind it, or after it stood
+    for a second.
     """
 
     Config = MppiConfig

@@ -13,7 +13,7 @@ from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.kernels import kernel
 
 from ...common.car import car_target
-from ...common.motion_limits import BACKWARDS, KIND, reach_in_turn
+from ...common.motion_limits import KIND, reach_in_turn
 from .cost import cost_of, edge_distances
 from .weights import disturbed, moved_on, weigh
 
@@ -131,16 +131,18 @@ def control(
                 gap = min(gap, max(2.0 * (far[k] - me[0]) - LEAST, 0.0))
         sigma[0], sigma[1] = spread[0] * me[2], spread[1] * me[3]
         bottom[0], bottom[1], top[0], top[1] = 0.0, -me[3], me[2], me[3]
-        if limits[i, BACKWARDS] > 0.0:
-            bottom[0] = -me[2]
-        moved_on(plan[i], me[4] / tick, base)
-        if limited[i]:
-            reach_in_turn(base, last[0], last[1], steering[i], limits[i], me[4], tick)
         gx, gy = target[i, 0], target[i, 1]
         final = remaining[i] <= math.sqrt((gx - x) ** 2 + (gy - y) ** 2) + me[5]
         if limited[i] and limits[i, KIND] == _CAR:
-            replaced, gx, gy = car_target(limits[i], x, y, heading[i], last[0], gx, gy, backing[i])
+            backwards, replaced, gx, gy = car_target(
+                limits[i], x, y, heading[i], last[0], gx, gy, backing[i]
+            )
             final = final and not replaced
+            if backwards:
+                bottom[0], top[0] = -me[2], 0.0
+        moved_on(plan[i], me[4] / tick, base)
+        if limited[i]:
+            reach_in_turn(base, last[0], last[1], steering[i], limits[i], me[4], tick)
         all_touch, best = True, 0
         for k in range(samples):
             if k == 0:
