@@ -202,7 +202,7 @@ def choose(
             brake, turn_brake = min(brake, limits[i, BRAKE]), min(turn_brake, limits[i, TURN_UP])
             car = limits[i, KIND] == _CAR
             if car:
-                _, _, tx, ty = car_target(limits[i], x, y, heading[i], now, tx, ty, backing[i])
+                _, tx, ty = car_target(limits[i], x, y, heading[i], now, tx, ty, backing[i])
             top = min(body[i, 2], stopping_speed(remaining[i], brake, dt))
             body_window(now, turn, last[i, 2], top, limits[i], dt, search, vs, ws)
         else:

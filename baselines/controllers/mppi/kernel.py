@@ -66,7 +66,7 @@ def averaged(weight: FloatArray, tried: FloatArray, mean: FloatArray) -> None:
 def control(
     low: int, high: int, active: BoolArray, here: FloatArray, heading: FloatArray,
     target: FloatArray, remaining: FloatArray, body: FloatArray, plan: FloatArray,
-    limited: BoolArray, limits: FloatArray, steering: FloatArray, backing: BoolArray,
+    limited: BoolArray, limits: FloatArray, steering: FloatArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
     count: IntArray, start: FloatArray, end: FloatArray, edges: IntArray, noise: FloatArray,
     tick: float, spread: FloatArray, temperature: float, control_cost: float, margin: float,
@@ -87,7 +87,6 @@ def control(
         limited: (N,) whether the body has more limits than speed and turn rate.
         limits: (N, 13) see `baselines.common.motion_limits`.
         steering: (N,) [rad] angle of a car's front wheels.
-        backing: (N,) whether a car drives backwards because it stood.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].
         radius: (N, K) [m].
@@ -134,12 +133,8 @@ def control(
         gx, gy = target[i, 0], target[i, 1]
         final = remaining[i] <= math.sqrt((gx - x) ** 2 + (gy - y) ** 2) + me[5]
         if limited[i] and limits[i, KIND] == _CAR:
-            backwards, replaced, gx, gy = car_target(
-                limits[i], x, y, heading[i], last[0], gx, gy, backing[i]
-            )
+            replaced, gx, gy = car_target(limits[i], x, y, heading[i], last[0], gx, gy, False)
             final = final and not replaced
-            if backwards:
-                bottom[0], top[0] = -me[2], 0.0
         moved_on(plan[i], me[4] / tick, base)
         if limited[i]:
             reach_in_turn(base, last[0], last[1], steering[i], limits[i], me[4], tick)
