@@ -93,7 +93,7 @@ def test_noise_runs_straight_between_knots_and_stays_within_limits():
     np.testing.assert_allclose(out[:, 1], [0.5, 2.5, 3.0, 2.5, 0.5])
 
 
-UNLIMITED = np.zeros(1, bool), np.zeros((1, LIMITS)), np.zeros(1), np.zeros(1, bool)
+UNLIMITED = np.zeros(1, bool), np.zeros((1, LIMITS)), np.zeros(1)
 WEIGHTS = np.array([8.0, 1.5, 0.7, 0.3, 0.4, 2.5, 1.1])
 
 

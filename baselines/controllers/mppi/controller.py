@@ -20,9 +20,8 @@ from benchnav.navigation import (
 )
 from benchnav.threads import run_rows
 
-from ...common.backing import Backing
 from ...common.kernel_inputs import bodies_of, flat, sensed
-from ...common.motion_limits import has_limits, limits_of, steering_after
+from ...common.motion_limits import BACKWARDS, has_limits, limits_of, steering_after
 from .kernel import control
 
 
@@ -77,8 +76,8 @@ class Mppi(Controller):
     """Samples random variations of its last plan, and averages them with weights exp(−cost / λ).
 
     It commands twists; holonomic bodies follow them too. Every sample holds only twists that the
-    body reaches one after another within its limits of acceleration, wheels and steering. A car
-    that stands for a second drives backwards, if it can.
+    body reaches one after another within its limits of acceleration, wheels and steering. It
+    drives forward only: the mean of plans forwards and backwards stands still.
     """
 
     Config = MppiConfig
@@ -88,15 +87,14 @@ class Mppi(Controller):
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
         self._table = RowTable()
-        self._backing = Backing()
         self._streams: dict[int, list[np.random.Generator]] = {}
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
-        self._backing.reset(briefings, rows)
         for row, briefing in zip(rows, briefings, strict=True):
             self._streams[int(row)] = agent_streams(briefing)
             plan = np.zeros((len(briefing), self.config.steps, 2))
             limits = limits_of(briefing)
+            limits[:, BACKWARDS] = 0.0
             self._table.put(
                 int(row), body=bodies_of(briefing), plan=plan, limits=limits,
                 limited=has_limits(limits), steering=np.zeros(len(briefing)),
@@ -109,11 +107,10 @@ class Mppi(Controller):
             self._table.take(name, observation.rows, agents)
             for name in ("body", "plan", "limited", "limits", "steering")
         )
-        backing = self._backing.decide(observation, plan[:, :, 0, 0])
         position, velocity, radius, kind, count, start, end, _, _, edges = sensed(observation)
         arrays = (
             observation.active, observation.position, observation.heading, guide.target,
-            guide.remaining, body, plan, limited, limits, steering, backing, position, velocity,
+            guide.remaining, body, plan, limited, limits, steering, position, velocity,
             radius, kind, count, start, end, edges,
         )  # fmt: skip
         new = plan.reshape(rows, *plan.shape[2:]).copy()

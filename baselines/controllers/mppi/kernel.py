@@ -13,7 +13,7 @@ from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.kernels import kernel
 
 from ...common.car import car_target
-from ...common.motion_limits import BACKWARDS, KIND, reach_in_turn
+from ...common.motion_limits import KIND, reach_in_turn
 from .cost import cost_of, edge_distances
 from .weights import disturbed, moved_on, weigh
 
@@ -66,7 +66,7 @@ def averaged(weight: FloatArray, tried: FloatArray, mean: FloatArray) -> None:
 def control(
     low: int, high: int, active: BoolArray, here: FloatArray, heading: FloatArray,
     target: FloatArray, remaining: FloatArray, body: FloatArray, plan: FloatArray,
-    limited: BoolArray, limits: FloatArray, steering: FloatArray, backing: BoolArray,
+    limited: BoolArray, limits: FloatArray, steering: FloatArray,
     position: FloatArray, velocity: FloatArray, radius: FloatArray, kind: ByteArray,
     count: IntArray, start: FloatArray, end: FloatArray, edges: IntArray, noise: FloatArray,
     tick: float, spread: FloatArray, temperature: float, control_cost: float, margin: float,
@@ -87,7 +87,6 @@ def control(
         limited: (N,) whether the body has more limits than speed and turn rate.
         limits: (N, 13) see `baselines.common.motion_limits`.
         steering: (N,) [rad] angle of a car's front wheels.
-        backing: (N,) whether a car drives backwards because it stood.
         position: (N, K, 2) of neighbours [m].
         velocity: (N, K, 2) [m/s].
         radius: (N, K) [m].
@@ -131,16 +130,14 @@ def control(
                 gap = min(gap, max(2.0 * (far[k] - me[0]) - LEAST, 0.0))
         sigma[0], sigma[1] = spread[0] * me[2], spread[1] * me[3]
         bottom[0], bottom[1], top[0], top[1] = 0.0, -me[3], me[2], me[3]
-        if limits[i, BACKWARDS] > 0.0:
-            bottom[0] = -me[2]
-        moved_on(plan[i], me[4] / tick, base)
-        if limited[i]:
-            reach_in_turn(base, last[0], last[1], steering[i], limits[i], me[4], tick)
         gx, gy = target[i, 0], target[i, 1]
         final = remaining[i] <= math.sqrt((gx - x) ** 2 + (gy - y) ** 2) + me[5]
         if limited[i] and limits[i, KIND] == _CAR:
-            replaced, gx, gy = car_target(limits[i], x, y, heading[i], last[0], gx, gy, backing[i])
+            replaced, gx, gy = car_target(limits[i], x, y, heading[i], last[0], gx, gy, False)
             final = final and not replaced
+        moved_on(plan[i], me[4] / tick, base)
+        if limited[i]:
+            reach_in_turn(base, last[0], last[1], steering[i], limits[i], me[4], tick)
         all_touch, best = True, 0
         for k in range(samples):
             if k == 0:
