@@ -102,9 +102,9 @@ def test_an_event_that_is_less_deep_than_it_was():
 @pytest.mark.parametrize("far", [0.3, 1e-4, 1e-7])
 def test_gaps_are_exact(far):
     drawn = world(agents([4.0, 10.0], [1.0, 1.0]), [walls(20.0), disc(Kind.STATIC, 7.0, 10.0, 1.0)])
-    scene, none = Scene(drawn), np.zeros(2)
+    scene, none, ahead = Scene(drawn), np.zeros(2), np.zeros(1)
     for sign in (1.0, -1.0):
-        wall = scene.gap(0, np.array([0.5 + sign * far, 10.0]), ("solids", 0), none)
-        pillar = scene.gap(0, np.array([7.0, 8.5 - sign * far]), ("solids", 1), none)
+        wall = scene.gap(0, np.array([0.5 + sign * far, 10.0]), ahead, ("solids", 0), none)
+        pillar = scene.gap(0, np.array([7.0, 8.5 - sign * far]), ahead, ("solids", 1), none)
         assert wall == pytest.approx(sign * far, abs=1e-12)
         assert pillar == pytest.approx(sign * far, abs=1e-12)
