@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from benchnav.arena.agents import Dynamics
+from benchnav.envs.autoreset import AutoresetSimulation
 from benchnav.kernels import kernel
 from benchnav.verify.reference.reference_dynamics import Drive
 from benchnav.world.dynamics import limited
@@ -247,3 +248,17 @@ def test_bits_depend_neither_on_the_batch_nor_on_threads(threads, monkeypatch):
     expected = {k: driven(worlds, [k])[k] for k in range(5)}
     monkeypatch.setenv("BENCHNAV_THREADS", threads)
     assert driven(worlds, [4, 2, 0, 3, 1, 2]) == expected
+
+
+def test_a_row_that_starts_again_starts_at_rest_with_its_wheels_straight():
+    pool = [limited_world(seed, steps=40) for seed in range(2)]
+    again, fresh = AutoresetSimulation(pool, 2), Simulation(pool[::-1])
+    rng = np.random.default_rng(0)
+    commands, twist = rng.normal(size=(12, 2, 4, 2)) * 2, np.zeros((2, 4), bool)
+    for command in commands:
+        again.step(command, twist)
+    again.restart(np.arange(2), np.array([1, 0]))
+    for command in commands:
+        executed = again.step(command, twist)
+        np.testing.assert_array_equal(executed, fresh.step(command, twist))
+    np.testing.assert_array_equal(again.position, fresh.position)
