@@ -74,7 +74,7 @@ def orca_of(controller):
 
 def as_told(twist, one, told, kind):
     velocity = np.zeros_like(twist)
-    body = np.full(one.active.shape, kind == Dynamics.UNICYCLE)
+    body = np.full(one.active.shape, kind != Dynamics.HOLONOMIC)
     dt = np.full(one.active.shape, told[0].dt)
     as_velocity(one.active, body, one.heading, dt, twist, velocity)
     return velocity
@@ -91,7 +91,7 @@ def test_holonomic_bodies_among_agents_are_driven_by_orca():
 
 
 @pytest.mark.parametrize(("more", "goal"), [(0.0, True), (0.4, True), (0.6, False)])
-@pytest.mark.parametrize("kind", list(Dynamics))
+@pytest.mark.parametrize("kind", [k for k in Dynamics if k != Dynamics.ACKERMANN])
 def test_beside_movers_and_on_unicycles_the_policy_drives_and_sees_waypoints_on_detours(
     kind, more, goal
 ):

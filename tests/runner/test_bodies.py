@@ -11,7 +11,7 @@ from benchnav.navigation.navigator import ALL_DYNAMICS, DynamicsName, Navigator
 from benchnav.navigation.plugin.capabilities import Capabilities, undriven
 from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner.plan.suite import Selection, load_suite
+from benchnav.runner.plan.suite import load_suite
 from tests.plain_scenario import PLAIN
 
 CAR = PLAIN + "    dynamics: {type: ackermann, wheelbase: 0.3, max_steering_angle: 0.6}\n"
@@ -52,7 +52,7 @@ def test_learned_policies_are_not_available_for_cars(scenario, tmp_path):
         f"name: cars\nversion: 1\nscenarios: [{scenario}]\ntracks: [known]\n"
         f"navigators: [{listed}]\nseeds: 1\n"
     )
-    reasons = {c.contestant.label: c.reason for c in load_suite(suite, Selection()).jobs()}
+    reasons = {c.contestant.label: c.reason for c in load_suite(str(suite)).jobs()}
     assert {name: reasons[name] for name in names[:2]} == dict.fromkeys(names[:2], "")
     assert {reasons[name] for name in names[2:]} == {POLICIES}
 
@@ -81,5 +81,6 @@ def test_navigators_that_declare_nothing_drive_all_bodies():
 
 
 def test_show_names_the_bodies():
-    assert f"drives   {POLICIES[7:-5]}" in str(benchnav.show("q-learning"))
-    assert "drives      all bodies" in str(benchnav.show("orca")).replace("  drives", "  drives   ")
+    assert f"drives      {POLICIES[7:-5]}" in str(benchnav.show("q-learning"))
+    assert "drives      all bodies" in str(benchnav.show("orca"))
+    assert "drives      all bodies" in str(benchnav.show("navmesh+orca"))
