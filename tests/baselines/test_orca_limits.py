@@ -82,6 +82,14 @@ def test_standing_bodies_may_stand(name):
         assert permits(planes_of(body(name), (0.0, 0.0), course), 0.0, 0.0)
 
 
+@pytest.mark.parametrize("top", [0.8, 2.0, 5.0])
+def test_wheels_at_their_limit_may_still_turn(top):
+    told = replace(body("wheels", max_wheel_speed=np.array([top])), max_speed=np.array([top]))
+    planes = planes_of(replace(told, dt=0.2), (0.0, 0.0))
+    for angle in (0.2, 0.5, 1.0):
+        assert permits(planes, 0.1 * math.cos(angle), 0.1 * math.sin(angle))
+
+
 def test_the_disc_grows_less_near_objects():
     position, radius = np.array([[1.0, 0.0]]), np.array([0.3])
     nothing = np.zeros((0, 2))

@@ -94,7 +94,7 @@ def _within_acceleration(
 @kernel
 def turn_time(limits: FloatArray, angle: float) -> float:
     """Return the time [s] in which a body turns by ``angle`` [rad] from rest to rest."""
-    rate: float = limits[TURN] * _wheel_share(limits)
+    rate: float = limits[TURN] * _wheel_share(limits, limits[TURN])
     up: float = limits[TURN_UP]
     if math.isinf(up):
         time = angle / rate
@@ -113,16 +113,17 @@ def trackable_speed(limits: FloatArray, angle: float, error: float) -> float:
     A body that turns in time t and drives at the best constant speed meanwhile strays by
     v t sin(angle / 2) (from Eq. 13 of the paper of 2013 with the optimal speed).
     """
-    slower = 1.0 - _wheel_share(limits)  # at most, while it turns
-    return error / (turn_time(limits, angle) * (math.sin(0.5 * angle) + slower))
+    time = turn_time(limits, angle)
+    slower = 1.0 - _wheel_share(limits, angle / time)  # while it turns
+    return error / (time * (math.sin(0.5 * angle) + slower))
 
 
 @kernel
-def _wheel_share(limits: FloatArray) -> float:
-    """Return the share of top speed and turn rate together that the wheels can make."""
+def _wheel_share(limits: FloatArray, turn_rate: float) -> float:
+    """Return the share of the top speed and a turn rate together that the wheels can make."""
     if limits[KIND] != _WHEELS:
         return 1.0
-    wheel: float = top_speed(limits) + limits[TRACK] * limits[TURN]
+    wheel: float = top_speed(limits) + limits[TRACK] * turn_rate
     return min(float(limits[WHEEL]) / wheel, 1.0)
 
 
