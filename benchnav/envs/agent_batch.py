@@ -146,7 +146,8 @@ class AgentBatch:
     def step(self, action: AnyArray, background: BackgroundCommands | None = None) -> Transition:
         """Execute a decision. ``action`` (B, A, 2) in [-1, 1]: speed from least to most, turn rate.
 
-        The least speed is 0, or that of full speed backwards (see ``reverse``). Active slots in ``background`` execute its commands instead of their action.
+        The least speed is 0, or full speed backwards (see ``reverse``). Active slots in
+        ``background`` execute its commands instead of their action.
         """
         s, acted = self.simulation, self.active.copy()
         before = self._goal_distance()
