@@ -18,9 +18,7 @@ def compile_kernels(*, quiet: bool = False) -> None:
     from benchnav.runner.plan.suite import Selection, load_suite
     from benchnav.runner.run import run_suite
 
-    chosen = Selection(
-        scenarios=SCENARIOS, tracks=("known",), seeds="1", perceptions=PERCEPTIONS
-    )
+    chosen = Selection(scenarios=SCENARIOS, tracks=("known",), seeds="1", perceptions=PERCEPTIONS)
     suite = load_suite(SUITE, chosen)
     with TemporaryDirectory() as folder:
         run_suite(suite, Path(folder, "run"), progress=progress(quiet))
