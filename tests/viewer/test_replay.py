@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -206,10 +207,7 @@ class Witness(Navigator):
     """Records what it perceives while it drives to its goal."""
 
     needs = frozenset({Need.RAYS, Need.NEIGHBOURS, Need.EDGES})
-
-    def __init__(self, config=None):
-        super().__init__(config)
-        self.seen = []
+    seen: ClassVar = []
 
     def act(self, observation):
         self.seen.append(observation)
@@ -225,14 +223,14 @@ def in_body(vector, heading):
 
 def test_senses_of_a_noisy_episode_are_those_of_the_navigator():
     world = benchnav.load_scenario("leaders/dynamic").world(seed=3)
-    witness = Witness()
-    played = benchnav.simulate(world, witness, perception="noisy", salt="07")
+    Witness.seen.clear()
+    played = benchnav.simulate(world, Witness, perception="noisy", salt="07")
     record = played.record
     agents = np.flatnonzero(record.world.agents.evaluated)[1:]
     found = sensed(record, agents, played.origin().assignment)
     assert found.noisy
     astray = 0  # places where nothing is
-    for t, seen in enumerate(witness.seen):
+    for t, seen in enumerate(Witness.seen):
         for n, agent in enumerate(agents):
             if not seen.active[0, agent]:
                 continue
