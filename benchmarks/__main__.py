@@ -4,7 +4,15 @@ import argparse
 import sys
 from pathlib import Path
 
-from benchmarks import dynamics, end_to_end, isolation, leader_arena, orca_peers, planning
+from benchmarks import (
+    dynamics,
+    end_to_end,
+    isolation,
+    leader_arena,
+    noise,
+    orca_peers,
+    planning,
+)
 from benchmarks.check import failures, report
 from benchmarks.pair import Pair, measured
 from benchmarks.table import KEPT, keep, kept, page
@@ -42,8 +50,8 @@ def main() -> None:
 def pairs(peers: str) -> list[Pair]:
     """Return all benchmarks; ``peers`` is an interpreter that has the peers."""
     return [
-        *orca_peers.pairs(peers), *leader_arena.pairs(), *dynamics.pairs(), *end_to_end.pairs(),
-        *isolation.pairs(), *planning.pairs(),
+        *orca_peers.pairs(peers), *leader_arena.pairs(), *dynamics.pairs(), *noise.pairs(),
+        *end_to_end.pairs(), *isolation.pairs(), *planning.pairs(),
     ]  # fmt: skip
 
 

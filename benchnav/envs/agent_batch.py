@@ -76,6 +76,7 @@ class AgentBatch:
         *,
         autoreset: Autoreset = Autoreset.SAME_STEP,
         noise: Noise | None = None,
+        reverse: bool = True,
     ) -> None:
         """Prepare the batch. No world is drawn before `reset`.
 
@@ -91,6 +92,8 @@ class AgentBatch:
             autoreset: when a row starts again.
             noise: of the senses of the learners, drawn anew for each start of a row; None: they
                 perceive without error.
+            reverse: whether the speeds of actions begin at full speed backwards for bodies that
+                can reverse, instead of at 0.
 
         Raises UsageError if no world of the pool has an agent that learns.
         """
@@ -118,6 +121,7 @@ class AgentBatch:
         self.active = np.zeros((s.B, s.A), np.bool_)
         self._slots = np.tile(np.arange(s.A), (s.B, 1))  # (B, A) all agents
         self._senses = NoisySenses(s, self._slots, noise) if noise is not None else None
+        self._reverse = reverse
 
     @property
     def rows(self) -> int:
@@ -140,9 +144,10 @@ class AgentBatch:
         self._rng, self._queue = rng, np.zeros(0, np.int64)
 
     def step(self, action: AnyArray, background: BackgroundCommands | None = None) -> Transition:
-        """Execute a decision. ``action`` (B, A, 2) in [-1, 1]: speed from 0 to limit, turn rate.
+        """Execute a decision. ``action`` (B, A, 2) in [-1, 1]: speed from least to most, turn rate.
 
-        Active slots in ``background`` execute its commands instead of their action.
+        The least speed is 0, or full speed backwards (see ``reverse``). Active slots in
+        ``background`` execute its commands instead of their action.
         """
         s, acted = self.simulation, self.active.copy()
         before = self._goal_distance()
@@ -196,7 +201,9 @@ class AgentBatch:
 
     def _commands(self, action: AnyArray) -> FloatArray:
         command = np.clip(action.astype(np.float64), -1.0, 1.0)
-        command[..., 0] = 0.5 * (command[..., 0] + 1.0) * self._limits["max_speed"]
+        forward = 0.5 * (command[..., 0] + 1.0)
+        backwards = self.simulation.limits["reverse"] if self._reverse else False
+        command[..., 0] = np.where(backwards, command[..., 0], forward) * self._limits["max_speed"]
         command[..., 1] *= self._limits["max_turn_rate"]
         return command
 

@@ -15,7 +15,7 @@ from benchnav.envs.reward import RewardWeights
 from benchnav.errors import ConfigError, UsageError, did_you_mean
 from benchnav.generation.build import build, noise_of
 from benchnav.scenario.catalogue import find
-from benchnav.scenario.terms import PERCEPTIONS
+from benchnav.scenario.condition import NOISY, require_perception
 
 
 class NoRenderingError(UsageError, TypeError):
@@ -71,12 +71,8 @@ def make_batch(
     perception is unknown, and the errors of `make_worlds`, `weights_of` and the catalogue of
     encoders.
     """
-    if perception not in PERCEPTIONS:
-        raise UsageError(
-            f"The perception must be {' or '.join(PERCEPTIONS)}. Got {perception!r} instead."
-            f"{did_you_mean(str(perception), PERCEPTIONS)}"
-        )
-    noise = noise_of(find(scenario)) if perception == "noisy" else None
+    require_perception(perception)
+    noise = noise_of(find(scenario)) if perception == NOISY else None
     chosen, weights = encoder_called(encoder), weights_of(reward)
     pool, drivers = make_worlds(scenario, split, worlds), find(scenario).driver_specs
     L = max(int(world.agents.evaluated.sum()) for world in pool)

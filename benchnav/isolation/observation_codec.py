@@ -17,12 +17,15 @@ _READINGS = {  # of a sensor: (attribute, field of the frame) of each array
     for sensor, kind in _SENSORS.items()
 }
 _OWN = ("rows", "time", "active", "position", "heading", "velocity", "goal")
+_STEERING = "steering"
 _CHANGED = "map.rows"
 
 
 def encode_observation(observation: Observation, changed: Sequence[int]) -> dict[str, Any]:
     """Return the frame fields of an observation, and the maps of batch places ``changed`` only."""
     fields: dict[str, Any] = {name: getattr(observation, name) for name in _OWN}
+    if observation.steering.any():  # left out if no wheels are turned
+        fields[_STEERING] = observation.steering
     for sensor, names in _READINGS.items():
         readings = getattr(observation, sensor)
         if readings is not None:
@@ -52,6 +55,6 @@ def decode_observation(fields: dict[str, Any], maps: dict[int, Map | None]) -> O
         for sensor, names in _READINGS.items()
         if names[0][1] in fields
     }
-    own = {name: fields[name] for name in _OWN}
+    own = {name: fields[name] for name in (*_OWN, _STEERING) if name in fields}
     held = tuple(maps[row] for row in fields["rows"].tolist())
     return Observation(**own, maps=held, **readings_by_sensor)

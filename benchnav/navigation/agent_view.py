@@ -63,6 +63,11 @@ class AgentView:
         )  # fmt: skip
 
     @property
+    def steering(self) -> float:
+        """The steering angle [rad] of an Ackermann body, positive to the left; 0 for others."""
+        return float(self.observation.steering[self._at])
+
+    @property
     def map(self) -> Map | None:
         """The map that the track grants now."""
         return self.observation.maps[self.batch_index]

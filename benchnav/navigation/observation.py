@@ -6,10 +6,15 @@ track `noisy`, the odometry frame of each agent. Sensors that the navigator does
 """
 
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation.map import Map
 from benchnav.sensors.readings import Edges, Neighbours, Rays, Rows
+
+_ZERO: Any = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -23,10 +28,15 @@ class Observation(Rows):
     heading: FloatArray  # (B, A) [rad]
     velocity: FloatArray  # (B, A, 2) [m/s] as executed in the last step
     goal: FloatArray  # (B, A, 2) [m]
+    steering: FloatArray = _ZERO  # (B, A) [rad] of an Ackermann body's wheels, to the left; else 0
     maps: tuple[Map | None, ...]  # (B,) as the track grants it now
     rays: Rays | None = None  # None if the navigator does not need rays
     neighbours: Neighbours | None = None  # None if the navigator does not need neighbours
     edges: Edges | None = None  # None if the navigator does not need edges
+
+    def __post_init__(self) -> None:
+        if self.steering is None:
+            object.__setattr__(self, "steering", np.zeros(self.heading.shape))
 
     def __len__(self) -> int:
         return len(self.rows)

@@ -55,9 +55,12 @@ def observe(
     else:
         rays, neighbours, edges = senses.sense(active, needs)
     position, velocity, goal = (np.empty((*agents.shape, 2)) for _ in range(3))
-    heading = np.empty(agents.shape)
+    heading, steering = (np.empty(agents.shape) for _ in range(2))
     chosen = np.array(agents, np.int64)
-    copy_own_state(0, simulation.B, chosen, simulation.agents, position, heading, velocity, goal)
+    copy_own_state(
+        0, simulation.B, chosen, simulation.agents, simulation.limits, position, heading, velocity,
+        goal, steering,
+    )  # fmt: skip
     if senses is not None:
         senses.localise(position, heading, velocity)
     return Observation(
@@ -68,6 +71,7 @@ def observe(
         heading=heading,
         velocity=velocity,
         goal=goal,
+        steering=steering,
         maps=tuple(maps),
         rays=rays,
         neighbours=neighbours,

@@ -3,18 +3,21 @@
 Sources of the presets:
 
 - Rays, `lidar`: a low-cost scanner. Slamtec RPLIDAR A1, datasheet rev. 1.0: the resolution is
-  better than 0.5 mm below 1.5 m, and 1 % of the distance in the whole range. `dropout` is the share
-  of readings without a return in the beam model of the localisation AMCL (`laser_z_max` = 0.05;
-  Thrun, Burgard and Fox, Probabilistic Robotics, 2005, section 6.3).
-- Rays, `depth-camera`: Intel RealSense D435, datasheet: 87° horizontal field of view. The error of
-  stereo depth is d² s / (f b) (Keselman et al., Intel RealSense Stereoscopic Depth Cameras, CVPR
-  Workshops 2017), with a subpixel error s = 0.08, a focal length f = 447 pixels (848 pixels wide)
-  and a baseline b = 0.05 m.
+  better than 0.5 mm below 1.5 m, and 1 % of the distance in the whole range; here, 1 % is taken for
+  a standard deviation. `dropout` is the share of readings without a return in the beam model of
+  the localisation AMCL (ROS 1, default of `laser_z_max`: 0.05; Thrun, Burgard and Fox,
+  Probabilistic Robotics, 2005, section 6.3). The 5 mm and `approach_noise` are chosen.
+- Rays, `depth-camera`: Intel RealSense D435, datasheet of 2020: 87° ± 3° horizontal field of view
+  of depth. The error of stereo depth is d² s / (f b) (Keselman et al., Intel RealSense Stereoscopic
+  Depth Cameras, CVPR Workshops 2017, equation 2), with a focal length f = 447 pixels (848 pixels
+  over 87°) and a baseline b = 0.05 m. The error of disparity s = 0.08 pixels and the 2 mm are
+  chosen; `dropout` and `approach_noise` are those of `lidar`.
 - Neighbours, `people-tracker`: a tracker with a 2D lidar on a moving robot has an accuracy (MOTA)
   of 85 %: misses, false alarms and swaps together are 15 % (Plozza et al., Autonomous Navigation
   in Dynamic Human Environments with an Embedded 2D LiDAR-based Person Tracker, IEEE SAS 2024).
-  Here they are 10 % and 5 %. The position noise of 0.1 m is about the radius of a leg, and the
-  velocity noise is chosen.
+  Their split into 10 % misses and 5 % false alarms is chosen, and so are the deviations: that of
+  the position is about the radius of a leg.
+- Edges: all numbers are chosen.
 - Odometry: the variance grows in proportion to the path (Siegwart and Nourbakhsh, Introduction to
   Autonomous Mobile Robots, 2004, section 5.2.4). The numbers are chosen: after 10 m straight ahead,
   the error is 1 % of the path along it and 4 % across it. The corrections are those of a

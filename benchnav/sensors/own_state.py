@@ -9,8 +9,9 @@ _ACTIVE = int(Status.ACTIVE)
 
 @kernel_without_allocation
 def copy_own_state(
-    low: int, high: int, chosen: IntArray, agents: AnyArray, position: FloatArray,
-    heading: FloatArray, velocity: FloatArray, goal: FloatArray,
+    low: int, high: int, chosen: IntArray, agents: AnyArray, limits: AnyArray,
+    position: FloatArray, heading: FloatArray, velocity: FloatArray, goal: FloatArray,
+    steering: FloatArray,
 ) -> None:  # fmt: skip
     """Copy the states of the chosen agents of worlds low:high; padding (-1) becomes zero."""
     for b in range(low, high):
@@ -20,12 +21,12 @@ def copy_own_state(
                 position[b, k, 0], position[b, k, 1] = a.x, a.y
                 velocity[b, k, 0], velocity[b, k, 1] = a.vx, a.vy
                 goal[b, k, 0], goal[b, k, 1] = a.goal_x, a.goal_y
-                heading[b, k] = a.heading
+                heading[b, k], steering[b, k] = a.heading, limits[b, chosen[b, k]].steering
             else:
                 position[b, k, 0], position[b, k, 1] = 0.0, 0.0
                 velocity[b, k, 0], velocity[b, k, 1] = 0.0, 0.0
                 goal[b, k, 0], goal[b, k, 1] = 0.0, 0.0
-                heading[b, k] = 0.0
+                heading[b, k], steering[b, k] = 0.0, 0.0
 
 
 @kernel_without_allocation

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from benchnav.arena.noise import Noise
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import World
 from benchnav.navigation.command_check import exception_text, short
@@ -32,7 +33,7 @@ from benchnav.testing.requirement import (
     require_config,
     require_same,
 )
-from benchnav.testing.scenes import USUAL, renumbered, scene, with_bodies
+from benchnav.testing.scenes import NOISE, USUAL, renumbered, scene, with_bodies
 from benchnav.testing.sensings import accepted
 
 Make = Callable[[], Navigator]
@@ -87,8 +88,13 @@ def check_declaration(make: Make) -> None:
     )
 
 
-def check_answer(make: Make, worlds: Worlds) -> None:
-    """Check for finite commands of the right shape, from needed inputs only, without writes."""
+def check_answer(
+    make: Make, worlds: Worlds, noise: Noise | None = None, circumstance: str = ""
+) -> None:
+    """Check for finite commands of the right shape, from needed inputs only, without writes.
+
+    ``noise`` is that of the senses (None: they are exact), ``circumstance`` a part of messages.
+    """
     navigator = make()
     name, needs = type(navigator).__name__, navigator.required
     briefings = briefings_of(worlds, needs, navigator.rehearsal)
@@ -96,16 +102,18 @@ def check_answer(make: Make, worlds: Worlds) -> None:
     with global_generators_untouched(name):
         _call(name, "reset", needs, navigator.reset, briefings, np.arange(len(briefings)))
     _unchanged(name, "briefing", before, [contents(briefing) for briefing in briefings])
-    for observation in observations_of(worlds, needs):
+    for observation in observations_of(worlds, needs, noise=noise):
         copy, shape = contents(observation), (*observation.active.shape, 2)
         with global_generators_untouched(name):
-            answer = _call(name, "act", needs, navigator.act, observation)
+            answer = _call(name, f"act{circumstance}", needs, navigator.act, observation)
         _unchanged(name, "observation", [copy], [contents(observation)])
         real = isinstance(answer, np.ndarray) and answer.dtype.kind in "iuf"
         require(real, f"{name}.act must return an array of real numbers. Got {answer!r} instead.")
         require(answer.shape == shape, f"{name}.act must return shape {shape}. Got {answer.shape}.")
         finite = np.isfinite(answer[observation.active]).all()
-        require(finite, f"{name}.act must return finite commands for all active agents.")
+        require(
+            finite, f"{name}.act must return finite commands for all active agents{circumstance}."
+        )
 
 
 def check_repeatable(make: Make, worlds: Worlds) -> None:
@@ -182,14 +190,20 @@ def check_map(make: Make, worlds: Worlds) -> None:
 
 
 def check_bodies(make: Make, worlds: Worlds) -> None:
-    """Check the commands for all bodies that the navigator drives, with limits of acceleration."""
+    """Check the commands for all bodies that the navigator drives, capsules too, with limits."""
     drives = make().drives
-    check_answer(make, tuple(with_bodies(world, drives) for world in worlds))
+    bodies = tuple(with_bodies(world, drives) for world in worlds)
+    check_answer(make, bodies, circumstance=" for every body that it drives")
+
+
+def check_noisy_senses(make: Make, worlds: Worlds) -> None:
+    """Check the commands with noisy senses: late and missing readings, a pose that drifts."""
+    check_answer(make, worlds, NOISE, circumstance=" with noisy senses")
 
 
 CHECKS: tuple[Callable[[Make, Worlds], None], ...] = (
     check_answer, check_repeatable, check_batch, check_order_of_agents,
-    check_rows, check_map, check_bodies,
+    check_rows, check_map, check_bodies, check_noisy_senses,
 )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from zlib import crc32
 
 import numpy as np
 
+from benchnav.arena.noise import Noise
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.navigation.briefing import Briefing, brief
@@ -19,6 +20,7 @@ from benchnav.navigation.navigator import Navigator, Need
 from benchnav.navigation.observation import Observation
 from benchnav.navigation.observe import deciding, observe
 from benchnav.navigation.tracks import granted_map
+from benchnav.sensors.noise.noisy_senses import NoisySenses
 from benchnav.testing.rehearsals import rehearsals_of
 from benchnav.world.simulation import Simulation
 
@@ -55,6 +57,7 @@ def observations_of(
     rows: IntArray | None = None,
     padding: int = 0,
     frames: int = FRAMES,
+    noise: Noise | None = None,
 ) -> list[Observation]:
     """Return successive observations of all agents of B worlds, with the sensors in ``needs``.
 
@@ -64,6 +67,7 @@ def observations_of(
         rows: (B,) the rows of the worlds; None: 0 … B-1.
         padding: number of additional columns of inactive agents.
         frames: number of observations, one decision apart.
+        noise: of the senses; None: they are exact.
     """
     simulation = Simulation(worlds)
     width = simulation.A + padding
@@ -71,15 +75,22 @@ def observations_of(
     for b, world in enumerate(worlds):
         chosen[b, : len(world.agents)] = np.arange(len(world.agents))
     maps = tuple(briefing.map for briefing in briefings_of(worlds, needs))
+    senses = None if noise is None else _noisy_senses(simulation, chosen, noise)
     observations = []
     for _ in range(frames):
         active = deciding(simulation, chosen)
-        observation = observe(simulation, chosen, active, needs, maps)
+        observation = observe(simulation, chosen, active, needs, maps, senses)
         if rows is not None:
             observation = replace(observation, rows=rows.copy())
         observations.append(observation)
         simulation.step(_script(simulation), np.zeros((simulation.B, simulation.A), np.bool_))
     return observations
+
+
+def _noisy_senses(simulation: Simulation, chosen: IntArray, noise: Noise) -> NoisySenses:
+    senses, rows = NoisySenses(simulation, chosen, noise), np.arange(simulation.B)
+    senses.begin(rows, np.stack([rows, rows], axis=1).astype(np.uint64))
+    return senses
 
 
 def _script(simulation: Simulation) -> FloatArray:

@@ -8,6 +8,7 @@ import numpy as np
 
 from benchnav.arena.agents import Agents, Dynamics, Role
 from benchnav.arena.body import Body, Law, LawKind
+from benchnav.arena.noise import EdgeNoise, NeighbourNoise, Noise, OdometryNoise, RayNoise
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arena.solid import Kind, Solid
 from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
@@ -21,6 +22,13 @@ USUAL = Sensing(
 )  # the defaults of scenarios
 CLOCK = Clock(dt=0.25, substeps=2, steps=200, decision_budget=1.0)
 RULES = Rules(0.3, ContactRule.SLIDE, Afterwards.VANISH, Afterwards.VANISH, Charge.HITTER)
+NOISE = Noise(
+    RayNoise(0.05, 0.05, dropout=0.2, approach_noise=0.3),
+    NeighbourNoise(0.2, 0.3, missed=0.3, false_alarms=0.5, field_of_view=4.0),
+    EdgeNoise(0.05, missed=0.2, field_of_view=4.0),
+    OdometryNoise(0.1, 0.1, 0.1, correction_period=1.0, correction_position_noise=0.2),
+    delay=1,
+)  # larger than that of scenarios, so that a few decisions show every error
 _CELL, _CELLS = 2.4, 5  # [m] size and number per side; objects do not reach the next cell
 
 
@@ -62,9 +70,13 @@ def _agents(rng: np.random.Generator, start: FloatArray, goal: FloatArray) -> Ag
 
 
 def with_bodies(world: World, drives: Collection[str]) -> World:
-    """Return the world with bodies of these dynamics in turn, and with limits of acceleration."""
+    """Return the world with bodies of these dynamics in turn, and with limits of acceleration.
+
+    Every second body, from the first on, is a capsule.
+    """
     names = [kind for kind in Dynamics if kind.name.lower().replace("_", "-") in drives]
     kinds = np.resize(np.array(names, np.int8), len(world.agents))
+    is_capsule, radius = np.arange(len(kinds)) % 2 == 0, world.agents.radius
     wheels, car = kinds == Dynamics.DIFFERENTIAL_DRIVE, kinds == Dynamics.ACKERMANN
     limits = {
         "max_acceleration": np.full(len(kinds), 1.0),
@@ -75,7 +87,10 @@ def with_bodies(world: World, drives: Collection[str]) -> World:
         "wheelbase": np.where(car, 0.3, 0.0),
         "max_steering_angle": np.where(car, 0.6, np.inf),
         "max_steering_rate": np.where(car, 2.0, np.inf),
-        "reverse": (kinds != Dynamics.HOLONOMIC) & (np.arange(len(kinds)) % 2 == 1),
+        "reverse": (kinds != Dynamics.HOLONOMIC) & ~is_capsule,
+        "half_length": np.where(is_capsule, radius, 0.0),
+        "half_width": np.where(is_capsule, 0.6 * radius, 0.0),
+        "rounding": np.where(is_capsule, 0.6 * radius, 0.0),
     }
     return replace(world, agents=replace(world.agents, dynamics=kinds, **limits))
 

@@ -17,7 +17,7 @@ from benchnav.navigation.observe import deciding
 from benchnav.navigation.rehearsal import Rehearsal
 from benchnav.runner.rollouts.navigator_driver import Driver
 from benchnav.runner.rollouts.rollout import Assignment, drivers_of
-from benchnav.runner.rollouts.seeding import generator
+from benchnav.runner.rollouts.seeding import generator, noise_key
 from benchnav.verify.resimulation import unfit
 from benchnav.world.simulation import Simulation
 
@@ -80,7 +80,7 @@ def _recorded(
     """Return the maps, or the first time at which a command is not the stored one."""
     simulation, navigator = driver.simulation, driver.navigator
     about = (assignment.salt, assignment.scenario_hash, assignment.split, episode.identity.seed)
-    driver.reset([generator(*about, 0)])
+    driver.reset([generator(*about, 0)], noise_key(*about)[None])
     places = {int(agent): n for n, agent in enumerate(driver.chosen[0])}
     own = [int(agent) for agent in agents if int(agent) in places]
     kept: dict[int, list[tuple[int, Map]]] = {agent: [] for agent in own}

@@ -102,6 +102,26 @@ class Sociable(Good):
         return super().act(observation) * len(observation)
 
 
+class DiscsOnly(Good):
+    needs = frozenset({Need.NEIGHBOURS})
+
+    def act(self, observation):
+        is_disc = observation.neighbours.rounding[:, :, :1] == 0.0
+        return np.where(is_disc, super().act(observation), np.nan)
+
+
+class Trusting(AgentNavigator):
+    def act_agent(self, view, briefing):
+        before = view.state.get("position", view.position)
+        view.state["position"] = view.position.copy()
+        if (
+            np.hypot(*(view.position - before))
+            > briefing.max_speed[view.agent] * briefing.dt + 1e-9
+        ):
+            raise LookupError("it jumped")
+        return view.goal - view.position
+
+
 class Padded(Good):
     def act(self, observation):
         return super().act(observation) * observation.active.shape[1]
@@ -186,6 +206,12 @@ def test_a_sound_navigator_passes(good):
         (Forgetful, "Forgetful must answer the same after a second reset with the same"),
         (Impatient, "Impatient must answer the same in another instance."),
         (Sociable, "Sociable must answer the same for a world alone as in a batch."),
+        (
+            DiscsOnly,
+            "DiscsOnly.act must return finite commands for all active agents for every body that"
+            " it drives.",
+        ),
+        (Trusting, "Trusting.act with noisy senses must work with what it needs (nothing)"),
         (Padded, "Padded must answer the same for a world alone as in a batch."),
         (Positional, "Positional must answer the same for a world alone as in a batch."),
         (Ranked, "Ranked must answer the same whatever the order of agents."),

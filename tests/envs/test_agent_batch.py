@@ -21,7 +21,7 @@ from benchnav.runner.rollouts.rollout import Assignment, rollout
 from benchnav.scenario.catalogue import find
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
-from tests.worlds import agents, random_world, walls, world
+from tests.worlds import agents, limited_world, random_world, walls, world
 
 SENSORS = frozenset({"rays", "neighbours", "edges"})
 
@@ -132,6 +132,33 @@ def decide(batch, rng):
     """(B, A, 2) actions roughly at the goal."""
     s = batch.simulation
     return np.clip(steering(s.position, s.goal, s.heading, rng) * [0.6, 0.4], -1, 1)
+
+
+def speeds(pool, actions, **more):
+    """(N,) [m/s] that each agent of the first world is commanded to drive by its ``actions``."""
+    batch = batch_of(pool, 1, **more)
+    batch.reset(np.zeros(1, np.int64))
+    action = np.stack([np.asarray(actions, np.float32), np.zeros(len(actions), np.float32)], -1)
+    return batch._commands(action[None])[0, :, 0]
+
+
+def test_actions_reach_full_speed_backwards_for_bodies_that_can_reverse():
+    pool = [limited_world(2)]  # 2 m/s; all but the first agent can reverse
+    np.testing.assert_array_equal(speeds(pool, [-1, -1, -1, -1]), [0.0, -2.0, -2.0, -2.0])
+    np.testing.assert_array_equal(speeds(pool, [0, 0, 0.5, 1]), [1.0, 0.0, 1.0, 2.0])
+    forward = speeds(pool, [-1, 0, 0.5, 1], reverse=False)
+    np.testing.assert_array_equal(forward, [0.0, 1.0, 1.5, 2.0])
+
+
+def test_a_body_that_can_reverse_drives_backwards_in_training():
+    batch = batch_of([limited_world(2)], 1)
+    batch.reset()
+    for _ in range(3):
+        batch.step(np.full((1, batch.width, 2), [-1.0, 0.0]))
+    s = batch.simulation
+    ahead = np.cos(s.heading) * s.velocity[..., 0] + np.sin(s.heading) * s.velocity[..., 1]
+    np.testing.assert_array_less(ahead[0, 1:], -0.1)
+    assert ahead[0, 0] > -1e-9
 
 
 @pytest.mark.parametrize("scenario", ["leaders/dynamic", "corridor/bidirectional"])

@@ -42,7 +42,7 @@ def test_an_unknown_perception():
     with pytest.raises(UsageError) as raised:
         make_batch("leaders/dynamic", "ego", "train", 2, None, perception="noise")
     assert str(raised.value) == (
-        "The perception must be exact or noisy. Got 'noise' instead. Did you mean 'noisy'?"
+        "A perception must be one of exact, noisy. Got 'noise' instead. Did you mean 'noisy'?"
     )
 
 

@@ -15,14 +15,14 @@ from benchnav.isolation.observation_codec import (
     encode_observation,
 )
 from benchnav.navigation.map import Map
-from benchnav.navigation.navigator import Need
+from benchnav.navigation.navigator import ALL_DYNAMICS, Need
 from benchnav.navigation.randomness.agent_streams import agent_streams
 from benchnav.navigation.randomness.briefing_seed import hashed_generator, seed_bytes
 from benchnav.navigation.rehearsal import Rehearsal
 from benchnav.runner.rollouts.seeding import generator
 from benchnav.testing.observations import briefings_of as scene_briefings
 from benchnav.testing.observations import observations_of
-from benchnav.testing.scenes import scene
+from benchnav.testing.scenes import scene, with_bodies
 from tests.worlds import box, disc, walls
 
 EVERYTHING = frozenset(Need)
@@ -137,7 +137,19 @@ def test_what_was_drawn_from_before_goes_on_and_is_not_repeated():
 @pytest.mark.parametrize("needs", [EVERYTHING, frozenset(), frozenset({Need.RAYS})])
 def test_observations_come_back(needs):
     worlds = (scene(1, 3), scene(2, 5), scene(3, 1))
-    for observation in observations_of(worlds, needs):
+    come_back(observations_of(worlds, needs))
+
+
+def test_observations_of_cars_and_capsules_come_back():
+    worlds = [with_bodies(scene(seed, 4), ALL_DYNAMICS) for seed in range(3)]
+    seen = observations_of(worlds, EVERYTHING)
+    assert seen[-1].steering.any()
+    assert seen[-1].neighbours.rounding.any()
+    come_back(seen)
+
+
+def come_back(observations):
+    for observation in observations:
         shown = replace(observation, maps=tuple(maps()[:3]))
         held = dict(zip(shown.rows.tolist(), shown.maps, strict=True))
         same(shown, decode_observation(through(encode_observation(shown, ())), held), "observation")

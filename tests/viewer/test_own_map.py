@@ -196,3 +196,11 @@ def test_the_page_gives_the_reason(mapped, world, tmp_path):
       return document.querySelector(".side").textContent;
     """, tmp_path)  # fmt: skip
     assert "is not shown: its commands differ from the stored ones at t = 0.0 s." in text
+
+
+def test_maps_of_a_noisy_episode():
+    drawn = benchnav.load_scenario("trap/u").world(seed=0)
+    episode = benchnav.simulate(
+        drawn, "mapping+visibility+orca", track="unknown", salt="00", perception="noisy"
+    )
+    assert len(own_maps(episode.origin, episode.record, ALL[:1]).maps[0]) > 1

@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from benchnav.drawing.palette import agent_color
 from benchnav.episode.episode import Status
 from benchnav.errors import StoreError, UsageError
 from benchnav.metrics.quantities.episode_analysis import analyse
-from benchnav.navigation import Navigator
+from benchnav.navigation import Navigator, Need
 from benchnav.viewer.replay.clearance import clearance
 from benchnav.viewer.replay.packing import packed, unpacked
 from benchnav.viewer.replay.page import replay_page
@@ -200,3 +201,61 @@ def test_an_episode_without_a_decision_is_shown(tmp_path, suffix):
     assert failed.failure
     assert len(failed.record.position) == 1
     assert failed.replay().save(tmp_path / f"a{suffix}").stat().st_size > 0
+
+
+class Witness(Navigator):
+    """Records what it perceives while it drives to its goal."""
+
+    needs = frozenset({Need.RAYS, Need.NEIGHBOURS, Need.EDGES})
+    seen: ClassVar = []
+
+    def act(self, observation):
+        self.seen.append(observation)
+        return observation.goal - observation.position
+
+
+def in_body(vector, heading):
+    """Vectors (…, 2) in the frame of a body."""
+    c, s = np.cos(heading), np.sin(heading)
+    x, y = vector[..., 0], vector[..., 1]
+    return np.stack([c * x + s * y, c * y - s * x], axis=-1)
+
+
+def test_senses_of_a_noisy_episode_are_those_of_the_navigator():
+    world = benchnav.load_scenario("leaders/dynamic").world(seed=3)
+    Witness.seen.clear()
+    played = benchnav.simulate(world, Witness, perception="noisy", salt="07")
+    record = played.record
+    agents = np.flatnonzero(record.world.agents.evaluated)[1:]
+    found = sensed(record, agents, played.origin().assignment)
+    assert found.noisy
+    astray = 0  # places where nothing is
+    for t, seen in enumerate(Witness.seen):
+        for n, agent in enumerate(agents):
+            if not seen.active[0, agent]:
+                continue
+            np.testing.assert_array_equal(found.distance[t, n], seen.rays.distance[0, agent])
+            count = seen.neighbours.count[0, agent]
+            own, body = seen.position[0, agent], record.position[t, agent]
+            np.testing.assert_allclose(
+                in_body(found.places[t, n, :count] - body, record.heading[t, agent]),
+                in_body(seen.neighbours.position[0, agent, :count] - own, seen.heading[0, agent]),
+                atol=1e-9,
+            )
+            truth = np.concatenate([record.position[t], record.body_position[t]])
+            apart = np.linalg.norm(found.places[t, n, :count, None] - truth[None], axis=-1)
+            astray += int((apart.min(axis=1, initial=9.0) > 0.1).sum())
+    assert astray > 0
+
+
+def test_a_replay_says_whether_its_readings_have_noise():
+    world = benchnav.load_scenario("leaders/dynamic").world(seed=3)
+    played = benchnav.simulate(world, "orca", perception="noisy", salt="07")
+    agents = interesting(played.record)
+    noisy = scene(played.record, agents, played.origin)["senses"]
+    assert noisy["noisy"]
+    assert "places" in noisy
+    for origin in (None, lambda: "packs are not trusted"):
+        exact = scene(played.record, agents, origin)["senses"]
+        assert not exact["noisy"]
+        assert "places" not in exact

@@ -101,7 +101,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         return seen[0, self.agent].copy(), {"world": world, "agent": chosen}
 
     def step(self, action: Float32Array) -> tuple[Float32Array, float, bool, bool, dict[str, Any]]:
-        """Execute one decision. ``action`` (2,) in [-1, 1]: speed from 0 to the limit, turn rate.
+        """Execute one decision. ``action`` (2,) in [-1, 1]: speed, turn rate.
 
         ``info`` contains the reward's ``terms`` before scaling, and ``is_success``: the agent
         arrived without a contact. Raises UsageError if the attempt is over.

@@ -1,4 +1,8 @@
-"""The preloading of modules and kernels in the fork server, before it forks."""
+"""The preloading of modules and kernels in the fork server, before it forks.
+
+The kernels of the step contain all dynamics and footprints. Those of noisy senses are left out,
+because most runs do not use them: the first noisy run compiles them, or `doctor --warm`.
+"""
 
 import gc
 import os

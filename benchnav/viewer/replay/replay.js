@@ -575,16 +575,22 @@ class View {
       for (let s = 0; s < slots; s++) {
         const seen = this.exact(senses.neighbours, n * slots + s, k);
         if (seen < 0) continue;
-        const [nx, ny] =
-          seen < this.count
-            ? this.at(seen, Math.floor(k))
-            : this.bodyAt(seen - this.count, Math.floor(k));
+        const [nx, ny] = this.neighbourAt(seen, n * slots + s, k);
         c.moveTo(x, y);
         c.lineTo(nx, ny);
       }
       c.stroke();
       c.setLineDash([]);
     }
+  }
+
+  /** Where a neighbour was perceived: with noise, beside its place, or where there is none. */
+  neighbourAt(seen, slot, k) {
+    const places = this.scene.senses.places;
+    if (places) return [0, 1].map((axis) => this.exact(places, 2 * slot + axis, k));
+    return seen < this.count
+      ? this.at(seen, Math.floor(k))
+      : this.bodyAt(seen - this.count, Math.floor(k));
   }
 
   drawContacts(c, pixel, time) {
@@ -812,8 +818,10 @@ class Replay {
     const items = lines.map(([, kind, text]) =>
       element("li", {}, element("i", { class: kind }), element("span", {}, text)),
     );
-    const noisy = this.views.some((view) => view.scene.perception !== "exact");
-    const note = noisy ? [element("p", {}, "Without the noise that the navigator met.")] : [];
+    const noisy = this.views.filter((view) => view.scene.perception !== "exact");
+    const known = noisy.every((view) => view.scene.senses?.noisy);
+    const text = `${known ? "With" : "Without"} the noise that the navigator met.`;
+    const note = noisy.length ? [element("p", {}, text)] : [];
     const list = element("ul", { class: "legend" }, ...items);
     return [element("h2", {}, "Sensor readings"), ...note, list];
   }

@@ -11,11 +11,13 @@ from benchnav.arena.world import World
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.drawing.palette import TEAMS, color_number
 from benchnav.episode.episode import Contacts, Episode, Status
+from benchnav.errors import BenchnavError
 from benchnav.metrics.attempt_ends import attempt_ends, partner_text
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.navigation.tracks import granted_map
+from benchnav.runner.rollouts.rollout import Assignment
 from benchnav.scenario.condition import condition
-from benchnav.verify.own_map import Origin, OwnMaps, map_changes, own_maps
+from benchnav.verify.own_map import Origin, OwnMaps, Production, map_changes, own_maps
 from benchnav.viewer.replay.clearance import clearance
 from benchnav.viewer.replay.packing import packed
 from benchnav.viewer.replay.senses import Senses, sensed
@@ -31,7 +33,7 @@ def scene(episode: Episode, agents: IntArray, origin: Origin | None = None) -> d
     Args:
         episode: the episode.
         agents: (n,) whose sensor readings, charts and own maps are held.
-        origin: how the episode was made; None: own maps are left out.
+        origin: how the episode was made; None: own maps and the noise of readings are left out.
     """
     world, identity = episode.world, episode.identity
     return {
@@ -50,9 +52,18 @@ def scene(episode: Episode, agents: IntArray, origin: Origin | None = None) -> d
         "body_position": packed(episode.body_position, MILLIMETRE),
         "events": events(episode),
         "charts": _charts(episode, agents),
-        "senses": _senses(sensed(episode, agents), len(agents)),
+        "senses": _senses(sensed(episode, agents, _assignment(origin)), len(agents)),
         "own_map": None if origin is None else _own_map(own_maps(origin, episode, agents)),
     }  # fmt: skip
+
+
+def _assignment(origin: Origin | None) -> Assignment | None:
+    """Return the assignment of the episode; None if it is unknown."""
+    try:
+        made = None if origin is None else origin()
+    except BenchnavError:  # a part of the run is missing or damaged
+        return None
+    return made.assignment if isinstance(made, Production) else None
 
 
 def interesting(episode: Episode) -> IntArray:
@@ -177,13 +188,18 @@ def _senses(found: Senses | None, agents: int) -> dict[str, Any] | None:
     """Return the readings as JSON; None: the episode cannot be simulated again."""
     if found is None or not agents:
         return None
-    out: dict[str, Any] = {"angle": _numbers(found.angle), "edge_table": _numbers(found.edge_table)}
+    out: dict[str, Any] = {
+        "angle": _numbers(found.angle), "edge_table": _numbers(found.edge_table),
+        "noisy": found.noisy,
+    }  # fmt: skip
     if found.distance is not None and found.kind is not None:
         out["distance"] = packed(found.distance, 0.01)
         out["hit"] = packed(found.kind)
     for name, rows in (("neighbours", found.neighbours), ("edges", found.edges)):
         if rows is not None:
             out[name] = packed(rows)
+    if found.places is not None:
+        out["places"] = packed(found.places.reshape(*found.places.shape[:2], -1), 0.01)
     if found.probability is not None:
         out["probability"] = packed(found.probability, 0.01)
     return out

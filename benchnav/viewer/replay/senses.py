@@ -1,6 +1,6 @@
 """The sensor readings of some agents of a stored episode, from its stored commands."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -8,7 +8,11 @@ from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.envs.collision_probability import collision_probability
 from benchnav.episode.episode import Episode
+from benchnav.geometry.rotation import cos_sin
 from benchnav.navigation.observe import deciding
+from benchnav.runner.rollouts.rollout import Assignment
+from benchnav.runner.rollouts.seeding import noise_key
+from benchnav.sensors.noise.noisy_senses import NoisySenses
 from benchnav.sensors.readings import Edges, Neighbours, Rays
 from benchnav.sensors.sense import EDGES, NEIGHBOURS, RAYS, ray_angles, sense
 from benchnav.verify.resimulation import unfit
@@ -26,20 +30,26 @@ class Senses:
     distance: FloatArray | None  # (T+1, n, R) [m]
     kind: AnyArray | None  # (T+1, n, R) of Kind
     neighbours: IntArray | None  # (T+1, n, K) agent index, or A + body index; -1: empty
+    places: FloatArray | None  # (T+1, n, K, 2) [m] of the neighbours with noise; None: exact
     edges: IntArray | None  # (T+1, n, E) row of `edge_table`; -1: empty
     edge_table: FloatArray  # (N, 4) [m] x, y of the start and of the end
     probability: FloatArray | None  # (T+1, n) of a collision (Eq. 24), with any sensed neighbour
+    noisy: bool  # whether the noise of noisy perception is included
 
 
-def sensed(episode: Episode, agents: IntArray) -> Senses | None:
+def sensed(
+    episode: Episode, agents: IntArray, assignment: Assignment | None = None
+) -> Senses | None:
     """Return what ``agents`` (n,) sensed, or None if the episode cannot be stepped again.
 
-    The episode is simulated again, so the readings are those that the navigator had, without the
-    noise of noisy perception.
+    The episode is simulated again, so the readings are those that the navigator had. In the
+    perception track `noisy`, they have noise if the ``assignment`` of the episode is given and all
+    of ``agents`` are evaluated; they are placed relative to the true pose, as seen from the body.
     """
     if not len(agents) or unfit(episode.world, episode):
         return None
     simulation = Simulation([episode.world])
+    noise = _noise(episode, simulation, agents, assignment)
     twist = np.asarray(episode.twist)[None]
     needs = frozenset((RAYS, NEIGHBOURS, EDGES))
     steps = len(episode.requested)
@@ -47,7 +57,11 @@ def sensed(episode: Episode, agents: IntArray) -> Senses | None:
     for t in range(steps + 1):
         active = deciding(simulation, agents[None])
         chosen = np.where(active, agents, -1)
-        readings.append((*sense(simulation, chosen, needs), *_motion(simulation, agents)))
+        if noise is None:
+            found = sense(simulation, chosen, needs)
+        else:
+            found = _seen_from_bodies(noise, simulation, noise.sense(active, needs), agents)
+        readings.append((*found, *_motion(simulation, agents)))
         if t < steps:
             simulation.step(episode.requested[t][None], twist)
     rays, neighbours, edges, position, velocity = zip(*readings, strict=True)
@@ -60,9 +74,51 @@ def sensed(episode: Episode, agents: IntArray) -> Senses | None:
         angle=ray_angles(sensing.rays) if sensing.rays is not None else np.zeros(0),
         distance=distance, kind=kind,
         neighbours=_neighbours(episode, seen),
+        places=np.stack([n.position[0] for n in seen]) if noise is not None and seen else None,
         edges=rows, edge_table=table,
         probability=_probability(episode, agents, seen, position, velocity),
+        noisy=noise is not None,
     )  # fmt: skip
+
+
+def _noise(
+    episode: Episode, simulation: Simulation, agents: IntArray, assignment: Assignment | None
+) -> NoisySenses | None:
+    """Return the noise that the agents met; None if there was none, or it is unknown."""
+    made = assignment
+    if made is None or made.noise is None or not episode.world.agents.evaluated[agents].all():
+        return None
+    senses, identity = NoisySenses(simulation, agents[None], made.noise), episode.identity
+    key = noise_key(made.salt, made.scenario_hash, made.split, identity.seed, identity.rehearsal)
+    senses.begin(np.zeros(1, np.int64), key[None])
+    return senses
+
+
+def _seen_from_bodies(
+    noise: NoisySenses, simulation: Simulation,
+    readings: tuple[Rays | None, Neighbours | None, Edges | None], agents: IntArray,
+) -> tuple[Rays | None, Neighbours | None, Edges | None]:  # fmt: skip
+    """Return readings in odometry frames as they lie about the true poses, in the world frame."""
+    rays, neighbours, edges = readings
+    error, origin = noise.pose_error[0], simulation.position[0, agents]
+    turns = np.array([cos_sin(-angle) for angle in error[:, 2]])
+    c, s = turns[None, :, :1], turns[None, :, 1:]
+
+    def turned(vector: FloatArray) -> FloatArray:  # (1, n, K, 2)
+        x, y = vector[..., 0], vector[..., 1]
+        return np.stack([c * x - s * y, s * x + c * y], axis=-1)
+
+    def placed(point: FloatArray) -> FloatArray:
+        place: FloatArray = origin[:, None] + turned(point - (origin + error[:, :2])[:, None])
+        return place
+
+    if neighbours is not None:
+        neighbours = replace(
+            neighbours, position=placed(neighbours.position), velocity=turned(neighbours.velocity)
+        )
+    if edges is not None:
+        edges = replace(edges, start=placed(edges.start), end=placed(edges.end))
+    return rays, neighbours, edges
 
 
 def _motion(simulation: Simulation, agents: IntArray) -> tuple[FloatArray, FloatArray]:

@@ -73,5 +73,5 @@ def _pool(recipe: Recipe, name: str, split: str, count: int) -> Pool:
 def _batch(recipe: Recipe, pool: Pool, rows: int) -> AgentBatch:
     return AgentBatch(
         pool.worlds, rows, encoder(recipe.encoder), RewardWeights(), np.random.default_rng(0),
-        drivers=pool.drivers, noise=pool.noise,
+        drivers=pool.drivers, noise=pool.noise, reverse=False,  # as `PolicyPilot` drives
     )  # fmt: skip
