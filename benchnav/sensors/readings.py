@@ -41,6 +41,11 @@ class Rays(Rows):
     kind: ByteArray  # (B, A, R) of Kind: NOTHING, AGENT, WALL, STATIC, DYNAMIC
     approach: FloatArray  # (B, A, R) [m/s] of the hit dynamic obstacle, towards the agent, else 0
     goal: FloatArray  # (B, A, R) [m] along the ray to the agent's goal; inf if missed or hidden
+    radius: FloatArray = _ZERO  # (B, A) [m] of the disc that is cast along a ray; thin: 0
+
+    def __post_init__(self) -> None:
+        if self.radius is None:
+            object.__setattr__(self, "radius", np.zeros(self.distance.shape[:-1]))
 
 
 @dataclass(frozen=True, eq=False)

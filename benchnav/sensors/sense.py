@@ -96,16 +96,16 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
     shape = (*chosen.shape, len(angle))
     out = Rays(
         angle, np.full(shape, float(sensor.range)), np.zeros(shape, np.int8), np.zeros(shape),
-        np.full(shape, np.inf),
+        np.full(shape, np.inf), np.zeros(chosen.shape),
     )  # fmt: skip
     padded = np.concatenate([angle, np.full(-len(angle) % 8, angle[-1])])
     fan_x, fan_y = np.array([cos_sin(a) for a in padded]).T.copy()
     s = simulation
     run_rows(
-        cast_rays, chosen.size, chosen, fan_x, fan_y, float(sensor.range), sensor.thick, side,
-        s.widest, s.most_shapes, s.sees, s.records, s.agents, s.bodies, s.shapes, s.capsules,
+        cast_rays, chosen.size, chosen, fan_x, fan_y, float(sensor.range), int(sensor.circle),
+        side, s.widest, s.most_shapes, s.sees, s.records, s.agents, s.bodies, s.shapes, s.capsules,
         s.start, s.item, s.hashed, s.spots, out.distance, out.kind, out.approach, out.goal,
-        least=LEAST,
+        out.radius, least=LEAST,
     )  # fmt: skip
     return out
 
