@@ -20,9 +20,7 @@ class RaySensor:
     fan: float  # [rad] angle between the outermost rays; 2 pi spreads them evenly all round
     range: float  # [m]
     thick: bool  # True: sphere casts of the agent's own body
-    circumscribed: bool = (
-        False  # of a body that is not a disc, thick rays cast the circle around it
-    )
+    circumscribed: bool = False  # thick rays cast the circle around a footprint, not that within
 
     @property
     def circle(self) -> RayCircle:

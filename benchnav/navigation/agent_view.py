@@ -42,7 +42,7 @@ class AgentView:
 
     @property
     def rays(self) -> Rays | None:
-        """The rays of this agent: arrays (R,), one radius. None if the navigator does not need rays."""
+        """The rays of this agent: arrays (R,), one radius. None if it does not need rays."""
         sensed, at = self.observation.rays, self._at
         if sensed is None:
             return None

@@ -43,8 +43,9 @@ def cast_rays(
     """Cast rays for rows low:high of the flattened (B, chosen agents); outputs are (B, An, R).
 
     ``fan_x``, ``fan_y``: unit vectors in the agent's frame, padded by repetition to a
-    multiple of 8; ``circle`` (`RayCircle`) is cast; ``side`` [m] of the hashed cells; ``widest`` radius of an agent;
-    ``most_shapes``: capsules of the bodies of one world; ``sees`` (B, teams, teams).
+    multiple of 8; ``circle``: the `RayCircle` that is cast; ``side`` [m] of the hashed cells;
+    ``widest`` radius of an agent; ``most_shapes``: capsules of the bodies of one world;
+    ``sees`` (B, teams, teams).
     """
     things = np.empty((sight.FEW + 2 * agents.shape[1] + most_shapes, 11))  # room for everything
     best, hit = np.empty(len(fan_x)), np.empty(len(fan_x), np.int64)

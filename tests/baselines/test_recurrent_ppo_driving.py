@@ -76,7 +76,7 @@ def test_sightings_agree_with_their_twin(shown):
 
 
 def test_who_is_not_met_again_is_forgotten(shown):
-    told, views, bodies = shown
+    told, views, _ = shown
     mine = begun(Sightings(), told)
     before = mine.limit(views[0]).neighbours.count.sum()
     assert before > 0
