@@ -24,6 +24,7 @@ from benchnav.viewer.replay.packing import packed, unpacked
 from benchnav.viewer.replay.page import replay_page
 from benchnav.viewer.replay.scene import events, interesting, scene
 from benchnav.viewer.replay.senses import sensed
+from tests.world.test_footprint import core, crowded, fixed_core
 
 
 @pytest.fixture(scope="module")
@@ -75,6 +76,24 @@ def test_the_smallest_clearance_is_that_of_the_metric(episode):
         least = clearance(episode, agent)[: last[agent] + 1].min()
         # the metric also looks between states, where an agent moves at most 0.4 m
         assert expected[agent] - 1e-9 <= least <= expected[agent] + 0.4
+
+
+def test_the_clearance_of_a_body_that_is_not_a_disc_is_that_of_its_shape():
+    world = crowded(3, 4, side=12.0)
+    record = benchnav.simulate(world, "orca", track="unknown", salt="00").record
+    fixed = [fixed_core(solid) for solid in world.solids]
+    near = 0
+    for t in range(0, len(record.position), 7):
+        bodies = [
+            core(world.agents, i, record.position[t, i], record.heading[t, i]) for i in range(4)
+        ]
+        for agent in range(4):
+            shape, radius = bodies[agent]
+            others = [*fixed, *(bodies[j] for j in range(4) if j != agent)]
+            least = min(shape.distance(other) - radius - r for other, r in others)
+            assert clearance(record, agent)[t] == pytest.approx(least, abs=1e-6)
+            near += least < world.agents.radius[agent] - 0.4
+    assert near > 0
 
 
 def test_senses_are_those_of_the_navigator(episode):
