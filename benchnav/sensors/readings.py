@@ -58,16 +58,15 @@ class Neighbours(Rows):
     kind: ByteArray  # (B, A, K) Kind.AGENT or Kind.DYNAMIC
     count: IntArray  # (B, A) valid entries
     # the shape of an agent that is not a disc: a rectangle with rounded corners; else all are zero,
-    # and the body is a disc of `radius`
+    # and the body is a disc of `radius`; all four arrays are given, or none
     heading: FloatArray = _ZERO  # (B, A, K) [rad]
     half_length: FloatArray = _ZERO  # (B, A, K) [m] half the extent along the heading
     half_width: FloatArray = _ZERO  # (B, A, K) [m] half the extent across the heading
     rounding: FloatArray = _ZERO  # (B, A, K) [m] radius of the corners
 
     def __post_init__(self) -> None:
-        for name in FORM:
-            if getattr(self, name) is None:
-                object.__setattr__(self, name, np.zeros(self.radius.shape))
+        if self.rounding is None:
+            vars(self).update(dict.fromkeys(FORM, np.zeros(self.radius.shape)))
 
 
 @dataclass(frozen=True, eq=False)
