@@ -73,7 +73,7 @@ def random_world(
     """A walled square with boxes, discs and movers; agents start free of everything.
 
     ``unicycle`` may be any number of `Dynamics`, or one for each agent, and ``limits`` holds
-    columns of `MotionLimits`.
+    columns of `AgentBodies`.
     """
     rng = np.random.default_rng(seed)
     solids, taken = [walls(20.0)], []

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import IntEnum
 
-from benchnav.arena.motion_limits import MotionLimits
+from benchnav.arena.agent_bodies import AgentBodies
 from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 
 
@@ -24,7 +24,7 @@ class Role(IntEnum):
 
 
 @dataclass(frozen=True, eq=False)
-class Agents(MotionLimits):
+class Agents(AgentBodies):
     """Starts, goals, bodies and drivers of the agents."""
 
     start: FloatArray  # (A, 2) [m]

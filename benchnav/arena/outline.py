@@ -4,13 +4,13 @@ import math
 
 import numpy as np
 
-from benchnav.arena.motion_limits import MotionLimits
+from benchnav.arena.agent_bodies import AgentBodies
 from benchnav.arrays import FloatArray
 
 _ARC = 8  # pieces of a rounded corner
 
 
-def outline(agents: MotionLimits, a: int) -> FloatArray | None:
+def outline(agents: AgentBodies, a: int) -> FloatArray | None:
     """Return the outline (V, 2) [m] of body a about its centre, heading along +x; None: a disc."""
     r = float(agents.rounding[a])
     if r == 0.0:

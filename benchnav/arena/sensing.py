@@ -1,6 +1,15 @@
 """The sensors of the agents of a world, and their limits."""
 
 from dataclasses import dataclass
+from enum import IntEnum
+
+
+class RayCircle(IntEnum):
+    """The circle of the body that is cast along a ray."""
+
+    POINT = 0  # none: a thin ray
+    INSCRIBED = 1  # the largest circle within the footprint
+    CIRCUMSCRIBED = 2  # the smallest circle around the footprint
 
 
 @dataclass(frozen=True)
@@ -10,7 +19,19 @@ class RaySensor:
     count: int
     fan: float  # [rad] angle between the outermost rays; 2 pi spreads them evenly all round
     range: float  # [m]
-    thick: bool  # True: sphere casts of the agent's own radius
+    thick: bool  # True: sphere casts of the agent's own body
+    circumscribed: bool = False  # thick rays cast the circle around a footprint, not that within
+
+    @property
+    def circle(self) -> RayCircle:
+        """The circle that is cast."""
+        if not self.thick:
+            return RayCircle.POINT
+        return RayCircle.CIRCUMSCRIBED if self.circumscribed else RayCircle.INSCRIBED
+
+    def left_out(self) -> frozenset[str]:
+        """Return the names of the fields that are not hashed or stored: added, and at default."""
+        return frozenset() if self.circumscribed else frozenset({"circumscribed"})
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,9 @@ from zlib import crc32
 
 import numpy as np
 
+from benchnav.arena.agent_bodies import PLAIN_BODY
 from benchnav.arena.agents import Agents, Dynamics, Role
 from benchnav.arena.body import Body
-from benchnav.arena.motion_limits import NO_LIMIT
 from benchnav.arena.noise import EdgeNoise, NeighbourNoise, Noise, OdometryNoise, RayNoise
 from benchnav.arena.sensing import EdgeSensor, NeighbourSensor, RaySensor, Sensing
 from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
@@ -28,7 +28,7 @@ from benchnav.scenario.sampling.packing import most_that_fit
 from benchnav.scenario.sampling.sampler import sample
 from benchnav.scenario.scenario import Scenario
 from benchnav.scenario.team import RegionStart, Team
-from benchnav.scenario.terms import SPLITS
+from benchnav.scenario.terms import SPLITS, Rays
 from benchnav.text.plural import counted
 
 MAX_ATTEMPTS = 100
@@ -226,9 +226,9 @@ def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, AnyA
 
 
 def _limits(team: Team, count: int, rng: np.random.Generator) -> dict[str, AnyArray]:
-    """Draw the columns (count,) of `MotionLimits` that the team gives."""
+    """Draw the columns (count,) of `AgentBodies` that the team gives."""
     drawn: dict[str, AnyArray] = {}
-    for name in NO_LIMIT:
+    for name in PLAIN_BODY:
         limit = getattr(team, name, getattr(team.dynamics, name, None))
         if isinstance(limit, bool):
             drawn[name] = np.full(count, limit)
@@ -247,7 +247,7 @@ def _assemble(scenario: Scenario, crowd: Crowd, columns: list[dict[str, AnyArray
 
     def column(name: str) -> AnyArray:
         parts = [part.get(name) for part in columns]
-        missing = NO_LIMIT.get(name)
+        missing = PLAIN_BODY.get(name)
         return np.concatenate(
             [
                 np.full(size, missing) if part is None else part
@@ -270,7 +270,7 @@ def _assemble(scenario: Scenario, crowd: Crowd, columns: list[dict[str, AnyArray
         dynamics=np.repeat(np.array(dynamics, np.int8), sizes),
         role=np.repeat(np.array(roles, np.int8), sizes),
         team=team, driver=np.repeat(np.array(drivers, np.int64), sizes),
-        **{name: column(name) for name in NO_LIMIT},
+        **{name: column(name) for name in PLAIN_BODY},
     )  # fmt: skip
 
 
@@ -307,11 +307,16 @@ def sensing_of(scenario: Scenario) -> Sensing:
     """Return the sensors in every world of ``scenario``."""
     s = scenario.sensing
     return Sensing(
-        None if s.rays is None else RaySensor(**s.rays.model_dump()),
+        None if s.rays is None else _ray_sensor(s.rays),
         None if s.neighbours is None else NeighbourSensor(**s.neighbours.model_dump()),
         None if s.edges is None else EdgeSensor(**s.edges.model_dump()),
         s.occlusion,
     )
+
+
+def _ray_sensor(rays: Rays) -> RaySensor:
+    around = rays.thickness == "circumscribed"
+    return RaySensor(rays.count, rays.fan, rays.range, rays.thick, around)
 
 
 def noise_of(scenario: Scenario) -> Noise:

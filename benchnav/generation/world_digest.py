@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arena.motion_limits import MotionLimits
 from benchnav.arena.world import World
 from benchnav.generation.build import build
 from benchnav.scenario.scenario import Scenario
@@ -29,7 +28,7 @@ def _chunks(part: Any) -> Iterator[bytes]:
         yield f"{part.dtype.str}{part.shape}".encode()
         yield np.ascontiguousarray(part).tobytes()
     elif is_dataclass(part):
-        out = part.without_limit() if isinstance(part, MotionLimits) else frozenset({"redraws"})
+        out = part.left_out() if hasattr(part, "left_out") else frozenset({"redraws"})
         for item in fields(part):
             if item.name not in out:
                 yield item.name.encode()

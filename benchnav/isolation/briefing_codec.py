@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arena.motion_limits import NO_LIMIT
+from benchnav.arena.agent_bodies import PLAIN_BODY
 from benchnav.arrays import IntArray
 from benchnav.isolation.map_codec import decode_maps, encode_maps
 from benchnav.isolation.ragged_codec import counts, slices
@@ -32,7 +32,7 @@ def encode_briefings(briefings: Sequence[Briefing], rows: IntArray) -> dict[str,
         values = [getattr(briefing, name) for briefing in briefings]
         fields[name] = np.array([np.nan if v is None else v for v in values], float)
     fields["agents"] = counts(len(briefing) for briefing in briefings)
-    for name in (*_AGENT_FIELDS, *NO_LIMIT):
+    for name in (*_AGENT_FIELDS, *PLAIN_BODY):
         fields[name] = np.concatenate([getattr(briefing, name) for briefing in briefings])
     seeds = b"".join(seed_bytes(briefing.rng) for briefing in briefings)
     fields["seed"] = np.frombuffer(seeds, np.uint8).reshape(len(briefings), -1)
@@ -48,7 +48,7 @@ def decode_briefings(fields: dict[str, Any]) -> list[Briefing]:
         clock = [None if np.isnan(v := float(fields[name][n])) else v for name in _WORLD_FIELDS]
         agent_fields = [fields[name][agents].copy() for name in _AGENT_FIELDS]
         rng = hashed_generator(fields["seed"][n].tobytes())
-        limits = {name: fields[name][agents].copy() for name in NO_LIMIT}
+        limits = {name: fields[name][agents].copy() for name in PLAIN_BODY}
         create: Any = Briefing
         briefings.append(create(*clock, *agent_fields, maps[n], rng, rehearsals[n], **limits))
     return briefings

@@ -42,13 +42,14 @@ class AgentView:
 
     @property
     def rays(self) -> Rays | None:
-        """The rays of this agent: each array is (R,). None if the navigator does not need rays."""
+        """The rays of this agent: arrays (R,), one radius. None if it does not need rays."""
         sensed, at = self.observation.rays, self._at
         if sensed is None:
             return None
         return Rays(
-            sensed.angle, sensed.distance[at], sensed.kind[at], sensed.approach[at], sensed.goal[at]
-        )
+            sensed.angle, sensed.distance[at], sensed.kind[at], sensed.approach[at],
+            sensed.goal[at], sensed.radius[at],
+        )  # fmt: skip
 
     @property
     def edges(self) -> Edges | None:

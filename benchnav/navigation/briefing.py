@@ -4,15 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from benchnav.arena.agent_bodies import PLAIN_BODY, AgentBodies
 from benchnav.arena.agents import Agents
-from benchnav.arena.motion_limits import NO_LIMIT, MotionLimits
 from benchnav.arrays import ByteArray, FloatArray, IntArray
 from benchnav.navigation.map import Map
 from benchnav.navigation.rehearsal import Rehearsal
 
 
 @dataclass(frozen=True, eq=False)
-class Briefing(MotionLimits):
+class Briefing(AgentBodies):
     """Roles, goals, limits, clock, and the map that the track grants.
 
     It does not name the scenario, the split or the seed. The generator is the only source of
@@ -65,5 +65,5 @@ def brief(
         copy(agents.start), copy(agents.heading), copy(agents.goal), copy(agents.radius),
         copy(agents.max_speed), copy(agents.preferred_speed), copy(agents.max_turn_rate),
         copy(agents.dynamics), copy(agents.role), copy(agents.team), map, rng,
-        rehearsals, **{name: copy(getattr(agents, name)) for name in NO_LIMIT},
+        rehearsals, **{name: copy(getattr(agents, name)) for name in PLAIN_BODY},
     )  # fmt: skip

@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Length, Spec
+from benchnav.scenario.canonical import added_field
 
 Track = Literal["known", "stale", "partial", "unknown"]
 TRACKS: tuple[Track, ...] = get_args(Track)
@@ -85,6 +86,20 @@ class Rays(Spec):
     thick: bool = Field(
         True, description="whether a ray is as wide as the agent (a sphere cast) or a line"
     )
+    thickness: Literal["inscribed", "circumscribed"] = added_field(
+        "inscribed",
+        "0.3.0",
+        description="circle of a `footprint` that a thick ray is as wide as: the largest circle"
+        " within the body, or the smallest around it",
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> "Rays":
+        if self.thickness != "inscribed" and not self.thick:
+            raise FieldError(
+                ("thickness",), "must not be given if `thick` is false: a thin ray has no width"
+            )
+        return self
 
 
 class Nearest(Spec):

@@ -54,8 +54,7 @@ def find_neighbours(
     sees: BoolArray, worlds: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
-    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, agents: AnyArray,
-    form: FloatArray, identity: IntArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, identity: IntArray,
 ) -> None:  # fmt: skip
     """Find neighbours of the agents at spots low:high of the flattened (B, A).
 
@@ -68,9 +67,6 @@ def find_neighbours(
 
     The nearest agents of a crowd are ``listed`` (B, A, …) for the step, which reads the list up to
     the distance ``beyond`` (B, A) [m].
-
-    ``form`` (4, B, An, K) gets heading, half length, half width and rounding of bodies that are not
-    discs; it must be zero before.
     """
     most = spots.shape[1] + bodies.shape[1] + 1
     best, given = np.empty(most), np.empty(SLOTS * LANES)  # squared distances
@@ -78,7 +74,7 @@ def find_neighbours(
     _find_in_rows(
         low, high, row, limit, occlusion, side, sees, worlds, bodies, shapes, capsules,
         start, item, hashed, spots, near, listed, beyond, position, velocity, radius, kind, count,
-        agents, form, identity, np.empty((2, most)), np.empty(most, np.int64),
+        identity, np.empty((2, most)), np.empty(most, np.int64),
         np.empty(4, np.int64), best,
         best.view(np.int64), np.empty((LANES, most), np.int64), np.empty(most, np.int64), given,
         given.view(np.int64), smallest, smallest.view(np.int64), np.empty(LANES, np.int64),
@@ -92,8 +88,8 @@ def _find_in_rows(
     sees: BoolArray, worlds: AnyArray, bodies: AnyArray, shapes: AnyArray,
     capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray, spots: AnyArray,
     near: FloatArray, listed: IntArray, beyond: FloatArray, position: FloatArray,
-    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, agents: AnyArray,
-    form: FloatArray, identity: IntArray, around: FloatArray, at: IntArray, window: IntArray,
+    velocity: FloatArray, radius: FloatArray, kind: ByteArray, count: IntArray, identity: IntArray,
+    around: FloatArray, at: IntArray, window: IntArray,
     best: FloatArray, exact: IntArray, place: IntArray, ranked: IntArray, given: FloatArray,
     given_bits: IntArray,
     smallest: FloatArray, bits: IntArray, sizes: IntArray, fixed: FloatArray, blockers: IntArray,
@@ -159,8 +155,6 @@ def _find_in_rows(
                 )  # fmt: skip
                 _identify(kept, crowd, ranked, identity[b, k])
                 count[b, k] = kept
-                if world.shaped:
-                    _write_forms(kept, crowd, ranked, agents[b], form[:, b, k])
 
 
 @kernel_without_allocation
@@ -221,16 +215,20 @@ def _write(
 
 
 @kernel_without_allocation
-def _write_forms(
-    kept: int, spots: AnyArray, ranked: IntArray, agents: AnyArray, form: FloatArray
-) -> None:
-    """Write the shapes (4, K) of the ranked agents that are not discs."""
-    for s in range(kept):
-        if ranked[s] >= 0:
-            a = agents[spots[ranked[s]].index]
-            if a.shaped:
-                form[0, s], form[3, s] = a.heading, a.rounding
-                form[1, s], form[2, s] = a.core_length + a.rounding, a.core_width + a.rounding
+def write_forms(
+    low: int, high: int, agents: AnyArray, count: IntArray, identity: IntArray,
+    heading: FloatArray, half_length: FloatArray, half_width: FloatArray, rounding: FloatArray,
+) -> None:  # fmt: skip
+    """Write the shapes (B, An, K) of the neighbours in worlds low:high that are not discs."""
+    for b in range(low, high):
+        for k in range(count.shape[1]):
+            for s in range(count[b, k]):
+                j = identity[b, k, s]
+                if j >= 0 and agents[b, j].shaped:
+                    a = agents[b, j]
+                    heading[b, k, s], rounding[b, k, s] = a.heading, a.rounding
+                    half_length[b, k, s] = a.core_length + a.rounding
+                    half_width[b, k, s] = a.core_width + a.rounding
 
 
 @kernel_without_allocation

@@ -1,7 +1,7 @@
 """Rays: the first object that each ray hits, and the goal on a separate layer.
 
 A thick ray is a cast of the agent's own disc: it stops where the body would stop. Of a body that
-is not a disc, it is the circle within its footprint; it hits the footprints of others. All
+is not a disc, it is a circle within or around its footprint; it hits the footprints of others. All
 objects in reach are listed once per agent, in the agent's frame; then every ray is
 tested against the list. Capsules of a large map are found by walking its grid.
 """
@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from benchnav.arena.sensing import RayCircle
 from benchnav.arena.solid import Kind
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.geometry.capsule import capsule_time, disc_time
@@ -23,6 +24,7 @@ from benchnav.world.touch import BRUTE_FORCE
 
 BEHIND = 1e-3  # [m] farther than this behind the agent, an object cannot be hit by rays ahead
 _AGENT, _NOTHING, _DYNAMIC = int(Kind.AGENT), int(Kind.NOTHING), int(Kind.DYNAMIC)
+_POINT, _CIRCUMSCRIBED = int(RayCircle.POINT), int(RayCircle.CIRCUMSCRIBED)
 
 # columns of the list: ends; unit normal and distance of the line (edges); sum of radii; kind;
 # velocity. Frame: the agent at the origin, looking along +x.
@@ -32,35 +34,36 @@ X0, Y0, X1, Y1, NX, NY, OFF, REACH, KIND, VX, VY = range(11)
 @kernel
 def cast_rays(
     low: int, high: int, chosen: IntArray, fan_x: FloatArray, fan_y: FloatArray,
-    limit: float, thick: bool, side: float, widest: float, most_shapes: int,
+    limit: float, circle: int, side: float, widest: float, most_shapes: int,
     sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
     shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
     spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
-    goal: FloatArray,
+    goal: FloatArray, radius: FloatArray,
 ) -> None:  # fmt: skip
     """Cast rays for rows low:high of the flattened (B, chosen agents); outputs are (B, An, R).
 
     ``fan_x``, ``fan_y``: unit vectors in the agent's frame, padded by repetition to a
-    multiple of 8; ``side`` [m] of the hashed cells; ``widest`` radius of an agent;
-    ``most_shapes``: capsules of the bodies of one world; ``sees`` (B, teams, teams).
+    multiple of 8; ``circle``: the `RayCircle` that is cast; ``side`` [m] of the hashed cells;
+    ``widest`` radius of an agent; ``most_shapes``: capsules of the bodies of one world;
+    ``sees`` (B, teams, teams).
     """
     things = np.empty((sight.FEW + 2 * agents.shape[1] + most_shapes, 11))  # room for everything
     best, hit = np.empty(len(fan_x)), np.empty(len(fan_x), np.int64)
     _cast_in_rows(
-        low, high, chosen, fan_x, fan_y, limit, thick, side, widest, most_shapes, sees, worlds,
+        low, high, chosen, fan_x, fan_y, limit, circle, side, widest, most_shapes, sees, worlds,
         agents, bodies, shapes, capsules, start, item, hashed, spots, distance, kind, approach,
-        goal, things, best, hit, np.empty(sight.TABLE),
+        goal, radius, things, best, hit, np.empty(sight.TABLE),
     )  # fmt: skip
 
 
 @kernel_without_allocation
 def _cast_in_rows(
     low: int, high: int, chosen: IntArray, fan_x: FloatArray, fan_y: FloatArray,
-    limit: float, thick: bool, side: float, widest: float, most_shapes: int,
+    limit: float, circle: int, side: float, widest: float, most_shapes: int,
     sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
     shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
     spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
-    goal: FloatArray, things: FloatArray, best: FloatArray, hit: IntArray,
+    goal: FloatArray, radius: FloatArray, things: FloatArray, best: FloatArray, hit: IntArray,
     fixed: FloatArray,
 ) -> None:  # fmt: skip
     width = chosen.shape[1]
@@ -76,7 +79,7 @@ def _cast_in_rows(
             if i < 0 or not here[i].present:
                 continue
             a = here[i]
-            own = a.inner_radius if thick else 0.0
+            own = radius[b, k] = ray_radius(a, circle)
             ca, sa = cos_sin(a.heading)
             n = _list_bodies(a, ca, sa, own, limit, rear, world.bodies, others, shapes, things, 0)
             n = _list_agents(
@@ -103,6 +106,14 @@ def _cast_in_rows(
                 if hit_kind == _DYNAMIC:
                     approach[b, k, r] = -(things[hit[r], VX] * dx + things[hit[r], VY] * dy)
                 goal[b, k, r] = goal_distance(gx, gy, dx, dy, world.tolerance + own, reach)
+
+
+@kernel_without_allocation
+def ray_radius(a: Any, circle: int) -> float:
+    """Return the radius [m] of the disc that is cast along the rays of agent a (`RayCircle`)."""
+    if circle == _POINT:
+        return 0.0
+    return float(a.radius if circle == _CIRCUMSCRIBED else a.inner_radius)
 
 
 @kernel_without_allocation

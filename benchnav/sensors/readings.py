@@ -41,6 +41,11 @@ class Rays(Rows):
     kind: ByteArray  # (B, A, R) of Kind: NOTHING, AGENT, WALL, STATIC, DYNAMIC
     approach: FloatArray  # (B, A, R) [m/s] of the hit dynamic obstacle, towards the agent, else 0
     goal: FloatArray  # (B, A, R) [m] along the ray to the agent's goal; inf if missed or hidden
+    radius: FloatArray = _ZERO  # (B, A) [m] of the disc that is cast along a ray; thin: 0
+
+    def __post_init__(self) -> None:
+        if self.radius is None:
+            object.__setattr__(self, "radius", np.zeros(self.distance.shape[:-1]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,16 +58,15 @@ class Neighbours(Rows):
     kind: ByteArray  # (B, A, K) Kind.AGENT or Kind.DYNAMIC
     count: IntArray  # (B, A) valid entries
     # the shape of an agent that is not a disc: a rectangle with rounded corners; else all are zero,
-    # and the body is a disc of `radius`
+    # and the body is a disc of `radius`; all four arrays are given, or none
     heading: FloatArray = _ZERO  # (B, A, K) [rad]
     half_length: FloatArray = _ZERO  # (B, A, K) [m] half the extent along the heading
     half_width: FloatArray = _ZERO  # (B, A, K) [m] half the extent across the heading
     rounding: FloatArray = _ZERO  # (B, A, K) [m] radius of the corners
 
     def __post_init__(self) -> None:
-        for name in FORM:
-            if getattr(self, name) is None:
-                object.__setattr__(self, name, np.zeros(self.radius.shape))
+        if self.rounding is None:
+            vars(self).update(dict.fromkeys(FORM, np.zeros(self.radius.shape)))
 
 
 @dataclass(frozen=True, eq=False)

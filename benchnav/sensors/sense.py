@@ -10,9 +10,9 @@ from benchnav.geometry.hash_grid import collect, fill
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel_without_allocation
 from benchnav.sensors.edges import find_edges
-from benchnav.sensors.neighbours import find_neighbours, number_rows
+from benchnav.sensors.neighbours import find_neighbours, number_rows, write_forms
 from benchnav.sensors.rays import cast_rays
-from benchnav.sensors.readings import Edges, Neighbours, Rays
+from benchnav.sensors.readings import FORM, Edges, Neighbours, Rays
 from benchnav.threads import run_rows
 from benchnav.world.simulation import Simulation
 from benchnav.world.touch import BRUTE_FORCE
@@ -96,16 +96,16 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
     shape = (*chosen.shape, len(angle))
     out = Rays(
         angle, np.full(shape, float(sensor.range)), np.zeros(shape, np.int8), np.zeros(shape),
-        np.full(shape, np.inf),
+        np.full(shape, np.inf), np.zeros(chosen.shape),
     )  # fmt: skip
     padded = np.concatenate([angle, np.full(-len(angle) % 8, angle[-1])])
     fan_x, fan_y = np.array([cos_sin(a) for a in padded]).T.copy()
     s = simulation
     run_rows(
-        cast_rays, chosen.size, chosen, fan_x, fan_y, float(sensor.range), sensor.thick, side,
-        s.widest, s.most_shapes, s.sees, s.records, s.agents, s.bodies, s.shapes, s.capsules,
+        cast_rays, chosen.size, chosen, fan_x, fan_y, float(sensor.range), int(sensor.circle),
+        side, s.widest, s.most_shapes, s.sees, s.records, s.agents, s.bodies, s.shapes, s.capsules,
         s.start, s.item, s.hashed, s.spots, out.distance, out.kind, out.approach, out.goal,
-        least=LEAST,
+        out.radius, least=LEAST,
     )  # fmt: skip
     return out
 
@@ -116,7 +116,8 @@ def _neighbours(
 ) -> Neighbours:  # fmt: skip
     shape = (*chosen.shape, sensor.count)
     s = simulation
-    form = np.zeros((4, *shape))
+    # without shapes, all four are one array of zeros: more of them take time
+    form = [np.zeros(shape) for _ in FORM] if s.shaped else [np.zeros(shape)] * len(FORM)
     out = Neighbours(
         np.empty((*shape, 2)), np.empty((*shape, 2)), np.empty(shape), np.empty(shape, np.int8),
         np.empty(chosen.shape, np.int64), *form,
@@ -128,9 +129,13 @@ def _neighbours(
     run_rows(
         find_neighbours, row.size, row, float(sensor.range), occlusion, side, s.sees,
         s.records, s.bodies, s.shapes, s.capsules, s.start, s.item, s.hashed, s.spots,
-        s.near, s.listed, s.beyond, *readings, s.agents, form, identities[NEIGHBOURS],
-        least=LEAST,
+        s.near, s.listed, s.beyond, *readings, identities[NEIGHBOURS], least=LEAST,
     )  # fmt: skip
+    if s.shaped:
+        write_forms(
+            0, s.B, s.agents, out.count, identities[NEIGHBOURS], out.heading, out.half_length,
+            out.half_width, out.rounding,
+        )  # fmt: skip
     return out
 
 

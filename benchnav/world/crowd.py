@@ -79,7 +79,7 @@ def next_agent(
     """
     n, size = 0, len(hashed) - 1
     x, y, vx, vy = motion[X, own], motion[Y, own], motion[VX, own], motion[VY, own]
-    radius = motion[RADIUS, own]
+    radius, separating = motion[RADIUS, own], math.inf if shaped else 0.0
     first, last = math.floor((x - reach) / side), math.floor((x + reach) / side)
     for row in range(math.floor((y - reach) / side), math.floor((y + reach) / side) + 1):
         low = bucket(first, row, size)
@@ -91,11 +91,13 @@ def next_agent(
                 wx, wy = vx - motion[VX, at], vy - motion[VY, at]
                 far = radius + motion[RADIUS, at] + WIDER * (abs(wx) + abs(wy)) * left
                 near[n] = at
-                approach = (shaped & (at != own)) | (fx * wx + fy * wy < 0.0)
+                approach = fx * wx + fy * wy < separating
                 within = (fx * fx + fy * fy <= WIDER * far * far) & approach
                 n += within & (spots[at].cj == row)
     best, partner = math.inf, -1
     for k in range(n):
+        if near[k] == own:
+            continue
         t, j = pair_time(own, near[k], left, shaped, agents, spots, motion), spots[near[k]].index
         if t <= left and (t < best or (t == best and j < partner)):
             best, partner = t, j

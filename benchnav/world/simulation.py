@@ -44,7 +44,8 @@ class Simulation:
         self._opened = np.zeros((self.B, self.A, OPEN_CONTACTS), CONTACT)
         self._opened["code"] = -1
         room = 32 + 2 * OPEN_CONTACTS * self.A * (first.clock.substeps + 1)
-        room *= 2 if self.records["shaped"].any() else 1  # turns have contacts of their own
+        self.shaped = bool(self.records["shaped"].any())  # some bodies are not discs
+        room *= 2 if self.shaped else 1  # turns have contacts of their own
         self._closed = np.zeros((self.B, room), CONTACT)
         self._kept: list[list[AnyArray]] = [[] for _ in self.worlds]
         self.hashed = hash_table(self.B, self.A)

@@ -106,7 +106,7 @@ def step_world(
         if world.shaped:
             turn_agents(
                 end, world, agents, bodies, shapes, capsules, start, item, driven[2], opened,
-                closed,
+                closed, hashed, spots, near,
             )  # fmt: skip
         follow_up(end, world, agents, bodies, shapes, capsules, start, item, opened, closed)
     world.steps_done += 1

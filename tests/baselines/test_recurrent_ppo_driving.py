@@ -53,7 +53,7 @@ def test_sightings_agree_with_their_twin(shown):
     mine = begun(Sightings(), told)
     kept, remembered, hidden = {}, 0, 0
     for seen in views:
-        found = mine.limit(seen, bodies.radius)
+        found = mine.limit(seen)
         for b, a in np.argwhere(seen.active):
             radius, dt = bodies.radius[b, a], told[b].dt
             kept[b, a] = slow_sightings.others(seen, radius, dt, kept.get((b, a), []), b, a)
@@ -76,15 +76,15 @@ def test_sightings_agree_with_their_twin(shown):
 
 
 def test_who_is_not_met_again_is_forgotten(shown):
-    told, views, bodies = shown
+    told, views, _ = shown
     mine = begun(Sightings(), told)
-    before = mine.limit(views[0], bodies.radius).neighbours.count.sum()
+    before = mine.limit(views[0]).neighbours.count.sum()
     assert before > 0
     blind = replace(views[0], rays=replace(views[0].rays, kind=np.zeros_like(views[0].rays.kind)))
     for _ in range(math.floor(MEMORY / told[0].dt)):
-        count = mine.limit(blind, bodies.radius).neighbours.count.sum()
+        count = mine.limit(blind).neighbours.count.sum()
     assert count == before
-    assert mine.limit(blind, bodies.radius).neighbours.count.sum() == 0
+    assert mine.limit(blind).neighbours.count.sum() == 0
 
 
 def test_what_no_ray_met_changes_no_command(shown):

@@ -171,7 +171,7 @@ def rays(seen, distance, kind=Kind.NOTHING):
     shape = (*seen.active.shape, 1)
     return Rays(
         np.zeros(1), np.full(shape, distance), np.full(shape, int(kind), np.int8),
-        np.zeros(shape), np.full(shape, np.inf),
+        np.zeros(shape), np.full(shape, np.inf), np.full(seen.active.shape, 0.3),
     )  # fmt: skip
 
 

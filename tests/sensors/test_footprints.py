@@ -6,10 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchnav.arena.noise import Noise
 from benchnav.arena.sensing import NeighbourSensor, RaySensor, Sensing
 from benchnav.arena.solid import Kind
 from benchnav.isolation.observation_codec import decode_observation, encode_observation
 from benchnav.navigation.observation import Observation
+from benchnav.sensors.noise.noisy_senses import NoisySenses
 from benchnav.sensors.sense import sense
 from benchnav.world.simulation import Simulation
 from tests import worlds
@@ -20,7 +22,7 @@ SENSORS = Sensing(
 )
 
 
-def scene(seed):
+def scene(seed, rays=SENSORS.rays):
     """Return a simulation of a long agent among others, of which the last is a disc."""
     rng = np.random.default_rng(seed)
     start = np.array([[10.0, 10.0], [13.0, 10.5], [9.0, 13.0], [7.5, 8.0]]) + rng.normal(
@@ -30,7 +32,7 @@ def scene(seed):
     shapes = [SHAPES[k] for k in rng.integers(3, size=3)] + [(0.0, 0.0, 0.0)]
     crew = shaped(crew, shapes)
     crew = replace(crew, radius=np.where(crew.rounding > 0.0, crew.radius, 0.5))
-    return Simulation([worlds.world(crew, sensing=SENSORS)])
+    return Simulation([worlds.world(crew, sensing=replace(SENSORS, rays=rays))])
 
 
 def first_hit(simulation, angle, reach):
@@ -58,19 +60,44 @@ def first_hit(simulation, angle, reach):
     return found
 
 
+@pytest.mark.parametrize("circumscribed", [False, True])
 @pytest.mark.parametrize("seed", range(3))
-def test_thick_rays_are_casts_of_the_circle_within_against_footprints(seed):
-    simulation = scene(seed)
+def test_thick_rays_are_casts_of_a_circle_against_footprints(seed, circumscribed):
+    simulation = scene(seed, replace(SENSORS.rays, circumscribed=circumscribed))
     rays, _, _ = sense(simulation, np.zeros((1, 1), np.int64), frozenset({"rays"}))
-    inner = simulation.worlds[0].agents.inner_radius[0]
+    agents = simulation.worlds[0].agents
+    own = (agents.radius if circumscribed else agents.inner_radius)[0]
+    assert rays.radius == own
     hits = 0
     for r, angle in enumerate(rays.angle):
-        expected = first_hit(simulation, simulation.heading[0, 0] + angle, inner)
+        expected = first_hit(simulation, simulation.heading[0, 0] + angle, own)
         if expected == 6.0 and rays.distance[0, 0, r] > 5.5:
             continue  # a graze between two samples
         assert rays.distance[0, 0, r] == pytest.approx(expected, abs=1e-6)
         hits += rays.kind[0, 0, r] == int(Kind.AGENT)
     assert hits >= 3
+
+
+@pytest.mark.parametrize(
+    ("sensor", "own"),
+    [
+        (SENSORS.rays, "inner_radius"),
+        (replace(SENSORS.rays, circumscribed=True), "radius"),
+        (replace(SENSORS.rays, thick=False), None),
+    ],
+)
+def test_the_goal_on_noisy_rays_is_met_by_the_circle_that_is_cast(sensor, own):
+    simulation = scene(2, sensor)
+    simulation.agents["goal_x"] += 2.0
+    exact = sense(simulation, np.arange(4)[None], frozenset({"rays"}))[0]
+    senses = NoisySenses(simulation, np.arange(4)[None], Noise())
+    senses.begin(np.zeros(1, np.int64), np.array([[1, 2]], np.uint64))
+    noisy = senses.sense(np.ones((1, 4), bool), frozenset({"rays"}))[0]
+    assert np.isfinite(exact.goal).any()
+    for name in ("distance", "goal", "radius"):
+        assert (getattr(noisy, name) == getattr(exact, name)).all()
+    agents = simulation.worlds[0].agents
+    assert (exact.radius[0] == (getattr(agents, own) if own else 0.0)).all()
 
 
 def test_neighbours_report_shapes_also_through_the_wire():

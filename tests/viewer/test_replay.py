@@ -25,6 +25,7 @@ from benchnav.viewer.replay.packing import packed, unpacked
 from benchnav.viewer.replay.page import replay_page
 from benchnav.viewer.replay.scene import events, interesting, scene
 from benchnav.viewer.replay.senses import sensed
+from tests.world.test_footprint import core, fixed_core
 
 
 @pytest.fixture(scope="module")
@@ -76,6 +77,21 @@ def test_the_smallest_clearance_is_that_of_the_metric(episode):
         least = clearance(episode, agent)[: last[agent] + 1].min()
         # the metric also looks between states, where an agent moves at most 0.4 m
         assert expected[agent] - 1e-9 <= least <= expected[agent] + 0.4
+
+
+def test_the_clearance_of_a_body_that_is_not_a_disc_is_that_of_its_shape():
+    world = benchnav.load_scenario("robots/doorway").world(seed=1)
+    record = benchnav.simulate(world, "orca", track="unknown", salt="00").record
+    agents, solids = record.world.agents, [fixed_core(solid) for solid in record.world.solids]
+    gone = analyse(record).trajectories.leaves
+    for t in range(0, len(record.position), 7):
+        here = np.flatnonzero(t < gone)
+        places = zip(here, record.position[t, here], record.heading[t, here], strict=True)
+        bodies = {a: core(agents, a, place, heading) for a, place, heading in places}
+        for agent, (shape, radius) in bodies.items():
+            others = [*solids, *(bodies[j] for j in here if j != agent)]
+            least = min(shape.distance(other) - radius - r for other, r in others)
+            assert clearance(record, int(agent))[t] == pytest.approx(least, abs=1e-6)
 
 
 def test_senses_are_those_of_the_navigator(episode):

@@ -15,8 +15,10 @@ from benchnav.arena.world import Afterwards, ContactRule
 from benchnav.episode.episode import Status
 from benchnav.verify.reference.reference_simulator import Twin
 from benchnav.world.simulation import Simulation
+from benchnav.world.touch import BRUTE_FORCE
 from tests import worlds
 
+MOST = BRUTE_FORCE + 6  # agents of a world here
 DEEPEST = 1e-8  # [m] allowed overlap with anything that yields or stands: rounding
 
 
@@ -157,7 +159,7 @@ def states(worlds_, seed, steps=30):
     twist = np.zeros(simulation.position.shape[:2], bool)
     twist[:, ::2] = True
     for _ in range(steps):
-        command = np.stack([rng.normal(0.0, 2.0, simulation.position.shape[1:]) for rng in rngs])
+        command = np.stack([rng.normal(0.0, 2.0, (MOST, 2))[: simulation.A] for rng in rngs])
         command[twist] = np.abs(command[twist])
         simulation.step(command, twist)
         out.append(np.concatenate([simulation.position, simulation.heading[..., None]], axis=-1))
@@ -175,6 +177,22 @@ def test_bits_do_not_depend_on_the_batch():
     together = states(batch, 11)
     for b, world in enumerate(batch):
         assert (states([world], 11 + b)[:, 0] == together[:, b]).all()
+
+
+@pytest.mark.parametrize(
+    ("threads", "rule"),
+    [("1", ContactRule.SLIDE), ("3", ContactRule.SLIDE), ("2", ContactRule.STOP)],
+)
+def test_bits_are_those_of_a_crowd_and_do_not_depend_on_threads(threads, rule, monkeypatch):
+    """In a batch with a crowd, bodies find each other by cells; alone, they test all pairs."""
+    batch = [crowded(seed, 20, rule, side=9.0) for seed in range(3)]
+    alone = [states([world], 11 + b)[:, 0] for b, world in enumerate(batch)]
+    turned = sum((np.abs(np.diff(path[..., 2], axis=0)) > 0.0).sum() for path in alone)
+    assert turned > 100
+    monkeypatch.setenv("BENCHNAV_THREADS", threads)
+    together = states([*batch, crowded(5, MOST, rule, side=14.0)], 11)
+    for b, path in enumerate(alone):
+        assert (path == together[:, b, :20]).all()
 
 
 def test_a_crowd_of_long_bodies_penetrates_nothing():

@@ -128,7 +128,7 @@ class PolicyPilot(Pilot):
         if observation.neighbours is None or observation.edges is None:
             return command
         if self._sightings is not None:
-            observation = self._sightings.limit(observation, bodies.radius)
+            observation = self._sightings.limit(observation)
         if self._detours is not None:
             self._detours.steer(observation, bodies, command)
         if not self._foresight:

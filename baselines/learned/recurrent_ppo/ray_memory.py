@@ -38,12 +38,11 @@ class Sightings:
         empty[..., _AGE] = math.inf
         self._kept.put(row, met=empty, dt=np.full(len(briefing), briefing.dt))
 
-    def limit(self, observation: Observation, radius: FloatArray) -> Observation:
+    def limit(self, observation: Observation) -> Observation:
         """Return the observation with only those neighbours and edges that the rays (B, A) hit.
 
         Args:
             observation: with rays, neighbours and edges.
-            radius: (B, A) [m] of the agents, and of the discs of their rays.
         """
         rays, near, edges = observation.rays, observation.neighbours, observation.edges
         assert rays is not None  # noqa: S101 - declared by the pilot
@@ -60,7 +59,7 @@ class Sightings:
         position, heading, reach = (
             flat(observation.position),
             flat(observation.heading),
-            flat(radius),
+            flat(rays.radius),
         )
         distance, kinds = flat(rays.distance), flat(rays.kind)
         _meet(

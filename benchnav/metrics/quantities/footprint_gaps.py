@@ -50,7 +50,7 @@ def lower_gaps(
                         continue
                     fx, fy = px - 0.5 * (x0 + x1), py - 0.5 * (y0 + y1)
                     half = (0.5 * (x1 - x0), 0.5 * (y1 - y0), 0.0, 0.0)
-                    apart = _apart(fx, fy, angle, shape[a], half)
+                    apart = cores_apart(fx, fy, angle, shape[a], half)
                     clearance[a] = min(clearance[a], apart - shape[a, 2] - r)
                 for j in range(len(position)):
                     if j == a or k > leaves[j]:
@@ -64,7 +64,7 @@ def lower_gaps(
                     half = (
                         shape[j, 0] * c0, shape[j, 0] * s0, -shape[j, 1] * s0, shape[j, 1] * c0
                     )  # fmt: skip
-                    apart = _apart(x - u, y - v, angle, shape[a], half)
+                    apart = cores_apart(x - u, y - v, angle, shape[a], half)
                     apart -= shape[a, 2] + shape[j, 2]
                     if counts:
                         clearance[a] = min(clearance[a], apart)
@@ -88,7 +88,7 @@ def _pose(
 
 
 @kernel_without_allocation
-def _apart(
+def cores_apart(
     fx: float, fy: float, angle: float, shape: FloatArray,
     other: tuple[float, float, float, float],
 ) -> float:  # fmt: skip

@@ -45,7 +45,7 @@ def learn(
         guess: whether obstacles that stop rays are mapped, too.
         position: (B, A, 2) [m].
         heading: (B, A) [rad].
-        radius: (R, A) [m] of the agents, and of their rays' discs.
+        radius: (B, A) [m] of the discs that are cast along the rays.
         angle: (K,) [rad] of the rays from the heading.
         distance: (B, A, K) [m].
         kind: (B, A, K) of Kind.
@@ -65,7 +65,7 @@ def learn(
             m = 0 if shared else a
             held, owners = capsules[row, m], owner[row, m]
             n, changed = count[row, m], False
-            x, y, r = position[b, a, 0], position[b, a, 1], radius[row, a]
+            x, y, r = position[b, a, 0], position[b, a, 1], radius[b, a]
             for t in range(distance.shape[2]):
                 d = distance[b, a, t]
                 ux, uy = cos_sin(heading[b, a] + angle[t])

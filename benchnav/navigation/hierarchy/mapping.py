@@ -68,7 +68,6 @@ class Mapping:
         self._count = np.zeros((0, 0), np.int64)
         self._version = np.zeros((0, 0), np.int64)
         self._order = np.full((0, 0), -1)
-        self._radius = np.zeros((0, 0))
 
     @property
     def needs(self) -> frozenset[Need]:
@@ -87,7 +86,6 @@ class Mapping:
             self._reserve(row + 1, agents, 0)
             self._order[row] = -1
             self._order[row, :agents] = canonical_order(briefing)
-            self._radius[row, :agents] = briefing.radius
             self._begin(row, briefing, briefing.map)
 
     def see(self, seen: Observation) -> None:
@@ -98,25 +96,25 @@ class Mapping:
             if map is not None and granted is not None and map.revision != granted.revision:
                 self._begin(row, state.briefing, map)
         worlds, agents = seen.active.shape
-        angle, distance, kind = self._rays(seen)
+        radius, angle, distance, kind = self._rays(seen)
         edges, known = self._edges(seen)
         room = (distance.shape[2] + edges.shape[2]) * (agents if self.config.share else 1)
         most = int(self._count[seen.rows].max(initial=0))
         self._reserve(int(seen.rows.max(initial=-1)) + 1, agents, most + room)
         run_rows(
             learn, worlds, seen.rows, seen.active, self._order, self.config.share,
-            Need.EDGES not in self.needs, seen.position, seen.heading, self._radius,
+            Need.EDGES not in self.needs, seen.position, seen.heading, radius,
             angle, distance, kind, edges, known, self._capsules, self._owner, self._count,
             self._version, least=LEAST,
         )  # fmt: skip
 
-    def _rays(self, seen: Observation) -> tuple[FloatArray, FloatArray, ByteArray]:
-        """Return angle (K,), distance and kind (B, A, K); K is 0 if rays are not used."""
+    def _rays(self, seen: Observation) -> tuple[FloatArray, FloatArray, FloatArray, ByteArray]:
+        """Return radius (B, A), angle (K,), distance and kind (B, A, K); K is 0 without rays."""
         rays = seen.rays
         if rays is None or Need.RAYS not in self.needs:
             at = (*seen.active.shape, 0)
-            return np.zeros(0), np.zeros(at), np.zeros(at, np.int8)
-        return rays.angle, rays.distance, rays.kind
+            return np.zeros(at[:2]), np.zeros(0), np.zeros(at), np.zeros(at, np.int8)
+        return rays.radius, rays.angle, rays.distance, rays.kind
 
     def _edges(self, seen: Observation) -> tuple[FloatArray, IntArray]:
         """Return edges (B, A, E, 8) for `learn` and counts (B, A); E is 0 if edges are not used."""
@@ -235,7 +233,6 @@ class Mapping:
         self._owner = _grown(self._owner, deep)
         self._count, self._version = _grown(self._count, at), _grown(self._version, at)
         self._order = _grown(self._order, (height, wide), -1)
-        self._radius = _grown(self._radius, (height, wide))
 
 
 def _grown(old: AnyArray, shape: tuple[int, ...], fill: float = 0) -> AnyArray:

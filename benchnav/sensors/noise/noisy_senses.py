@@ -107,7 +107,7 @@ class NoisySenses:
         fan_x, fan_y = self._fan
         run_rows(
             disturb_rays, chosen.size, chosen, out.angle, fan_x, fan_y, float(sensor.range),
-            sensor.thick, n.noise, n.relative_noise, n.quadratic_noise, n.dropout,
+            int(sensor.circle), n.noise, n.relative_noise, n.quadratic_noise, n.dropout,
             n.approach_noise, n.field_of_view, s.records, s.agents, self._keys, self.pose_error,
             out.distance, out.kind, out.approach, out.goal, least=LEAST,
         )  # fmt: skip

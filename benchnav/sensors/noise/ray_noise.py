@@ -8,7 +8,7 @@ from benchnav.geometry.rotation import cos_sin, wrap
 from benchnav.kernels import kernel_without_allocation
 from benchnav.sensors.noise.draws import RAY, draw, two_normals, uniform
 from benchnav.sensors.noise.odometry import HEADING, X, Y
-from benchnav.sensors.rays import goal_distance
+from benchnav.sensors.rays import goal_distance, ray_radius
 
 _NOTHING, _DYNAMIC = int(Kind.NOTHING), int(Kind.DYNAMIC)
 
@@ -16,7 +16,7 @@ _NOTHING, _DYNAMIC = int(Kind.NOTHING), int(Kind.DYNAMIC)
 @kernel_without_allocation
 def disturb_rays(
     low: int, high: int, chosen: IntArray, angle: FloatArray, fan_x: FloatArray, fan_y: FloatArray,
-    limit: float, thick: bool, noise: float, relative: float, quadratic: float, dropout: float,
+    limit: float, circle: int, noise: float, relative: float, quadratic: float, dropout: float,
     approach_noise: float, view: float, worlds: AnyArray, agents: AnyArray, keys: AnyArray,
     error: FloatArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
     goal: FloatArray,
@@ -34,7 +34,7 @@ def disturb_rays(
         if i < 0 or not agents[b, i].present:
             continue
         a, e, step = agents[b, i], error[b, k], worlds[b].steps_done
-        own = a.radius if thick else 0.0
+        own = ray_radius(a, circle)
         ca, sa = cos_sin(a.heading if e[HEADING] == 0.0 else wrap(a.heading + e[HEADING]))
         gx, gy = a.x + e[X] - a.goal_x, a.y + e[Y] - a.goal_y
         gx, gy = ca * gx + sa * gy, ca * gy - sa * gx

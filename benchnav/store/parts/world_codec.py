@@ -32,7 +32,9 @@ from pydantic_core.core_schema import (
     with_default_schema,
 )
 
-from benchnav.arena.motion_limits import NO_LIMIT, MotionLimits
+from benchnav.arena.agent_bodies import PLAIN_BODY, AgentBodies
+from benchnav.arena.agents import Agents
+from benchnav.arena.sensing import RaySensor
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
 from benchnav.config.model_errors import first_problem
@@ -44,13 +46,20 @@ _PLAIN: dict[type, CoreSchema] = {
     float: float_schema(strict=True),
     str: str_schema(strict=True),
 }  # types of JSON itself
+_LEFT_OUT: dict[type, dict[str, Any]] = {
+    Agents: dict.fromkeys(PLAIN_BODY),
+    RaySensor: {"circumscribed": False},
+}  # fields that may be missing, and their defaults
 MAX_TEXT = 64 << 20  # characters of a world; one of a million triangles takes 50 MB
 _MAX_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of values
 
 
 def world_to_json(world: World) -> bytes:
     """Return the world as one line of JSON in UTF-8 (infinities as in Python: ``Infinity``)."""
-    return to_json(World, world, {"agents": world.agents.without_limit()})
+    left_out: dict[str, Any] = {"agents": world.agents.left_out()}
+    if world.sensing.rays is not None:
+        left_out["sensing"] = {"rays": world.sensing.rays.left_out()}
+    return to_json(World, world, left_out)
 
 
 def world_from_json(text: str) -> World:
@@ -113,7 +122,7 @@ def _schema(kind: Any) -> CoreSchema:
         names, hints = [f.name for f in fields(kind)], get_type_hints(kind)
         known = [_field_schema(kind, name, hints[name]) for name in names]
         arguments = dataclass_args_schema(kind.__name__, known)
-        return dataclass_schema(kind, arguments, names, post_init=issubclass(kind, MotionLimits))
+        return dataclass_schema(kind, arguments, names, post_init=issubclass(kind, AgentBodies))
     if isinstance(kind, type) and issubclass(kind, Enum):
         return enum_schema(kind, list(kind), sub_type="int")
     if kind in _PLAIN:
@@ -122,10 +131,10 @@ def _schema(kind: Any) -> CoreSchema:
 
 
 def _field_schema(kind: type, name: str, hint: Any) -> DataclassField:
-    """Return the description of a field; a column of `MotionLimits` may be missing."""
+    """Return the description of a field; one that is left out at its default may be missing."""
     schema = _schema(hint)
-    if issubclass(kind, MotionLimits) and name in NO_LIMIT:
-        schema = with_default_schema(schema, default=None)
+    if name in _LEFT_OUT.get(kind, {}):
+        schema = with_default_schema(schema, default=_LEFT_OUT[kind][name])
     return dataclass_field(name, schema)
 
 

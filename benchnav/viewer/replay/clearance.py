@@ -2,10 +2,13 @@
 
 import numpy as np
 
-from benchnav.arrays import FloatArray
+from benchnav.arrays import FloatArray, IntArray
 from benchnav.episode.episode import Episode
+from benchnav.geometry.rotation import cos_sin
+from benchnav.kernels import kernel
 from benchnav.metrics.quantities.encounters import things_of
 from benchnav.metrics.quantities.episode_analysis import analyse
+from benchnav.metrics.quantities.footprint_gaps import cores_apart, shapes_of
 
 _ROOM = 2_000_000  # distances that are held at a time
 
@@ -13,10 +16,11 @@ _ROOM = 2_000_000  # distances that are held at a time
 def clearance(episode: Episode, agent: int) -> FloatArray:
     """Return the gaps (T+1,) [m] of an agent to the nearest object; negative for an overlap.
 
-    The objects are walls, obstacles, and other agents that are present; inf: there is none. A body
-    that is not a disc counts as the circle around it.
+    The objects are walls, obstacles, and other agents that are present; inf: there is none.
     """
     world = episode.world
+    if (world.agents.rounding > 0.0).any():
+        return _of_shapes(episode, agent)
     here = episode.position[:, agent]  # (T+1, 2)
     radius = world.agents.radius
     gap = np.full(len(here), np.inf)
@@ -37,6 +41,44 @@ def clearance(episode: Episode, agent: int) -> FloatArray:
         gap = np.minimum(gap, _to_capsules(here[None] - offset, capsules).min(axis=0))
     clear: FloatArray = gap - radius[agent]
     return clear
+
+
+def _of_shapes(episode: Episode, agent: int) -> FloatArray:
+    world, clear = episode.world, np.full(len(episode.position), np.inf)
+    things, gone = things_of(world, episode.body_position), analyse(episode).trajectories.leaves
+    lower_to_shapes(
+        agent, episode.position, episode.heading, shapes_of(world.agents), gone, things.capsules,
+        things.body, things.offset, clear,
+    )  # fmt: skip
+    return clear
+
+
+@kernel
+def lower_to_shapes(
+    a: int, position: FloatArray, heading: FloatArray, shape: FloatArray, gone: IntArray,
+    capsules: FloatArray, body: IntArray, offset: FloatArray, clear: FloatArray,
+) -> None:  # fmt: skip
+    """Lower ``clear`` (T+1,) to the gaps of agent a, with the shapes (A, 3) of `shapes_of`.
+
+    Positions and headings are (T+1, A); agent j is present before state ``gone[j]``.
+    """
+    for k in range(len(clear)):
+        x, y, angle = position[k, a, 0], position[k, a, 1], heading[k, a]
+        for c in range(len(capsules)):
+            x0, y0, x1, y1, r = capsules[c]
+            fx, fy = x - 0.5 * (x0 + x1), y - 0.5 * (y0 + y1)
+            if body[c] >= 0:
+                fx, fy = fx - offset[body[c], k, 0], fy - offset[body[c], k, 1]
+            half = (0.5 * (x1 - x0), 0.5 * (y1 - y0), 0.0, 0.0)
+            gap = cores_apart(fx, fy, angle, shape[a], half) - shape[a, 2] - r
+            clear[k] = min(clear[k], gap)
+        for j in range(position.shape[1]):
+            if j == a or k >= gone[j]:
+                continue
+            c0, s0 = cos_sin(heading[k, j])
+            half = (shape[j, 0] * c0, shape[j, 0] * s0, -shape[j, 1] * s0, shape[j, 1] * c0)
+            gap = cores_apart(x - position[k, j, 0], y - position[k, j, 1], angle, shape[a], half)
+            clear[k] = min(clear[k], gap - shape[a, 2] - shape[j, 2])
 
 
 def _to_capsules(points: FloatArray, capsules: FloatArray) -> FloatArray:

@@ -1,4 +1,4 @@
-"""The limits of agents' motion beside speed and turn rate, and shapes that are not discs."""
+"""The bodies of agents beyond radius, speed and turn rate: shapes, and limits of their motion."""
 
 import math
 from dataclasses import dataclass
@@ -8,22 +8,22 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray
 
-NO_LIMIT: dict[str, Any] = {
+NO_LIMITS: dict[str, Any] = {
     "max_acceleration": math.inf, "max_deceleration": math.inf, "max_turn_acceleration": math.inf,
     "track_width": 0.0, "max_wheel_speed": math.inf, "wheelbase": 0.0,
     "max_steering_angle": math.inf, "max_steering_rate": math.inf, "reverse": False,
-    "half_length": 0.0, "half_width": 0.0, "rounding": 0.0,
 }  # fmt: skip
-"""The columns of `MotionLimits`, each with the value that limits nothing, and that of a disc."""
-SHAPE = frozenset({"half_length", "half_width", "rounding"})  # the columns of the footprint
+DISC: dict[str, Any] = {"half_length": 0.0, "half_width": 0.0, "rounding": 0.0}
+PLAIN_BODY = NO_LIMITS | DISC
+"""The columns of `AgentBodies`, each with its value for a disc without further limits."""
 _UNSET: Any = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class MotionLimits:
-    """Columns (A,) of limits; a column that is not given limits nothing.
+class AgentBodies:
+    """Columns (A,) of limits and shapes; a column that is not given is that of `PLAIN_BODY`.
 
-    Worlds without these limits are hashed and stored without the columns.
+    A column with only such values is neither hashed nor stored.
     """
 
     max_acceleration: FloatArray = _UNSET  # (A,) [m/s²], inf: no limit
@@ -44,7 +44,7 @@ class MotionLimits:
         raise NotImplementedError
 
     def __post_init__(self) -> None:
-        for name, value in NO_LIMIT.items():
+        for name, value in PLAIN_BODY.items():
             if getattr(self, name) is None:
                 object.__setattr__(self, name, np.full(len(self), value))
 
@@ -60,10 +60,10 @@ class MotionLimits:
     @property
     def limited(self) -> bool:
         """Whether any column limits an agent's motion."""
-        return not self.without_limit().issuperset(NO_LIMIT.keys() - SHAPE)
+        return not self.left_out().issuperset(NO_LIMITS)
 
-    def without_limit(self) -> frozenset[str]:
-        """Return the names of the columns that limit no agent."""
+    def left_out(self) -> frozenset[str]:
+        """Return the names of the columns that are those of plain bodies for all agents."""
         return frozenset(
-            name for name, value in NO_LIMIT.items() if (getattr(self, name) == value).all()
+            name for name, value in PLAIN_BODY.items() if (getattr(self, name) == value).all()
         )
