@@ -251,13 +251,15 @@ def _tables(run: Path) -> Iterator[Attack]:
         (EPISODES_FILE, EPISODES), (REHEARSALS_FILE, EPISODES), (RESULTS_FILE, RESULTS)
     ):  # fmt: skip
         paths = sorted(run.glob(f"parts/attacked-first*/*{suffix}"))
-        tables = {path: pq.read_table(path) for path in paths}
+        tables = {path: _read(path, schema) for path in paths}
         for column in schema.names:
             path, row = _valued(tables, column)
             for variant in range(2):
 
-                def change(path=path, column=column, row=row, variant=variant) -> bool:
-                    return _change_column(path, column, row, variant)
+                def change(
+                    path=path, schema=schema, column=column, row=row, variant=variant
+                ) -> bool:
+                    return _change_column(path, schema, column, row, variant)
 
                 yield f"{suffix.split('.')[1]}.{column}", change
 
@@ -271,8 +273,17 @@ def _valued(tables: dict[Path, pa.Table], column: str) -> tuple[Path, int]:
     return next(iter(tables)), 0
 
 
-def _change_column(path: Path, column: str, row: int, variant: int) -> bool:
+def _read(path: Path, schema: pa.Schema) -> pa.Table:
+    """A table as it is stored, with the column that parts of exact perception leave out."""
     table = pq.read_table(path)
+    for name in schema.names:
+        if name not in table.column_names:
+            table = table.append_column(schema.field(name), pa.array(["exact"] * len(table)))
+    return table
+
+
+def _change_column(path: Path, schema: pa.Schema, column: str, row: int, variant: int) -> bool:
+    table = _read(path, schema)
     values = table[column].to_pylist()
     kind = table.schema.field(column).type
     options = variants(values[row], kind)

@@ -30,7 +30,7 @@ def read(run, folder):
     folder.mkdir()
     values, progress = stored_values([run.folder], notify=print), Counted()
     failed = choose_replays(find_failures(values.results), 100)
-    plan = ReplayPlan({(f.navigator, f.scenario, f.track): f.seed for f in failed}, folder)
+    plan = ReplayPlan({f.cell: f.seed for f in failed}, folder)
     data = read_runs([run.folder], values, plan=plan, progress=progress)
     assert (progress.done, progress.ended) == (progress.total, True)
     assert len(data.replays) == len(failed) > 0
