@@ -286,7 +286,7 @@ def _change_column(path: Path, schema: pa.Schema, column: str, row: int, variant
     table = _read(path, schema)
     values = table[column].to_pylist()
     kind = table.schema.field(column).type
-    options = variants(values[row], kind)
+    options = ["noisy"] if column == "perception" else variants(values[row], kind)
     if variant >= len(options):
         return False
     values[row] = options[variant]
