@@ -12,6 +12,7 @@ from importlib.util import find_spec
 import numpy as np
 
 from benchnav.arena.agents import Dynamics
+from benchnav.arena.body import absent
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards
 from benchnav.arrays import BoolArray, FloatArray
@@ -98,6 +99,8 @@ class _Judgement:
             return there
         tick = math.floor(time / h + 1e-9)
         a, b = (law_position(body, (tick + s) * h, False) for s in (0, 1))
+        if absent(a) != absent(b):  # it stands until the substep ends
+            return a
         return a + (b - a) * min(max(time / h - tick, 0.0), 1.0)
 
     def lasting(self) -> Iterator[str]:
