@@ -8,6 +8,7 @@ import typer
 
 import benchnav
 from benchnav.cli.authoring.import_map import import_app
+from benchnav.cli.authoring.import_recording import recording as _recording  # adds its verb
 from benchnav.cli.authoring.new import new_app
 from benchnav.cli.authoring.schema import schema
 from benchnav.cli.authoring.validate import validate
