@@ -52,7 +52,7 @@ class Body:
 
 def absent(position: FloatArray) -> BoolArray:
     """Return which positions (…, 2) [m] are those of absent bodies."""
-    beyond: BoolArray = (np.abs(position) > BEYOND).any(axis=-1)
+    beyond: BoolArray = np.asarray((np.abs(position) > BEYOND).any(axis=-1))
     return beyond
 
 

@@ -12,6 +12,7 @@ from benchnav.scenario.files.track_file import read_tracks
 from benchnav.scenario.law import BackAndForth, CircleLaw, RecordedTrack, WaypointLoop
 from benchnav.scenario.sampling.sampler import sample
 
+_SLACK = 1e-6  # [s]
 _CHORDS = 32  # straight pieces that cover a circle
 
 
@@ -64,18 +65,22 @@ def track_law(
 ) -> Law:
     """Return the law that follows a track: ``times`` (T,) [s] ≥ 0, ``points`` (T, 2) [m].
 
-    If ``present``, the body is absent before its first time and after its last; the smallest
-    difference of two numbers lies between being there and being away. Otherwise it rests.
+    If ``present``, the body is absent until `_SLACK` before its first time, and from `_SLACK` after
+    its last: the rounding of a clock never decides whether it is there. The smallest difference of
+    two numbers lies between being there and being away. Otherwise it rests.
     """
     first, last = float(times[0]), float(times[-1])
     if present:
-        away = np.array([AWAY])
-        times = np.append(times, math.nextafter(last, math.inf))
-        points = np.vstack([points, away])
-        if first > 0.0:
-            before = [0.0, math.nextafter(first, 0.0)]
-            times, points = np.concatenate([before, times]), np.vstack([away, away, points])
-    elif first > 0.0:
+        away, end = np.array([AWAY]), last + _SLACK
+        times = np.append(times, [end, math.nextafter(end, math.inf)])
+        points = np.vstack([points, points[-1:], away])
+        if first > _SLACK:
+            begin = first - _SLACK
+            before = [0.0, math.nextafter(begin, 0.0), begin]
+            times = np.concatenate([before, times])
+            points = np.vstack([away, away, points[:1], points])
+            return Law(LawKind.TRACK, times, points, periodic, phase)
+    if first > 0.0:
         times, points = np.concatenate([[0.0], times]), np.vstack([points[:1], points])
     return Law(LawKind.TRACK, times, points, periodic, phase)
 

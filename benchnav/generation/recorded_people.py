@@ -1,4 +1,4 @@
-"""The people of a recording in one world, and the person whom the robot replaces."""
+"""The people of a recording in one world, and the person that the robot replaces."""
 
 import math
 from collections.abc import Sequence
@@ -32,14 +32,14 @@ class People:
 
     tracks: tuple[Track, ...]  # of those who are present within the horizon; places in metres
     begin: float  # [s] in the recording at t = 0
-    replaced: Track | None  # of the person whom the robot replaces
+    replaced: Track | None  # of the person that the robot replaces
     reacting: tuple[Track, ...]  # those of `tracks` who are agents
 
 
 def read_people(scenario: Scenario) -> tuple[Track, ...]:
     """Return the tracks of the scenario's recording in the arena's frame; none without one.
 
-    Raises ScenarioError if the file is wrong, or has no person whom the robot can replace.
+    Raises ScenarioError if the file is wrong, or has no person that the robot can replace.
     """
     recording = scenario.recording
     if recording is None:
@@ -56,7 +56,7 @@ def read_people(scenario: Scenario) -> tuple[Track, ...]:
         wanted = (
             f"a person whose start and goal are {recording.min_distance:g} m apart"
             if recording.replace == "random"
-            else f"id {recording.replace}, whom the robot replaces; it has {some}"
+            else f"id {recording.replace}, which the robot replaces; it has {some}"
         )
         raise ScenarioError(f"{path}:1: the file must hold {wanted}.")
     return tracks
@@ -76,7 +76,7 @@ def candidates(recording: Recording, tracks: Sequence[Track]) -> list[int]:
 def draw_people(
     scenario: Scenario, tracks: Sequence[Track], rng: np.random.Generator
 ) -> People | None:
-    """Return the people of one world, one of whom ``rng`` may draw; None without a recording.
+    """Return the people of one world; ``rng`` may draw one to replace. None without a recording.
 
     Raises ScenarioError if more people are present within the horizon than a world may have.
     """
@@ -173,10 +173,11 @@ def mean_speed(track: Track) -> float:
 
 
 def _placed(team: Team, replaced: Track | None) -> Team:
-    """Return the team with the start and goal of the person whom it replaces, if it does."""
+    """Return the team with the start and goal of the person that it replaces, if it does."""
     if replaced is None or not isinstance(team.start, RecordedStart):
         return team
-    start = PointsStart(type="points", points=(_point(replaced.place[0]),))
+    place, gap = _point(replaced.place[0]), team.start.separation
+    start = PointsStart(type="points", points=(place,), separation=gap)
     goal = PointsGoal(type="points", points=(_point(replaced.place[-1]),))
     return team.model_copy(update={"start": start, "goal": goal})
 

@@ -140,7 +140,7 @@ def check_columns(columns: Columns, format: TrackFormat | None) -> None:
     if format != "text":
         raise FieldError(("columns",), "belong to the format `text`")
     for name in ("frame", "id", "x", "y"):
-        if columns.count(name) != 1:  # type: ignore[arg-type] # any text may be counted
+        if columns.count(name) != 1:
             raise FieldError(("columns",), f"must name {name!r} once")
 
 

@@ -1,4 +1,4 @@
-"""A recording of people, one of whom the evaluated robot replaces."""
+"""A recording of people; the evaluated robot may replace one of them."""
 
 from typing import Annotated, Literal
 
@@ -41,15 +41,13 @@ class Recording(Spec):
     radius: Length = Field(0.2, description="radius [m] of a person, a disc")
     replace: Literal["random", "none"] | int = Field(
         "random",
-        description="id of the person whom the robot replaces; `random`: one that the seed draws;"
-        " `none`: nobody, so that the teams need their own starts and goals",
+        description="id of the person that the robot replaces; `random`: one that the seed draws;"
+        " `none`: no person, so that the teams need their own starts and goals",
     )
     min_distance: Distance = Field(
         0.0, description="smallest distance [m] from start to goal of a person who is drawn"
     )
-    begin: Time = Field(
-        0.0, description="time [s] in the recording at t = 0, with `replace: none`"
-    )
+    begin: Time = Field(0.0, description="time [s] in the recording at t = 0, with `replace: none`")
     driver: (
         Annotated[
             NavigatorChoice, BeforeValidator(named, json_schema_input_type=str | NavigatorChoice)

@@ -76,7 +76,7 @@ class Scenario(Spec):
         (), max_length=100, description="obstacles that follow a motion law and never yield"
     )
     recording: Recording | None = added_field(
-        None, "0.3", description="recorded people, one of whom the evaluated robot may replace"
+        None, "0.3", description="recorded people; the evaluated robot may replace one of them"
     )
     teams: tuple[Team, ...] = Field(min_length=1, max_length=100, description="groups of agents")
     clock: Clock = Field(Clock(), description="time step, horizon and decision budget")

@@ -76,6 +76,9 @@ class RecordedStart(Spec):
     """The agent starts where and when a person of the scenario's `recording` appears."""
 
     type: Literal["recorded"]
+    separation: Distance = Field(
+        0.0, description="smallest gap [m] to the recorded people at the start"
+    )
 
 
 class RegionGoal(Spec):

@@ -81,7 +81,9 @@ def draw_episode(axes: Axes, episode: Episode, time: float | None = None) -> Non
     bodies = episode.body_position[0 if at_start else state]
     frame = draw_arena(axes, world, bodies)
     for way in episode.body_position.transpose(1, 0, 2):
-        axes.plot(*way[~absent(way)].T, color=MOVER, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.5)
+        axes.plot(
+            *way[~absent(way)].T, color=MOVER, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.5
+        )
     draw_goals(axes, world)
     draw_trails(axes, episode, end if time is None else time)
     if at_start:

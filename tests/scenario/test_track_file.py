@@ -39,7 +39,7 @@ def test_trajnetpp(tmp_path):
     [
         ("1 1 2\n", {}, r"t\.txt:1: must be four numbers: frame, id, x, y; got '1 1 2'\."),
         ("1 1 2 2\n1 1 3 3\n", {}, r"t\.txt:2: frame 1 of id 1 is repeated\."),
-        ("1 1 nan 2\n", {}, r"t\.txt:1: must be four numbers"),
+        ("1 1 inf 2\n", {}, r"t\.txt:1: must be four numbers"),
         ("1 1.5 0 2\n", {}, r"t\.txt:1: must be four numbers"),
         ("", {}, r"t\.txt:1: the file must hold at least one track\."),
         ("1 1 2 2\n", {"ids": (4,)}, r"t\.txt:1: the file must hold id 4; it has 1\."),

@@ -29,7 +29,7 @@ def import_recording(
     wall_cell: float | None = None,
     wall_origin: tuple[float, float] | None = None,
     person_radius: float = 0.2,
-    radius: float = 0.3,
+    radius: float | None = None,
     speed: float = 1.5,
     horizon: float | None = None,
     name: str | None = None,
@@ -50,15 +50,15 @@ def import_recording(
         unit: "m", "cm", "mm", "ft", "in" or metres per unit; None: the file's own, or metres.
         columns: of a text file, of "frame", "id", "x", "y" and "_"; None: by its header.
         gaps: whether gaps in tracks are refused, split or bridged.
-        replace: id of the person whom the robot replaces; "random": one that the seed draws;
-            "none": nobody.
+        replace: id of the person that the robot replaces; "random": one that the seed draws;
+            "none": no person.
         react: navigator that moves the other people; None: they follow the recording.
         walls: "none", "hull", or a file: WKT, ROS map, image, Vadere scenario, Crowd:it geometry;
             None: the recording's own walkable area, or none.
         wall_cell: metres per pixel of an image of walls.
         wall_origin: of its lower left corner [m].
         person_radius: of a person [m].
-        radius: of the robot [m].
+        radius: of the robot [m]; None: that of a person.
         speed: of the robot, at most [m/s].
         horizon: time limit [s]; None: twice the longest track, 20 to 300 s.
         name: of the scenario; None: from ``out`` or the recording.
@@ -83,7 +83,5 @@ def import_recording(
         )
     called = name or default_name("people", path, target)
     with TemporaryDirectory(prefix="benchnav-") as scratch:
-        mapping, people = draft(
-            path, called, request, Path(scratch), silent if quiet else message
-        )
+        mapping, people = draft(path, called, request, Path(scratch), silent if quiet else message)
         return write_scenario(mapping, target, force, people)

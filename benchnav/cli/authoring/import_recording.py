@@ -5,13 +5,12 @@ from typing import Annotated
 
 import typer
 
-from benchnav.cli.authoring.import_map import Force, Name, import_app
+from benchnav.cli.authoring.import_map import Force, Name
 from benchnav.cli.console import put
 from benchnav.cli.stopping import stoppable
 from benchnav.errors import UsageError
 
 
-@import_app.command("recording")
 @stoppable
 def recording(
     file: Annotated[Path, typer.Argument(metavar="RECORDING", help="A recording of people.")],
@@ -49,7 +48,7 @@ def recording(
     replace: Annotated[
         str,
         typer.Option(
-            metavar="ID", help="Person whom the robot replaces: an id, random (by seed) or none."
+            metavar="ID", help="Person that the robot replaces: an id, random (by seed) or none."
         ),
     ] = "random",
     react: Annotated[
@@ -77,7 +76,10 @@ def recording(
     person_radius: Annotated[
         float, typer.Option(metavar="M", help="Radius [m] of a person.")
     ] = 0.2,
-    radius: Annotated[float, typer.Option(metavar="M", help="Radius [m] of the robot.")] = 0.3,
+    radius: Annotated[
+        float | None,
+        typer.Option(metavar="M", help="Radius [m] of the robot. [default: that of a person]"),
+    ] = None,
     speed: Annotated[
         float, typer.Option(metavar="V", help="Largest speed [m/s] of the robot.")
     ] = 1.5,

@@ -188,8 +188,7 @@ def _meet_groups(
 
 @kernel_without_allocation
 def _find_body_top(offset: FloatArray, jumps: BoolArray, dt: float, top: FloatArray) -> None:
-    """Write the largest speeds (M,) [m/s] to ``top``; inf for bodies that jump, appear or vanish.
-    """
+    """Write the largest speeds (M,) [m/s]; inf for bodies that jump, appear or vanish."""
     for m in range(len(offset)):
         for k in range(offset.shape[1] - 1):
             if _comes_or_goes(offset, m, k, k + 1):

@@ -2,11 +2,12 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.errors import ScenarioError
 from benchnav.scenario.files.track_rows import Rows, read_rows
 from benchnav.scenario.law import Gaps, RecordedTrack
@@ -69,7 +70,7 @@ def tracks_of(
     ends = [0, *(np.flatnonzero(cut) + 1).tolist(), len(number)]
     time = (frame - frame.min()) * frame_time
     found: dict[int, list[Track]] = {}
-    for low, high in zip(ends[:-1], ends[1:], strict=True):
+    for low, high in pairwise(ends):
         track = Track(int(number[low]), time[low:high], place[low:high])
         found.setdefault(track.number, []).append(track)
     for wanted in ids or ():
@@ -90,7 +91,7 @@ def _is_gap(step: FloatArray, within: FloatArray, frame_time: float) -> BoolArra
     return long
 
 
-def _refuse_repeats(rows: Rows, order: FloatArray, repeated: BoolArray) -> None:
+def _refuse_repeats(rows: Rows, order: IntArray, repeated: BoolArray) -> None:
     if repeated.any():
         k = order[np.flatnonzero(repeated)[0] + 1]
         raise ScenarioError(
@@ -99,7 +100,7 @@ def _refuse_repeats(rows: Rows, order: FloatArray, repeated: BoolArray) -> None:
         )
 
 
-def _refuse_gap(rows: Rows, order: FloatArray, gap: BoolArray, frame_time: float) -> None:
+def _refuse_gap(rows: Rows, order: IntArray, gap: BoolArray, frame_time: float) -> None:
     at = int(np.flatnonzero(gap)[0])
     before, after = order[at], order[at + 1]
     count = int(gap.sum())

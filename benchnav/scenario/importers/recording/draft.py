@@ -29,11 +29,11 @@ Mapping = dict[str, Any]
 Remark = Callable[[str], None]
 
 ROOM = 2.0  # [m] around the places of all people
-FASTEST = 10.0  # [m/s] nobody is faster on foot
+FASTEST = 10.0  # [m/s] faster than any person on foot
 SLOWEST = 0.02  # [m/s] a slower crowd is worth a remark
 _PATIENCE = 2.0  # ratio of the horizon to the longest track
 _HORIZON = (20.0, 300.0)  # [s] its limits
-_FAR_ENOUGH = 2.0  # [m] from start to goal of a person whom the robot may replace
+_FAR_ENOUGH = 2.0  # [m] from start to goal of a person that the robot may replace
 _MAX_WALLS = 2000
 
 
@@ -52,7 +52,7 @@ class Request:
     wall_cell: float | None = None  # [m] of a pixel of an image of walls
     wall_origin: tuple[float, float] | None = None  # [m] its lower left corner
     person_radius: float = 0.2  # [m]
-    radius: float = 0.3  # [m] of the robot
+    radius: float | None = None  # [m] of the robot; None: that of a person
     speed: float = 1.5  # [m/s] of the robot, at most
     horizon: float | None = None  # [s] None: twice the longest track, 20 to 300 s
 
@@ -103,7 +103,7 @@ def import_recording(
 
 def _check(request: Request) -> None:
     for name, value in (
-        ("person-radius", request.person_radius), ("radius", request.radius),
+        ("person-radius", request.person_radius), ("radius", request.radius or 1.0),
         ("speed", request.speed), ("horizon", request.horizon or 1.0),
     ):  # fmt: skip
         if not 0.0 < value < 1e5:
@@ -154,12 +154,12 @@ def _check_speed(path: Path, tracks: Sequence[Track], loaded: Loaded, remark: Re
     if speed > FASTEST:
         raise ScenarioError(
             f"{path}:1: the unit or the rate must be another: people would walk at {speed:.3g} m/s"
-            f" (median). Try --unit cm or --unit mm; the rate is {loaded.rate:g} frames a second."
+            f" (median) with {loaded.rate:g} frames a second. Set the option 'unit', such as cm."
         )
     if np.abs(places).max() > 0.9 * FAR:
         raise ScenarioError(
             f"{path}:1: coordinates must be within ± {0.9 * FAR:g} m; the largest is"
-            f" {np.abs(places).max():.6g} m. Give the unit (--unit), or move the recording."
+            f" {np.abs(places).max():.6g} m. Set the option 'unit', or move the recording."
         )
     remark(
         f"{counted(len(places), 'row')}, {_people(len(tracks))},"
@@ -167,17 +167,15 @@ def _check_speed(path: Path, tracks: Sequence[Track], loaded: Loaded, remark: Re
         f" {extent[0]:.1f} × {extent[1]:.1f} m, {speed:.2f} m/s (median)."
     )
     if speed < SLOWEST:
-        remark("People hardly move: check the unit (--unit) and the rate (--rate).")
+        remark("People hardly move: check the options 'unit' and 'rate'.")
 
 
 def _length(place: FloatArray) -> float:
     return float(np.hypot(*np.diff(place, axis=0).T).sum())
 
 
-def _replaced(
-    path: Path, tracks: Sequence[Track], request: Request
-) -> tuple[int | str, float]:
-    """Return whom the robot replaces, and the smallest distance [m] from start to goal."""
+def _replaced(path: Path, tracks: Sequence[Track], request: Request) -> tuple[int | str, float]:
+    """Return the person that is replaced, and the smallest distance [m] from start to goal."""
     if request.replace in ("random", "none"):
         far = max(math.hypot(*(t.place[-1] - t.place[0])) for t in tracks)
         return request.replace, _FAR_ENOUGH if far >= _FAR_ENOUGH else 0.0
@@ -236,7 +234,8 @@ def _horizon(tracks: Sequence[Track]) -> float:
 
 
 def _robot(request: Request, replace: int | str, bounds: Sequence[float]) -> Mapping:
-    team: Mapping = {"name": "robot", "radius": request.radius, "max_speed": request.speed}
+    radius = request.radius or request.person_radius
+    team: Mapping = {"name": "robot", "radius": radius, "max_speed": request.speed}
     if replace != "none":
         return {**team, "start": {"type": "recorded"}, "goal": {"type": "recorded"}}
     region = {"type": "rectangle", "bounds": list(bounds)}

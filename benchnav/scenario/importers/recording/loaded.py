@@ -263,12 +263,12 @@ def _sentence(path: Path, format: str, error: BaseException) -> str:
     """Return what is wrong in one sentence, and the cure."""
     text = " ".join(str(error).split())
     if "Frame rate is needed" in text:
-        return "has no frame rate; give the rate in frames a second (--rate)."
+        return "has no frame rate; set the option 'rate', in frames a second."
     if "Unit is needed" in text:
-        return "does not say its unit; give it (--unit m or --unit cm)."
+        return "does not say its unit; set the option 'unit' to m or cm."
     if "unit seems to differ" in text:
-        return "has another unit than the one given; leave out --unit."
+        return "has another unit than the one given; leave out the option 'unit'."
     if "frame rate seems to differ" in text:
-        return "has another frame rate than the one given; leave out --rate."
+        return "has another frame rate than the one given; leave out the option 'rate'."
     reason = shown(text.removesuffix("."), 200)
-    return f"must be {_NAMES[format]}; PedPy's loader says: {reason}. Give its format (--format)."
+    return f"must be {_NAMES[format]}; PedPy's loader says: {reason}. Set the option 'format'."

@@ -1,6 +1,7 @@
 """Walls around recorded people: a walkable area, a hull of their places, or a map."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -101,13 +102,12 @@ def walls_of(area: "BaseGeometry") -> Iterator[Wall]:
 
 
 def _lines(points: FloatArray) -> Iterator[Wall]:
-    """Yield open lines along points (N, 2): two halves of a ring, or more of a long line."""
-    points = _distinct(points)
-    closed = len(points) > 2 and (points[0] == points[-1]).all()
-    most = min(_MOST, (len(points) + 1) // 2) if closed else _MOST
-    for first in range(0, len(points) - 1, most):
-        piece = points[first : first + most + 1]
-        yield {"shape": {"type": "polyline", "points": piece.tolist()}}
+    """Yield a straight wall without thickness between successive points (N, 2).
+
+    The area of a longer line would not be exactly zero, but a rounding error.
+    """
+    for a, b in pairwise(_distinct(points).tolist()):
+        yield {"shape": {"type": "polyline", "points": [a, b]}}
 
 
 def _distinct(points: FloatArray) -> FloatArray:
@@ -135,8 +135,8 @@ def ros_map_of(
 
     if cell is None or origin is None:
         raise UsageError(
-            f"The image {image} needs its metres per pixel (--wall-cell) and the place of its lower"
-            " left corner (--wall-origin X,Y)."
+            f"The image {image} needs the options 'wall-cell', its metres per pixel, and"
+            " 'wall-origin', the place of its lower left corner."
         )
     if not 0.0 < cell <= 1e4 or not max(map(abs, origin)) <= FAR:
         raise UsageError("The metres per pixel must be > 0, and the origin two numbers [m].")
