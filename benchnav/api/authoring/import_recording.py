@@ -10,7 +10,7 @@ from benchnav.api.output.messages import message, silent
 from benchnav.errors import UsageError
 from benchnav.processes.main_module import stop_import_of_main
 from benchnav.scenario.importers import default_name, demand_name, write_scenario
-from benchnav.scenario.importers.recording import Request
+from benchnav.scenario.importers.recording import Request, find_format
 from benchnav.scenario.importers.recording import import_recording as draft
 
 
@@ -71,8 +71,8 @@ def import_recording(
     demand_name(name)
     path, target = Path(recording), Path(out)
     request = Request(
-        format=format, rate=rate, unit=unit, columns=None if columns is None else tuple(columns),
-        gaps=gaps, replace=str(replace), driver=react,
+        format=find_format(path, format), rate=rate, unit=unit,
+        columns=None if columns is None else tuple(columns), gaps=gaps, replace=str(replace), driver=react,
         walls=None if walls is None else str(walls), wall_cell=wall_cell, wall_origin=wall_origin,
         person_radius=person_radius, radius=radius, speed=speed, horizon=horizon,
     )  # fmt: skip

@@ -14,7 +14,6 @@ from benchnav.errors import ScenarioError, UsageError
 from benchnav.scenario.base import FAR
 from benchnav.scenario.files.track_file import Track, tracks_of
 from benchnav.scenario.importers import ros_map
-from benchnav.scenario.importers.recording.formats import find_format
 from benchnav.scenario.importers.recording.loaded import Loaded, load
 from benchnav.scenario.importers.recording.surroundings import (
     hull_of,
@@ -41,7 +40,7 @@ _MAX_WALLS = 2000
 class Request:
     """The choices of an import."""
 
-    format: str | None = None  # None: by suffix and content
+    format: str  # one of `FORMATS` except "pedpy"
     rate: float | None = None  # frames per second; None: the file's own
     unit: str | None = None  # None: the file's own, or metres
     columns: tuple[str, ...] | None = None  # of a text file; None: by its header or their number
@@ -74,8 +73,7 @@ def import_recording(
         ScenarioError, MapError: a file is wrong.
     """
     _check(request)
-    format = find_format(path, request.format)
-    loaded = load(path, format, request.rate, request.unit, request.columns)
+    loaded = load(path, request.format, request.rate, request.unit, request.columns)
     tracks = _numbered(_tracks(loaded, request, remark), remark)
     places = np.concatenate([track.place for track in tracks])
     _check_speed(path, tracks, loaded, remark)
@@ -88,6 +86,8 @@ def import_recording(
     }  # fmt: skip
     if least > 0.0 and replace == "random":
         people["min_distance"] = least
+    if request.gaps == "bridge":
+        people["gaps"] = "bridge"
     if request.driver is not None:
         people["driver"] = request.driver
     mapping = {
@@ -238,10 +238,12 @@ def _robot(request: Request, replace: int | str, bounds: Sequence[float]) -> Map
     team: Mapping = {"name": "robot", "radius": radius, "max_speed": request.speed}
     if replace != "none":
         return {**team, "start": {"type": "recorded"}, "goal": {"type": "recorded"}}
-    region = {"type": "rectangle", "bounds": list(bounds)}
+    start, goal = ({"type": "rectangle", "bounds": [*bounds]} for _ in range(2))
     apart = round(0.25 * min(bounds[2] - bounds[0], bounds[3] - bounds[1]), 3)
-    start = {"type": "region", "region": region}
-    return {**team, "start": start, "goal": {**start, "min_distance": apart}}
+    return {
+        **team, "start": {"type": "region", "region": start},
+        "goal": {"type": "region", "region": goal, "min_distance": apart},
+    }  # fmt: skip
 
 
 def _table(tracks: Sequence[Track], rate: float) -> bytes:

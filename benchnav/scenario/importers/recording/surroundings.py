@@ -107,7 +107,7 @@ def _lines(points: FloatArray) -> Iterator[Wall]:
     The area of a longer line would not be exactly zero, but a rounding error.
     """
     for a, b in pairwise(_distinct(points).tolist()):
-        yield {"shape": {"type": "polyline", "points": [a, b]}}
+        yield {"shape": {"type": "polyline", "points": [[*a], [*b]]}}
 
 
 def _distinct(points: FloatArray) -> FloatArray:
