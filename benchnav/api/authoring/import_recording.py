@@ -72,7 +72,8 @@ def import_recording(
     path, target = Path(recording), Path(out)
     request = Request(
         format=find_format(path, format), rate=rate, unit=unit,
-        columns=None if columns is None else tuple(columns), gaps=gaps, replace=str(replace), driver=react,
+        columns=None if columns is None else tuple(columns), gaps=gaps,
+        replace=str(replace), driver=react,
         walls=None if walls is None else str(walls), wall_cell=wall_cell, wall_origin=wall_origin,
         person_radius=person_radius, radius=radius, speed=speed, horizon=horizon,
     )  # fmt: skip
