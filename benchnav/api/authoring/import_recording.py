@@ -8,6 +8,8 @@ from typing import Literal
 
 from benchnav.api.output.messages import message, silent
 from benchnav.errors import UsageError
+from benchnav.navigation.plugin.configure import configure
+from benchnav.plugins import CONTROLLERS, NAVIGATORS
 from benchnav.processes.main_module import stop_import_of_main
 from benchnav.scenario.importers import default_name, demand_name, write_scenario
 from benchnav.scenario.importers.recording import Request, find_format
@@ -52,7 +54,7 @@ def import_recording(
         gaps: whether gaps in tracks are refused, split or bridged.
         replace: id of the person that the robot replaces; "random": one that the seed draws;
             "none": no person.
-        react: navigator that moves the other people; None: they follow the recording.
+        react: navigator or controller that moves the other people; None: they follow the recording.
         walls: "none", "hull", or a file: WKT, ROS map, image, Vadere scenario, Crowd:it geometry;
             None: the recording's own walkable area, or none.
         wall_cell: metres per pixel of an image of walls.
@@ -73,7 +75,7 @@ def import_recording(
     request = Request(
         format=find_format(path, format), rate=rate, unit=unit,
         columns=None if columns is None else tuple(columns), gaps=gaps,
-        replace=str(replace), driver=react,
+        replace=str(replace), driver=_driver(react),
         walls=None if walls is None else str(walls), wall_cell=wall_cell, wall_origin=wall_origin,
         person_radius=person_radius, radius=radius, speed=speed, horizon=horizon,
     )  # fmt: skip
@@ -86,3 +88,16 @@ def import_recording(
     with TemporaryDirectory(prefix="benchnav-") as scratch:
         mapping, people = draft(path, called, request, Path(scratch), silent if quiet else message)
         return write_scenario(mapping, target, force, people)
+
+
+def _driver(name: str | None) -> str | None:
+    """Return the navigator that ``name`` stands for; a controller alone heads for the goal.
+
+    Raises PluginError if there is none.
+    """
+    if name is None:
+        return None
+    alone = name in CONTROLLERS.names() and name not in NAVIGATORS.names()
+    driver = f"none+{name}" if alone else name
+    configure(NAVIGATORS, driver)
+    return driver
