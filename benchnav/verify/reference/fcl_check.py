@@ -151,10 +151,16 @@ class _Judgement:
                     if gap < -OVERLAP:
                         reported.add((int(i), partner))
                         name, k = partner
+                        if name == "bodies" and self._appears(k, t):
+                            continue  # on the agent, which is no touch
                         yield (
                             f"agent {i} overlaps {name} {k} by {-gap:.6f} m"
                             f" at about {t * self.dt:.3f} s, and there is no event"
                         )
+
+    def _appears(self, m: int, t: int) -> bool:
+        """Whether body m was absent in the state before t."""
+        return t > 0 and bool(absent(self.episode.body_position[t - 1, m]))
 
     def _covered(self, i: int, partner: Partner, t: int) -> bool:
         """Whether there is an event of the two in the decisions before or after state t."""
