@@ -8,6 +8,7 @@ import typer
 
 import benchnav
 from benchnav.cli.authoring.import_map import import_app
+from benchnav.cli.authoring.import_recording import recording
 from benchnav.cli.authoring.new import new_app
 from benchnav.cli.authoring.schema import schema
 from benchnav.cli.authoring.validate import validate
@@ -71,6 +72,7 @@ app.command("list")(stoppable(list_))
 app.command("show")(stoppable(show))
 app.command("validate")(stoppable(validate))
 app.command("schema")(stoppable(schema))
+import_app.command("recording")(recording)
 app.add_typer(import_app, name="import")
 app.add_typer(new_app, name="new")
 app.command("doctor")(stoppable(doctor))

@@ -185,15 +185,20 @@ def _scenario(
 
 
 def _demand_sane(agents: int | None, radius: float | None, name: str | None) -> None:
+    demand_name(name)
+    if agents is not None and agents < 1:
+        raise UsageError(f"agents must be ≥ 1; got {agents}.")
+    if radius is not None and not 0.0 < radius < math.inf:
+        raise UsageError(f"radius must be > 0 m; got {radius}.")
+
+
+def demand_name(name: str | None) -> None:
+    """Raise UsageError unless ``name`` can be that of a scenario, or is None."""
     if name is not None and not (re.fullmatch(NAME_PATTERN, name) and len(name) <= MAX_NAME):
         raise UsageError(
             "A scenario's name must consist of small letters, digits, - and _, with / between its"
             f" parts, such as ros/warehouse; got {shown(name)!r}."
         )
-    if agents is not None and agents < 1:
-        raise UsageError(f"agents must be ≥ 1; got {agents}.")
-    if radius is not None and not 0.0 < radius < math.inf:
-        raise UsageError(f"radius must be > 0 m; got {radius}.")
 
 
 def _room(path: Path, occupancy: Occupancy, unknown_is_free: bool, radii: Sequence[float]) -> Room:

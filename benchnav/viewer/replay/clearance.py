@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from benchnav.arena.body import absent
 from benchnav.arrays import FloatArray
 from benchnav.episode.episode import Episode
 from benchnav.metrics.quantities.encounters import things_of
@@ -34,7 +35,8 @@ def clearance(episode: Episode, agent: int) -> FloatArray:
         offset = np.zeros((len(capsules), len(here), 2))
         moving = owner >= 0
         offset[moving] = things.offset[owner[moving]]
-        gap = np.minimum(gap, _to_capsules(here[None] - offset, capsules).min(axis=0))
+        apart = np.where(absent(offset), np.inf, _to_capsules(here[None] - offset, capsules))
+        gap = np.minimum(gap, apart.min(axis=0))
     clear: FloatArray = gap - radius[agent]
     return clear
 
