@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from benchnav.api.records.leaderboard import Leaderboard
     from benchnav.api.records.run import Run, merge, open_run
     from benchnav.api.records.scenario import Scenario, load_scenario
+    from benchnav.api.records.score import score
     from benchnav.api.records.training import Training
     from benchnav.api.records.verification import Verification
     from benchnav.api.records.world import World
@@ -64,6 +65,7 @@ else:
             "open_run": "benchnav.api.records.run",
             "run": "benchnav.api.execution.run",
             "schema": "benchnav.api.authoring.schema",
+            "score": "benchnav.api.records.score",
             "show": "benchnav.api.components.page",
             "simulate": "benchnav.api.execution.simulate",
             "train": "benchnav.api.execution.train",
@@ -103,6 +105,7 @@ __all__ = [
     "register_planner",
     "run",
     "schema",
+    "score",
     "show",
     "simulate",
     "train",

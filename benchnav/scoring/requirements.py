@@ -1,0 +1,95 @@
+"""What each metric needs to know, and why it is not applicable where that is unknown."""
+
+from collections.abc import Collection
+
+from benchnav.metrics.measure import is_own
+from benchnav.metrics.metric import Metric
+
+NOT_APPLICABLE = "n/a: "
+"""Begins the reason of a missing value that no failure caused; leaderboards show it as such."""
+
+NAMES = {
+    "goals": "goals",
+    "radius": "radius",
+    "preferred_speed": "preferred speed",
+    "walls": "walls",
+    "movers": "moving obstacles",
+    "horizon": "horizon",
+    "area": "measurement area",
+    "teams": "teams",
+    "roles": "roles",
+    "timings": "times of decisions",
+    "navigator": "failures of navigator",
+    "common_start": "common start",
+}
+"""What can be unknown → what the reason says that a metric needs."""
+CURES = {
+    "goals": "goals: columns goal_x and goal_y, --goals last, or --scenario",
+    "radius": "radius: a column radius, --radius, or --scenario",
+    "preferred_speed": "preferred speed: a column preferred_speed, --preferred-speed, or"
+    " --scenario",
+    "walls": "walls and horizon: --scenario",
+    "area": "measurement area: --area, or a --scenario with one",
+    "teams": "teams: a column team, or --scenario",
+}
+"""What a user can add → how."""
+
+_BODY = ("radius",)
+_NEEDS: dict[str, tuple[str, ...]] = {
+    "success": ("goals", "radius"),
+    "arrival": ("goals",),
+    "timeout": ("goals", "horizon"),
+    "stuck": ("goals", "horizon", "radius"),
+    "failed": ("navigator",),
+    "collided": _BODY,
+    "collisions_wall": ("walls", "radius"),
+    "collisions_static": ("walls", "radius"),
+    "collisions_dynamic": ("movers", "radius"),
+    "collisions_agent": _BODY,
+    "contact_time": _BODY,
+    "min_clearance": _BODY,
+    "min_time_to_collision": _BODY,
+    "personal_space_intimate": _BODY,
+    "personal_space_personal": _BODY,
+    "time_to_goal": ("goals",),
+    "path_length": (),
+    "geodesic_length": ("goals", "radius"),
+    "efficiency": ("goals", "radius"),
+    "spl": ("goals", "radius"),
+    "sct": ("goals", "radius", "preferred_speed"),
+    "makespan": ("goals",),
+    "turning": ("goals", "radius"),
+    "log_dimensionless_jerk": ("goals", "radius"),
+    "sparc": ("goals", "radius"),
+    "jam": ("radius", "preferred_speed"),
+    "density_mean": ("area",),
+    "density_peak": ("area",),
+    "flow": ("area", "goals"),
+    "velocity_fluctuation": ("area",),
+    "congestion_level": ("area",),
+    "cohesion": ("teams", "radius"),
+    "polarisation": ("teams",),
+    "splits": ("teams", "radius"),
+    "path_keeping": ("roles", "radius"),
+    "catch_up_time": ("roles", "radius"),
+}
+
+
+def needs(metric: Metric) -> tuple[str, ...]:
+    """Return what must be known for a metric of benchnav; of a plugin: all but the walls."""
+    if metric.name in _NEEDS and is_own(metric.name):
+        return _NEEDS[metric.name]
+    if not metric.verifiable:
+        return ("timings",)
+    return ("common_start", "goals", "radius", "preferred_speed")
+
+
+def reason(metric: Metric, known: Collection[str]) -> str:
+    """Return why a metric is not applicable; "" if everything that it needs is known."""
+    missing = [NAMES[need] for need in needs(metric) if need not in known]
+    return f"{NOT_APPLICABLE}needs {', '.join(missing)}" if missing else ""
+
+
+def cures(known: Collection[str]) -> list[str]:
+    """Return how to add what is unknown, a line each."""
+    return [text for need, text in CURES.items() if need not in known]
