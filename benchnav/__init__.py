@@ -16,6 +16,7 @@ from benchnav.plugins import (
 
 if TYPE_CHECKING:
     from benchnav.api.authoring.import_map import import_map
+    from benchnav.api.authoring.import_world import import_world
     from benchnav.api.authoring.new_navigator import new_navigator
     from benchnav.api.authoring.schema import schema
     from benchnav.api.authoring.validate import Validation, validate
@@ -58,6 +59,7 @@ else:
             "available": "benchnav.api.components.catalogue",
             "doctor": "benchnav.api.components.diagnosis",
             "import_map": "benchnav.api.authoring.import_map",
+            "import_world": "benchnav.api.authoring.import_world",
             "load_scenario": "benchnav.api.records.scenario",
             "make_env": "benchnav.api.execution.env",
             "merge": "benchnav.api.records.run",
@@ -94,6 +96,7 @@ __all__ = [
     "available",
     "doctor",
     "import_map",
+    "import_world",
     "load_scenario",
     "make_env",
     "merge",

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 import typer
 
 import benchnav
-from benchnav.cli.authoring.import_map import import_app
+from benchnav.cli.authoring.import_world import import_app
 from benchnav.cli.authoring.new import new_app
 from benchnav.cli.authoring.schema import schema
 from benchnav.cli.authoring.validate import validate
