@@ -17,7 +17,7 @@ from benchnav.plugins import (
 if TYPE_CHECKING:
     from benchnav.api.authoring.import_map import import_map
     from benchnav.api.authoring.import_world import import_world
-    from benchnav.api.authoring.new_navigator import new_navigator
+    from benchnav.api.authoring.new_package import new_navigator, new_package
     from benchnav.api.authoring.schema import schema
     from benchnav.api.authoring.validate import Validation, validate
     from benchnav.api.components.catalogue import Catalogue, available
@@ -63,7 +63,8 @@ else:
             "load_scenario": "benchnav.api.records.scenario",
             "make_env": "benchnav.api.execution.env",
             "merge": "benchnav.api.records.run",
-            "new_navigator": "benchnav.api.authoring.new_navigator",
+            "new_navigator": "benchnav.api.authoring.new_package",
+            "new_package": "benchnav.api.authoring.new_package",
             "open_run": "benchnav.api.records.run",
             "run": "benchnav.api.execution.run",
             "schema": "benchnav.api.authoring.schema",
@@ -101,6 +102,7 @@ __all__ = [
     "make_env",
     "merge",
     "new_navigator",
+    "new_package",
     "open_run",
     "register_controller",
     "register_metric",
