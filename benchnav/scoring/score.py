@@ -103,8 +103,8 @@ def _scenario(table: Table, key: dict[str, Any], subject: Subject) -> "Scenario 
     known = subject.scenarios
     if not known:
         return None
-    held = key.get("scenario")
-    if held is None and len(known) == 1:
+    held = str(key.get("scenario", ""))
+    if not held and len(known) == 1:
         return next(iter(known.values()))
     if held not in known:
         raise UsageError(

@@ -8,7 +8,7 @@ import numpy as np
 from benchnav.arena.agents import Agents, Dynamics, Role
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.world import Afterwards, Charge, Clock, ContactRule, Rules, World
-from benchnav.arrays import Extent, FloatArray, IntArray
+from benchnav.arrays import ByteArray, Extent, FloatArray, IntArray
 from benchnav.errors import TrajectoryError
 from benchnav.scoring.table_file import Table
 from benchnav.scoring.tracks import Tracks
@@ -46,82 +46,118 @@ def setting_of(table: Table, tracks: Tracks, options: Options, drawn: World | No
         options: values for all ids.
         drawn: a world of a scenario, whose agents are used if they start where the ids do.
     """
-    rows = tracks.rows
-    known: set[str] = set()
-    remarks: list[str] = []
     match = None if drawn is None else _same_agents(tracks, drawn)
-    own = None if drawn is None or match is None else drawn.agents
-    start = tracks.place[np.arange(len(tracks)), tracks.first]
-    final = tracks.place[:, -1]
-
-    def value(name: str, option: float | None, theirs: FloatArray | None) -> FloatArray:
-        column = table.column(name)
-        if column is not None:
-            found = column[rows]
-        elif option is not None:
-            found = np.full(len(tracks), option)
-        elif theirs is not None and match is not None:
-            found = theirs[match]
-        else:
-            return np.zeros(len(tracks))
-        if not (found > 0.0).all():
-            row = int(rows[np.argmax(~(found > 0.0))])
-            raise TrajectoryError(
-                f"{table.place(row)}: {name} must be > 0; got {found.min():g}. Correct it."
-            )
-        known.add(name)
-        return found
-
-    radius = value("radius", options.radius, own.radius if own else None)
-    speed = value("preferred_speed", options.preferred_speed, own.preferred_speed if own else None)
-    goal, tolerance = final, options.goal_tolerance
-    x, y = table.column("goal_x"), table.column("goal_y")
-    if options.goals == "last":
-        known.add("goals")
-        tolerance = 0.0 if tolerance is None else tolerance
-    elif x is not None and y is not None:
-        goal = np.stack([x[rows], y[rows]], axis=1)
-        known.add("goals")
-    elif own is not None and match is not None:
-        goal = own.goal[match]
-        known.add("goals")
-    team, names = _teams(table, rows)
-    if "team" in table.frame:
-        known.add("teams")
-    role = np.full(len(tracks), int(Role.LEADER), np.int8)
-    driver = np.zeros(len(tracks), np.int64)
-    if own is not None and match is not None and drawn is not None:
-        team, names, role, driver = own.team[match], drawn.teams, own.role[match], own.driver[match]
-        known |= {"teams", "roles"}
-    heading = np.zeros(len(tracks))
-    if tracks.heading is not None:
-        heading = tracks.heading[np.arange(len(tracks)), tracks.first]
-    agents = Agents(
-        start=start, heading=heading, goal=goal, radius=radius,
-        max_speed=np.full(len(tracks), np.inf), preferred_speed=speed,
-        max_turn_rate=np.full(len(tracks), np.inf),
-        dynamics=np.full(len(tracks), int(Dynamics.HOLONOMIC), np.int8), role=role, team=team,
-        driver=driver,
-    )  # fmt: skip
+    theirs = _Theirs(drawn, match) if drawn is not None and match is not None else None
+    known: set[str] = set()
+    agents, names = _agents(table, tracks, options, theirs, known)
+    tolerance = options.goal_tolerance
+    if options.goals == "last" and tolerance is None:
+        tolerance = 0.0
     if drawn is None:
-        tolerance = GOAL_TOLERANCE if tolerance is None else tolerance
-        world = _open(tracks, agents, names, tolerance)
-        remarks.append("No walls are known: only contacts and distances between ids count.")
+        world = _open(tracks, agents, names, GOAL_TOLERANCE if tolerance is None else tolerance)
+        remarks = ["No walls are known: only contacts and distances between ids count."]
     else:
         world = _of_scenario(drawn, tracks, agents, names, tolerance)
-        known |= {"walls", "horizon"} | (set() if drawn.bodies else {"movers"})
-        if match is None:
-            remarks.append(
-                "The ids do not start where the scenario's agents do: its walls, rules and horizon"
-                " are used, and nothing of its agents."
-            )
-        if drawn.bodies:
-            remarks.append("The table holds no moving obstacles: contacts with them are unknown.")
+        known |= {"walls", "horizon"} if drawn.bodies else {"walls", "horizon", "movers"}
+        remarks = _remarks(drawn, theirs)
     if options.area is not None:
         world = replace(world, measurement_area=options.area)
     if world.measurement_area is not None:
         known.add("area")
     return Setting(world, frozenset(known), tuple(remarks))
+
+
+@dataclass(frozen=True, eq=False)
+class _Theirs:
+    """The agents of a scenario's world, and which of them each id is."""
+
+    world: World
+    match: IntArray  # (A,)
+
+    @property
+    def agents(self) -> Agents:
+        return self.world.agents
+
+
+def _remarks(drawn: World, theirs: _Theirs | None) -> list[str]:
+    found = []
+    if theirs is None:
+        found.append(
+            "The ids do not start where the scenario's agents do: its walls, rules and horizon"
+            " are used, and nothing of its agents."
+        )
+    if drawn.bodies:
+        found.append("The table holds no moving obstacles: contacts with them are unknown.")
+    return found
+
+
+def _agents(
+    table: Table, tracks: Tracks, options: Options, theirs: _Theirs | None, known: set[str]
+) -> tuple[Agents, tuple[str, ...]]:
+    """Return the agents and the names of teams; add what is known of them to ``known``."""
+    count = len(tracks)
+    each = np.arange(count)
+    radius = _values(table, tracks, "radius", options.radius, theirs, known)
+    speed = _values(table, tracks, "preferred_speed", options.preferred_speed, theirs, known)
+    heading = np.zeros(count) if tracks.heading is None else tracks.heading[each, tracks.first]
+    team, names = _teams(table, tracks.rows)
+    role: ByteArray = np.full(count, int(Role.LEADER), np.int8)
+    driver: IntArray = np.zeros(count, np.int64)
+    if "team" in table.frame:
+        known.add("teams")
+    if theirs is not None:
+        known |= {"teams", "roles"}
+        names, own = theirs.world.teams, theirs.agents
+        team, driver = own.team[theirs.match], own.driver[theirs.match]
+        role = np.asarray(own.role[theirs.match], np.int8)
+    agents = Agents(
+        start=tracks.place[each, tracks.first], heading=heading,
+        goal=_goals(table, tracks, options, theirs, known), radius=radius,
+        max_speed=np.full(count, np.inf), preferred_speed=speed,
+        max_turn_rate=np.full(count, np.inf),
+        dynamics=np.full(count, int(Dynamics.HOLONOMIC), np.int8), role=role, team=team,
+        driver=driver,
+    )  # fmt: skip
+    return agents, names
+
+
+def _values(
+    table: Table, tracks: Tracks, name: Literal["radius", "preferred_speed"], option: float | None,
+    theirs: _Theirs | None, known: set[str],
+) -> FloatArray:  # fmt: skip
+    """Return values (A,) > 0 of the column, the option or the scenario; 0 if unknown."""
+    column = table.column(name)
+    if column is not None:
+        found: FloatArray = column[tracks.rows]
+    elif option is not None:
+        found = np.full(len(tracks), option)
+    elif theirs is not None:
+        found = getattr(theirs.agents, name)[theirs.match]
+    else:
+        return np.zeros(len(tracks))
+    if not (found > 0.0).all():
+        row = int(tracks.rows[np.argmax(~(found > 0.0))])
+        raise TrajectoryError(
+            f"{table.place(row)}: {name} must be > 0; got {found.min():g}. Correct it."
+        )
+    known.add(name)
+    return found
+
+
+def _goals(
+    table: Table, tracks: Tracks, options: Options, theirs: _Theirs | None, known: set[str]
+) -> FloatArray:
+    """Return goals (A, 2) [m]; the last positions if unknown."""
+    x, y = table.column("goal_x"), table.column("goal_y")
+    known.add("goals")
+    if options.goals == "columns":
+        if x is not None and y is not None:
+            return np.stack([x[tracks.rows], y[tracks.rows]], axis=1)
+        if theirs is not None:
+            goals: FloatArray = theirs.agents.goal[theirs.match]
+            return goals
+        known.discard("goals")
+    return tracks.place[:, -1]
 
 
 def _same_agents(tracks: Tracks, drawn: World) -> IntArray | None:
@@ -131,11 +167,10 @@ def _same_agents(tracks: Tracks, drawn: World) -> IntArray | None:
         return None
     from scipy.spatial import cKDTree
 
-    distance, nearest = cKDTree(starts).query(tracks.place[:, 0])
-    if distance.max() > _SAME or len(set(nearest.tolist())) < len(nearest):
+    distance, nearest = map(np.asarray, cKDTree(starts).query(tracks.place[:, 0]))
+    if distance.max() > _SAME or len(np.unique(nearest)) < len(starts):
         return None
-    found: IntArray = nearest.astype(np.int64)
-    return found
+    return nearest.astype(np.int64)
 
 
 def _teams(table: Table, rows: IntArray) -> tuple[IntArray, tuple[str, ...]]:

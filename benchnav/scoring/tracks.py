@@ -5,7 +5,7 @@ from typing import Literal
 
 import numpy as np
 
-from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.errors import TrajectoryError
 from benchnav.scoring.table_file import Table
 
@@ -132,7 +132,7 @@ def _demand_grid(
 
 
 def _gap_text(
-    table: Table, rows: IntArray, time: FloatArray, owner: IntArray, names: FloatArray,
+    table: Table, rows: IntArray, time: FloatArray, owner: IntArray, names: AnyArray,
     gap: BoolArray, begin: float,
 ) -> str:  # fmt: skip
     k = int(np.argmax(gap))
@@ -144,7 +144,7 @@ def _gap_text(
     )
 
 
-def _split(owner: IntArray, names: FloatArray, gap: BoolArray) -> tuple[IntArray, FloatArray]:
+def _split(owner: IntArray, names: AnyArray, gap: BoolArray) -> tuple[IntArray, AnyArray]:
     """Return owners and names of the parts between gaps: ``7``, ``7/2``, ``7/3``."""
     change = gap.copy()
     change[1:] |= np.diff(owner) != 0
@@ -154,7 +154,7 @@ def _split(owner: IntArray, names: FloatArray, gap: BoolArray) -> tuple[IntArray
     for k in first:
         count = count + 1 if gap[k] else 1
         found.append(f"{names[owner[k]]}/{count}" if count > 1 else str(names[owner[k]]))
-    return part, np.array(found)
+    return part.astype(np.int64), np.array(found)
 
 
 def _on_grid(
@@ -177,8 +177,9 @@ def _on_grid(
     grid = np.arange(states) * dt
     for a, (low, high) in enumerate(zip(starts, ends, strict=True)):
         own = time[low:high]
-        place[a, :, 0], place[a, :, 1] = np.interp(grid, own, x[low:high]), np.interp(
-            grid, own, y[low:high]
+        place[a, :, 0], place[a, :, 1] = (
+            np.interp(grid, own, x[low:high]),
+            np.interp(grid, own, y[low:high]),
         )
         if turn is not None and heading is not None:
             turn[a] = np.interp(grid, own, np.unwrap(heading[rows[low:high]]))

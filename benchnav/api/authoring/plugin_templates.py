@@ -234,7 +234,9 @@ def scenario_package(name: str) -> dict[str, str]:
     """Return path → text of a package with a scenario and a suite."""
     module = module_name(name)
     words = {"name": name, "module": module}
-    entries = f'{name} = "{module}"\n\n[project.entry-points."benchnav.suites"]\n{name} = "{module}"'
+    entries = (
+        f'{name} = "{module}"\n\n[project.entry-points."benchnav.suites"]\n{name} = "{module}"'
+    )
     project = _PROJECT.format(name=name, title="scenario pack", group="scenarios", entry=entries)
     return {
         "pyproject.toml": project + _PACK_DATA.format(**words),

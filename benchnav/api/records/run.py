@@ -283,7 +283,9 @@ class Run:
         target = Path(out)
         found = self.episodes(navigator, scenario, track, seed)
         if not len(found):
-            raise UsageError(f"There must be an episode to export. {self.path} holds none of these.")
+            raise UsageError(
+                f"There must be an episode to export. {self.path} holds none of these."
+            )
         kind = to or target.suffix.lower().removeprefix(".") or "pedpy"
         return export((episode.record for episode in found), target, kind)
 

@@ -10,9 +10,9 @@ from benchnav.cli.console import put
 from benchnav.cli.stopping import stoppable
 from benchnav.errors import UsageError
 
-Radius = Annotated[
-    float | None, typer.Option(metavar="M", help="Agent radius [m]. [default: 0.2]")
-]
+__all__ = ["import_app"]
+
+Radius = Annotated[float | None, typer.Option(metavar="M", help="Agent radius [m]. [default: 0.2]")]
 Bounds = Annotated[
     str | None,
     typer.Option(

@@ -13,9 +13,7 @@ from benchnav.errors import UsageError
 
 
 def score(
-    files: Annotated[
-        list[Path], typer.Argument(metavar="FILE…", help="Tables of trajectories.")
-    ],
+    files: Annotated[list[Path], typer.Argument(metavar="FILE…", help="Tables of trajectories.")],
     format: Annotated[
         str | None,
         typer.Option(
@@ -91,9 +89,9 @@ def score(
         table = "terminal"
     wanted = out_format(TABLE_FORMATS, table, out)
     found = scored(
-        files, format=format, scenario=scenario or (), seed=seed, track=track, label=label, rate=rate,
-        unit=unit, step=step, gaps=gaps, columns=_columns(column or []), radius=radius,
-        preferred_speed=preferred_speed, goals=goals, goal_tolerance=goal_tolerance,
+        files, format=format, scenario=scenario or (), seed=seed, track=track, label=label,
+        rate=rate, unit=unit, step=step, gaps=gaps, columns=_columns(column or []),
+        radius=radius, preferred_speed=preferred_speed, goals=goals, goal_tolerance=goal_tolerance,
         area=_area(area), metrics=metric,
     )  # fmt: skip
     text = found.text(wanted)
@@ -108,7 +106,9 @@ def _columns(pairs: list[str]) -> dict[str, str]:
     for pair in pairs:
         name, equals, column = pair.partition("=")
         if not (name and equals and column):
-            raise UsageError(f"--column must be NAME=COLUMN, such as x=pos_x. Got {pair!r} instead.")
+            raise UsageError(
+                f"--column must be NAME=COLUMN, such as x=pos_x. Got {pair!r} instead."
+            )
         found[name] = column
     return found
 

@@ -153,7 +153,5 @@ def entered_at(trajectories: Trajectories, times: FloatArray) -> BoolArray:
     """Return the mask (A, N) of agents that have a body by ``times`` (N,) [s]."""
     if trajectories.enters is None:
         return np.ones((len(trajectories), len(times)), np.bool_)
-    entered: BoolArray = (
-        times[None] >= trajectories.enters[:, None] * trajectories.dt - INSTANT
-    )
+    entered: BoolArray = times[None] >= trajectories.enters[:, None] * trajectories.dt - INSTANT
     return entered

@@ -214,7 +214,12 @@ class _Reader:
         vertices, faces, unit = self.meshes[file]
         scale = _numbers(path, shape, "scale", 3, (1.0, 1.0, 1.0)) * self.options.scale
         placed = place(
-            vertices, self.options.unit or unit, self.options.up or "z", scale, 0.0, (0.0, 0.0)
+            vertices,
+            self.options.unit or unit,
+            self.options.up or "z",
+            scale.tolist(),
+            0.0,
+            (0.0, 0.0),
         )
         return merged(placed @ pose.turn.T + pose.move, faces)
 

@@ -76,43 +76,52 @@ def draft_world(
     if (options.start is None) != (options.goal is None):
         raise UsageError("A start needs a goal, and a goal a start. Got one of them.")
     area = shapely.union_all([piece.area for piece in pieces])
-    margin = options.margin if extent is None else 0.0
-    extent = tuple(map(float, area.bounds)) if extent is None else extent
+    own, margin = (extent_of(area), options.margin) if extent is None else (extent, 0.0)
     options.remark(
-        f"{counted(len(pieces), 'piece')} of wall; the extent is x = {extent[0]:.2f} to {extent[2]:.2f} m and y ="
-        f" {extent[1]:.2f} to {extent[3]:.2f} m."
+        f"{counted(len(pieces), 'piece')} of wall; the extent is x = {own[0]:.2f} to"
+        f" {own[2]:.2f} m and y = {own[1]:.2f} to {own[3]:.2f} m."
     )
     if options.bounds is None and not unit_given:
-        _demand_likely(path, extent)
-    bounds = options.bounds or _around(extent, options, margin)
-    _demand_meeting(path, extent, area, bounds)
+        _demand_likely(path, own)
+    bounds = options.bounds or _around(own, options, margin)
+    _demand_meeting(path, own, area, bounds)
     radius = RADIUS if options.radius is None else options.radius
-    if options.bounds is not None and walls is None:
+    places, journey, count = _places(path, area, own, bounds, radius, options)
+    if walls is None:
         arena = shapely.box(*bounds)
-        pieces = [piece for piece in pieces if piece.area.intersects(arena)]
+        walls = walls_of(str(path), [p for p in pieces if p.area.intersects(arena)])
+    title = f"{counted(count, 'agent')} in {shown(path.name)}"
+    return scenario_mapping(name, title, bounds, True, walls, places, count, radius, journey)
+
+
+def extent_of(area: Any) -> Extent:
+    """Return the box around an area (a shapely geometry)."""
+    x0, y0, x1, y1 = area.bounds
+    return float(x0), float(y0), float(x1), float(y1)
+
+
+def _places(
+    path: Path, area: Any, extent: Extent, bounds: Extent, radius: float, options: WorldOptions
+) -> tuple[Mapping, float, int]:
+    """Return starts and goals, the length [m] of a long journey, and the number of agents."""
     if options.start is not None and options.goal is not None:
         _demand_free(path, area, bounds, radius, start=options.start, goal=options.goal)
-        count = 1 if options.agents is None else options.agents
-        if count != 1:
-            raise UsageError(f"A start and a goal are those of one agent. Got {count} agents.")
-        places = {"start": points([options.start]), "goal": points([options.goal])}
-        journey = math.dist(options.start, options.goal)
-    else:
-        grid = _raster(area, bounds)
-        room = largest_room(grid, ~grid.blocked, radius)
-        if room is None:
-            x0, y0, x1, y1 = extent
-            raise WorldFileError(
-                f"{path}:1: the arena must have a place for an agent of radius {radius:g} m; the"
-                f" obstacles fill it. They are {x1 - x0:.4g} × {y1 - y0:.4g} m large. Check the"
-                f" unit, or try a smaller radius.{_likely(extent)}"
+        if options.agents not in (None, 1):
+            raise UsageError(
+                f"A start and a goal are those of one agent. Got {options.agents} agents."
             )
-        places, journey, count = drawn_places(room, options.agents, options.remark)
-    held = walls_of(str(path), pieces) if walls is None else list(walls)
-    return scenario_mapping(
-        name, f"{count} agent{'s' if count > 1 else ''} in {shown(path.name)}", bounds, True, held,
-        places, count, radius, journey,
-    )  # fmt: skip
+        places = {"start": points([options.start]), "goal": points([options.goal])}
+        return places, math.dist(options.start, options.goal), 1
+    grid = _raster(area, bounds)
+    room = largest_room(grid, ~grid.blocked, radius)
+    if room is None:
+        x0, y0, x1, y1 = extent
+        raise WorldFileError(
+            f"{path}:1: the arena must have a place for an agent of radius {radius:g} m; the"
+            f" obstacles fill it. They are {x1 - x0:.4g} × {y1 - y0:.4g} m large. Check the"
+            f" unit, or try a smaller radius.{_likely(extent)}"
+        )
+    return drawn_places(room, options.agents, options.remark)
 
 
 def _around(extent: Extent, options: WorldOptions, margin: float) -> Extent:

@@ -13,7 +13,7 @@ from benchnav.scenario.files.mesh_section import mesh_solids
 from benchnav.scenario.importers.draft import Mapping, default_name
 from benchnav.scenario.importers.plan_view import Piece, polygons
 from benchnav.scenario.importers.sdf import SdfOptions, read_sdf
-from benchnav.scenario.importers.world_draft import WorldOptions, draft_world
+from benchnav.scenario.importers.world_draft import WorldOptions, draft_world, extent_of
 from benchnav.scenario.importers.xml_tree import bytes_of
 
 MAX_CORNERS = 500_000  # of a WKT geometry
@@ -68,15 +68,14 @@ def import_wkt(path: Path, options: WorldOptions, *, unit: float, obstacles: boo
     if obstacles:
         return draft_world(path, name, list(polygons(area)), options, unit_given=given)
     outside = shapely.difference(shapely.box(*area.bounds), area)
-    extent = tuple(map(float, area.bounds))
     pieces = list(polygons(outside))
-    return draft_world(path, name, pieces, options, extent=extent, unit_given=given)
+    return draft_world(path, name, pieces, options, extent=extent_of(area), unit_given=given)
 
 
 def _area(loops: Sequence[Any]) -> Any:
     import shapely
 
-    return shapely.Polygon(loops[0], [loop for loop in loops[1:]])
+    return shapely.Polygon(loops[0], list(loops[1:]))
 
 
 def _read_wkt(path: Path) -> Any:
