@@ -80,7 +80,7 @@ def read_pedpy(path: Path, format: str, rate: float | None, unit: float | None) 
     except (TrajectoryError, UsageError):
         raise
     except Exception as error:  # every loader raises its own errors
-        text = " ".join(str(error).split())[:160].rstrip(".")
+        text = " ".join(str(error).split()).split(". ")[0][:160].rstrip(".")
         raise TrajectoryError(
             f"{path}:1: the file must be a {format} file that PedPy reads; {text or 'it is not'}."
             f"{_cure(text)}"

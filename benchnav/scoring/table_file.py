@@ -2,6 +2,7 @@
 
 import io
 import re
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -137,11 +138,13 @@ def _csv(path: Path, raw: bytes) -> tuple["pd.DataFrame", int | None]:
         raise TrajectoryError(f"{path}:{skipped + 1}: a table has at most {MAX_COLUMNS} columns.")
     separator = next((s for s in (",", ";", "\t") if s in head), r"\s+")
     try:
-        found = pd.read_csv(
-            io.StringIO(text), sep=separator, skiprows=skipped, dtype=str, keep_default_na=False,
-            skip_blank_lines=False, index_col=False, on_bad_lines="error",
-        )  # fmt: skip
-    except (pd.errors.ParserError, pd.errors.EmptyDataError, ValueError) as error:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", pd.errors.ParserWarning)
+            found = pd.read_csv(
+                io.StringIO(text), sep=separator, skiprows=skipped, dtype=str,
+                keep_default_na=False, skip_blank_lines=False, index_col=False,
+            )  # fmt: skip
+    except (pd.errors.ParserError, pd.errors.ParserWarning, ValueError) as error:
         number = re.search(r"line (\d+)", str(error))
         line = skipped + int(number[1]) if number else skipped + 1
         raise TrajectoryError(

@@ -177,10 +177,9 @@ def _on_grid(
     grid = np.arange(states) * dt
     for a, (low, high) in enumerate(zip(starts, ends, strict=True)):
         own = time[low:high]
-        place[a, :, 0], place[a, :, 1] = (
-            np.interp(grid, own, x[low:high]),
-            np.interp(grid, own, y[low:high]),
-        )
+        place[a, :, 0] = np.interp(grid, own, x[low:high])
+        place[a, :, 1] = np.interp(grid, own, y[low:high])
+        place[a, last[a] :] = x[high - 1], y[high - 1]
         if turn is not None and heading is not None:
             turn[a] = np.interp(grid, own, np.unwrap(heading[rows[low:high]]))
     end = np.minimum(time[ends - 1], last * dt)

@@ -196,7 +196,7 @@ def test_densities_are_pedpys_for_those_who_come_and_go(tmp_path):
     ("name", "options"),
     [
         ("people/pedpy/040_c_56_h-.txt", {"unit": 1}),
-        ("people/pedpy/traj_UNI_CORR_500_01.txt", {}),
+        ("people/pedpy/traj_UNI_CORR_500_01.txt", {"unit": 1}),
         ("people/pedpy/trajectories.sqlite", {}),
         ("people/pedpy/vadere_postvis.traj", {"rate": 10}),
     ],

@@ -103,8 +103,6 @@ def _read_wkt(path: Path) -> Any:
         raise WorldFileError(f"{path}:1: the file must be WKT; {reason}.") from None
     parts = [p for p in shapely.get_parts(found) if p.geom_type in ("Polygon", "MultiPolygon")]
     flat = [p for part in parts for p in shapely.get_parts(part)]
-    if not any(part.area > 0.0 for part in flat):
-        raise WorldFileError(f"{path}:1: the geometry must have a polygon; it has none.")
     for number, part in enumerate(flat, 1):
         if not (np.abs(shapely.get_coordinates(part)) <= LARGEST).all():
             raise WorldFileError(
@@ -114,6 +112,8 @@ def _read_wkt(path: Path) -> Any:
             raise WorldFileError(
                 f"{path}:1: polygon {number} must not cross itself; {_invalid(part)}."
             )
+    if not any(part.area > 0.0 for part in flat):
+        raise WorldFileError(f"{path}:1: the geometry must have a polygon; it has none.")
     return shapely.union_all(shapely.force_2d(flat))
 
 
