@@ -27,7 +27,7 @@ def _vadere(path: Path, rate: float | None, unit: float | None) -> Any:
     import pedpy
 
     if rate is None:
-        raise UsageError("A trajectory of Vadere has no frames. Give --rate, in frames a second.")
+        raise UsageError("A trajectory of Vadere has no frames. Give a rate, in frames a second.")
     return pedpy.load_trajectory_from_vadere(trajectory_file=path, frame_rate=rate)
 
 
@@ -94,5 +94,5 @@ def read_pedpy(path: Path, format: str, rate: float | None, unit: float | None) 
 
 def _cure(text: str) -> str:
     if "rame rate" in text:
-        return " Give --rate, in frames a second."
-    return " Give --unit, 1 or 0.01 m." if "nit is needed" in text else ""
+        return " Give the option 'rate', in frames a second."
+    return " Give the option 'unit': 1 or 0.01 m." if "nit is needed" in text else ""

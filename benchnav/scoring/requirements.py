@@ -1,4 +1,4 @@
-"""What each metric needs to know, and why it is not applicable where that is unknown."""
+"""The needs of each metric, and why it is not applicable where one of them is unknown."""
 
 from collections.abc import Collection
 
@@ -22,17 +22,17 @@ NAMES = {
     "navigator": "failures of navigator",
     "common_start": "common start",
 }
-"""What can be unknown → what the reason says that a metric needs."""
+"""Unknown quantity → its name in the reason."""
 CURES = {
-    "goals": "goals: columns goal_x and goal_y, --goals last, or --scenario",
-    "radius": "radius: a column radius, --radius, or --scenario",
-    "preferred_speed": "preferred speed: a column preferred_speed, --preferred-speed, or"
-    " --scenario",
-    "walls": "walls and horizon: --scenario",
-    "area": "measurement area: --area, or a --scenario with one",
-    "teams": "teams: a column team, or --scenario",
+    "goals": "goals: columns goal_x and goal_y, the option 'goals' (last), or a scenario",
+    "radius": "radius: a column or option 'radius', or a scenario",
+    "preferred_speed": "preferred speed: a column preferred_speed, the option"
+    " 'preferred-speed', or a scenario",
+    "walls": "walls and horizon: a scenario",
+    "area": "measurement area: the option 'area', or a scenario with one",
+    "teams": "teams: a column team, or a scenario",
 }
-"""What a user can add → how."""
+"""Unknown quantity → how a user adds it."""
 
 _BODY = ("radius",)
 _NEEDS: dict[str, tuple[str, ...]] = {

@@ -41,7 +41,7 @@ class Reading:
 
 @dataclass(frozen=True, kw_only=True)
 class Subject:
-    """What the rows of a table are scored as, where the table has no such column."""
+    """The identity of the rows of a table that has no such columns."""
 
     navigator: str
     track: str
@@ -108,7 +108,7 @@ def _scenario(table: Table, key: dict[str, Any], subject: Subject) -> "Scenario 
         return next(iter(known.values()))
     if held not in known:
         raise UsageError(
-            f"--scenario must name the scenario of the table, which is {held or 'not named'} in"
+            f"The scenario must be that of the table, which is {held or 'not named'} in"
             f" {table.path}. Got {', '.join(known)}."
         )
     return known[held]

@@ -1,4 +1,4 @@
-"""What a table of trajectories does not hold: bodies, goals, walls and rules."""
+"""The world of a table of trajectories: bodies, goals, walls and rules."""
 
 from dataclasses import dataclass, replace
 from typing import Literal

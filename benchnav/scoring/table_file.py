@@ -177,8 +177,8 @@ def _parquet(path: Path, raw: bytes) -> tuple["pd.DataFrame", int | None]:
         return file.read(columns=wanted or None).to_pandas(), None
     except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
         raise TrajectoryError(
-            f"{path}: the file must be a Parquet table; {_short(error)}. --format names another"
-            " format."
+            f"{path}: the file must be a Parquet table; {_short(error)}. The option 'format' names"
+            " another format."
         ) from None
 
 
@@ -198,7 +198,7 @@ def _found(path: Path, held: list[str], columns: Columns) -> dict[str, str]:
             if key in found:
                 raise TrajectoryError(
                     f"{path}:1: one column must be the {key}; both {found[key]!r} and {name!r}"
-                    f" are. Choose one: --column {key}={name}."
+                    f" are. Choose one by the option 'column': {key}={name}."
                 )
             found[key] = name
     for name, theirs in columns.items():
@@ -212,12 +212,12 @@ def _found(path: Path, held: list[str], columns: Columns) -> dict[str, str]:
         if name not in found:
             raise TrajectoryError(
                 f"{path}:1: there must be a column {name}; the file has {_listed(held)}."
-                f" --column {name}=NAME names it."
+                f" The option 'column' names it: {name}=NAME."
             )
     if "time" not in found and "frame" not in found:
         raise TrajectoryError(
             f"{path}:1: there must be a column time [s], or frame; the file has {_listed(held)}."
-            " --column time=NAME names it."
+            " The option 'column' names it: time=NAME."
         )
     return found
 

@@ -98,7 +98,7 @@ def _times(table: Table, rate: float | None) -> FloatArray:
     if frame is None or rate is None:
         raise TrajectoryError(
             f"{table.path}:1: the time of a frame must be known; the table has no column time."
-            " Give --rate, in frames a second."
+            " Give the option 'rate', in frames a second."
         )
     return frame / rate
 
@@ -127,7 +127,7 @@ def _demand_grid(
         raise TrajectoryError(
             f"{table.place(row)}: times must be multiples of one step, which is {dt:g} s here;"
             f" got {float(time[np.argmax(off)]) + begin:g} s, where the first time is {begin:g} s."
-            f" --step {dt:g} interpolates the tracks at such times."
+            f" The option 'step' interpolates the tracks at such times: {dt:g}."
         )
 
 
@@ -139,8 +139,8 @@ def _gap_text(
     more = f" (and {int(gap.sum()) - 1} more gaps)" if gap.sum() > 1 else ""
     return (
         f"{table.place(int(rows[k]))}: a track must have no gap; id {names[owner[k]]} is missing"
-        f" from {time[k - 1] + begin:g} s to {time[k] + begin:g} s{more}. --gaps bridge joins the"
-        " ends by a straight line, --gaps split makes two tracks."
+        f" from {time[k - 1] + begin:g} s to {time[k] + begin:g} s{more}. The option 'gaps' may be"
+        " 'bridge', which joins the ends by a straight line, or 'split', which makes two tracks."
     )
 
 

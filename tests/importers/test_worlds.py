@@ -101,7 +101,7 @@ def test_a_world_becomes_a_scenario_that_stands_alone(world, tmp_path, capsys):
         (("1 2 0 0 0 0", "1 2 nan 0 0 0"), r":6: <pose> must be 6 numbers up to 100000; got"),
         (("1 2 0 0 0 0", "1e9 2 0 0 0 0"), r":6: <pose> must be 6 numbers"),
         (("<pose>1 2", "<pose relative_to='f'>1 2"), r"relative to its parent; got the frame 'f'"),
-        (("model://sun", "model://shelf"), r":3: the file 'model://shelf' must exist.*--models"),
+        (("model://sun", "model://shelf"), r":3: the file 'model://shelf' must exist.*models"),
         (("model://sun", "file:///../x.dae"), r"must exist; it is not found"),
         (('<?xml version="1.0"?>', "<!DOCTYPE sdf [<!ENTITY a 'b'>]>"), "may not define a docum"),
         (("</world></sdf>", ""), r"must be XML; no element found"),

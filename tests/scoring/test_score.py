@@ -84,7 +84,7 @@ def test_what_a_table_does_not_hold_is_not_applicable_with_the_reason(tmp_path, 
     text = benchnav.score(tmp_path / "table.csv").text("markdown")
     assert "n/a (needs goals)" in text
     assert "needs goals, radius" in text.split("[1]")[-1] or "[1] needs" in text
-    assert "- goals: columns goal_x and goal_y, --goals last, or --scenario" in (
+    assert "- goals: columns goal_x and goal_y, the option 'goals' (last), or a scenario" in (
         capsys.readouterr().err
     )
 
@@ -221,5 +221,5 @@ def test_what_cannot_be_asked_for(tmp_path):
             scored(table, tmp_path, **options)
     with pytest.raises(TrajectoryError, match=r"there must be a column 'X'; the file has time, id"):
         scored(table, tmp_path, columns={"x": "X"})
-    with pytest.raises(TrajectoryError, match="--rate, in frames a second"):
+    with pytest.raises(TrajectoryError, match="rate', in frames a second"):
         scored(table.rename(columns={"time": "frame"}), tmp_path)

@@ -92,7 +92,7 @@ def walls_of(where: str, pieces: Sequence[Piece]) -> list[dict[str, Any]]:
     if len(pieces) > MAX_PIECES:
         raise WorldFileError(
             f"{where}: a scenario has at most {MAX_PIECES} pieces of wall; the file has"
-            f" {len(pieces)}. Simplify it, or cut it by --bounds."
+            f" {len(pieces)}. Simplify it, or cut it by the option 'bounds'."
         )
     found: list[dict[str, Any]] = []
     places: dict[float, list[list[float]]] = {}

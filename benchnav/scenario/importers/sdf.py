@@ -155,7 +155,7 @@ class _Reader:
             return None
         raise WorldFileError(
             f"{path}:{uri.line}: the file {shown(uri.text)!r} must exist; it is not found."
-            " --models names the folder of models, --skip-missing leaves it out."
+            " The option 'models' names the folder of models, 'skip-missing' leaves it out."
         )
 
     def _shape(self, path: Path, geometry: Element, pose: _Pose) -> None:
@@ -242,7 +242,7 @@ def _pose(path: Path, element: Element) -> _Pose:
     if frame not in ("", "__model__", "world"):
         raise WorldFileError(
             f"{path}:{pose.line}: a pose must be relative to its parent; got the frame"
-            f" {shown(frame)!r}. Export the world with resolved poses: gz sdf --print."
+            f" {shown(frame)!r}. Export the world with resolved poses: gz sdf -p."
         )
     if pose.attributes.get("rotation_format", "euler_rpy") != "euler_rpy":
         raise WorldFileError(f"{path}:{pose.line}: a pose must be x y z roll pitch yaw.")

@@ -34,7 +34,7 @@ _UNITS = {0.001: "a millimetre", 0.01: "a centimetre", 0.0254: "an inch", 1000.0
 
 @dataclass(frozen=True, kw_only=True)
 class WorldOptions:
-    """What a file of obstacles does not hold."""
+    """Values that a file of obstacles does not hold."""
 
     name: str | None = None
     agents: int | None = None  # None: 1 with a start and goal, else up to 20
@@ -140,7 +140,7 @@ def _demand_likely(path: Path, extent: Extent) -> None:
         raise WorldFileError(
             f"{path}:1: the obstacles must have the size of an arena, {0.5 * SIDES[0]:g} m to"
             f" {SIDES[1]:g} m; they are {extent[2] - extent[0]:.4g} × {extent[3] - extent[1]:.4g} m"
-            f" large.{_likely(extent)} --unit gives the unit in metres; --unit 1 keeps this size."
+            f" large.{_likely(extent)} The option 'unit' gives it in metres; 1 keeps this size."
         )
 
 

@@ -97,12 +97,23 @@ def _read_wkt(path: Path) -> Any:
     if text.count(",") > MAX_CORNERS:
         raise WorldFileError(f"{path}:1: a geometry has at most {MAX_CORNERS} corners.")
     try:
-        found = shapely.from_wkt(text)
+        with np.errstate(all="ignore"):  # coordinates are tested below
+            found = shapely.from_wkt(text)
     except (shapely.errors.ShapelyError, ValueError, RecursionError) as error:
         reason = " ".join(str(error).split())[:120].rstrip(".")
         raise WorldFileError(f"{path}:1: the file must be WKT; {reason}.") from None
     parts = [p for p in shapely.get_parts(found) if p.geom_type in ("Polygon", "MultiPolygon")]
     flat = [p for part in parts for p in shapely.get_parts(part)]
+    _demand_valid(path, flat)
+    if not any(part.area > 0.0 for part in flat):
+        raise WorldFileError(f"{path}:1: the geometry must have a polygon; it has none.")
+    return shapely.union_all(shapely.force_2d(flat))
+
+
+def _demand_valid(path: Path, flat: Sequence[Any]) -> None:
+    """Refuse polygons with coordinates that are too large, or that cross themselves."""
+    import shapely
+
     for number, part in enumerate(flat, 1):
         if not (np.abs(shapely.get_coordinates(part)) <= LARGEST).all():
             raise WorldFileError(
@@ -112,9 +123,6 @@ def _read_wkt(path: Path) -> Any:
             raise WorldFileError(
                 f"{path}:1: polygon {number} must not cross itself; {_invalid(part)}."
             )
-    if not any(part.area > 0.0 for part in flat):
-        raise WorldFileError(f"{path}:1: the geometry must have a polygon; it has none.")
-    return shapely.union_all(shapely.force_2d(flat))
 
 
 def _invalid(part: Any) -> str:
