@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 MAX_BYTES = 128 << 20
 MAX_ROWS = 5_000_000
 MAX_COLUMNS = 1_000
+MAX_DECODED = 1 << 30  # [bytes] of a Parquet table
+MAX_NAME = 200  # characters of an id or another text
 LARGEST = 1e7  # [m], [s] larger numbers are no positions and no times
 
 NAMES = {
@@ -162,24 +164,55 @@ def _separator_name(separator: str) -> str:
 
 
 def _parquet(path: Path, raw: bytes) -> tuple["pd.DataFrame", int | None]:
+    """Return the columns that are recognised; texts stay references to distinct texts."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
     try:
-        file = pq.ParquetFile(pa.BufferReader(raw))
+        names = pq.ParquetFile(pa.BufferReader(raw)).schema_arrow.names
+        texts = [name for name in names if _RECOGNISED.get(_key(name)) in TEXTS]
+        file = pq.ParquetFile(pa.BufferReader(raw), read_dictionary=texts)
         rows, columns = file.metadata.num_rows, file.metadata.num_columns
         if rows > MAX_ROWS or columns > MAX_COLUMNS:
             raise TrajectoryError(
                 f"{path}: a table has at most {MAX_ROWS} rows and {MAX_COLUMNS} columns; got"
                 f" {rows} and {columns}. Score a part of it."
             )
-        wanted = [n for n in file.schema_arrow.names if _key(n) in _RECOGNISED or n in NAMES]
-        return file.read(columns=wanted or None).to_pandas(), None
-    except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
+        batches, size = [], 0
+        for batch in file.iter_batches():
+            size += batch.nbytes
+            if size > MAX_DECODED:
+                raise TrajectoryError(
+                    f"{path}: the table must decode to at most {MAX_DECODED >> 20} MiB; it is"
+                    " larger. Score a part of it."
+                )
+            batches.append(batch)
+        table = pa.Table.from_batches(batches, file.schema_arrow)
+        _demand_short(path, table, texts)
+        return table.to_pandas(ignore_metadata=True), None
+    except (pa.ArrowException, OSError, ValueError, OverflowError, KeyError) as error:
         raise TrajectoryError(
             f"{path}: the file must be a Parquet table; {_short(error)}. The option 'format' names"
             " another format."
         ) from None
+
+
+def _demand_short(path: Path, table: Any, texts: list[str]) -> None:
+    """Refuse long names: few of them can be repeated in millions of rows."""
+    import pyarrow as pa
+    import pyarrow.compute as pc
+
+    for name in texts:
+        column = table[name].unify_dictionaries() if table[name].num_chunks else table[name]
+        for chunk in column.chunks[:1]:
+            values = chunk.dictionary if pa.types.is_dictionary(chunk.type) else chunk
+            if not pa.types.is_string(values.type) and not pa.types.is_large_string(values.type):
+                continue
+            longest = pc.max(pc.utf8_length(values)).as_py() or 0
+            if longest > MAX_NAME:
+                raise TrajectoryError(
+                    f"{path}: {shown(name)} must have at most {MAX_NAME} characters; got {longest}."
+                )
 
 
 def _key(name: str) -> str:

@@ -12,6 +12,7 @@ from benchnav.errors import WorldFileError
 MAX_CORNERS = 900  # of a polygon; the scenario allows 1000
 MAX_PLACES = 900  # of equal discs in one wall
 MAX_PIECES = 2000
+GRID = 1e-6  # [m] of the corners of polygons
 SMALLEST = 1e-6  # [m²] smaller pieces are left out
 
 
@@ -51,17 +52,14 @@ def polygons(area: Any) -> Iterator[Piece]:
     """Yield polygons without holes that cover an area (a shapely geometry)."""
     import shapely
 
-    for part in shapely.get_parts(area):
+    for part in shapely.get_parts(shapely.set_precision(area, GRID)):
         if part.geom_type != "Polygon" or part.area <= SMALLEST:
             continue
         if len(part.interiors) or len(part.exterior.coords) > MAX_CORNERS:
             yield from polygons(_halves(part))
             continue
         corners = np.round(np.asarray(part.exterior.coords)[:-1, :2], 6)
-        rounded = shapely.Polygon(corners)
-        if rounded.is_valid and rounded.area > SMALLEST:
-            wall = {"shape": {"type": "polygon", "points": corners.tolist()}}
-            yield Piece(wall, part)
+        yield Piece({"shape": {"type": "polygon", "points": corners.tolist()}}, part)
 
 
 def _halves(part: Any) -> Any:
