@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from benchnav.api.components.page import Page, show
     from benchnav.api.execution.env import make_env
     from benchnav.api.execution.run import run
+    from benchnav.api.execution.score import score
     from benchnav.api.execution.simulate import simulate
     from benchnav.api.execution.train import train
     from benchnav.api.records.comparison import Comparison
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
     from benchnav.api.records.leaderboard import Leaderboard
     from benchnav.api.records.run import Run, merge, open_run
     from benchnav.api.records.scenario import Scenario, load_scenario
-    from benchnav.api.records.score import score
     from benchnav.api.records.training import Training
     from benchnav.api.records.verification import Verification
     from benchnav.api.records.world import World
@@ -68,7 +68,7 @@ else:
             "open_run": "benchnav.api.records.run",
             "run": "benchnav.api.execution.run",
             "schema": "benchnav.api.authoring.schema",
-            "score": "benchnav.api.records.score",
+            "score": "benchnav.api.execution.score",
             "show": "benchnav.api.components.page",
             "simulate": "benchnav.api.execution.simulate",
             "train": "benchnav.api.execution.train",

@@ -115,7 +115,7 @@ class Episode:
 
         An agent that vanishes has no rows after its arrival or end.
         """
-        from benchnav.api.records.export import pedpy_trajectories
+        from benchnav.api.output.export import pedpy_trajectories
 
         return pedpy_trajectories(self.record)
 

@@ -278,7 +278,7 @@ class Run:
 
         Raises UsageError for a wrong format or name, StoreError if a file cannot be written.
         """
-        from benchnav.api.records.export import export
+        from benchnav.api.output.export import export
 
         target = Path(out)
         found = self.episodes(navigator, scenario, track, seed)

@@ -83,7 +83,7 @@ def score(
 
     A metric that needs what the file does not hold is n/a, with the reason.
     """
-    from benchnav.api.records.score import score as scored
+    from benchnav.api.execution.score import score as scored
 
     if table is None and out is None and sys.stdout.isatty():
         table = "terminal"
