@@ -155,7 +155,7 @@ def _named_robot(value: Any) -> Any:
         raise ValueError(
             f"must be the name of a robot, or a mapping with its `type`; got {shown(value)}"
         )
-    return _named(value)
+    return named(value)
 
 
 class RobotChoice(Spec):

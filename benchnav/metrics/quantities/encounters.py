@@ -81,11 +81,14 @@ def encounters(
     )  # fmt: skip
     top = t.speed.max(axis=1, initial=0.0)
     meet_things(t.position, t.velocity, t.duration, t.last, radius, top, t.dt, *things, *found[:2])
-    meet_agents(t.position, t.velocity, t.duration, t.last, t.leaves, radius, top, t.dt, *found)
+    enters = np.zeros(len(t), np.int64) if t.enters is None else t.enters
+    meet_agents(
+        t.position, t.velocity, t.duration, t.last, enters, t.leaves, radius, top, t.dt, *found
+    )
     if shapes is not None:
         found.clearance[:], found.gap[:] = math.inf, RECORDED
         lower_gaps(
-            t.position, t.velocity, t.duration, t.last, t.leaves, shapes[1], shapes[0],
+            t.position, t.velocity, t.duration, t.last, enters, t.leaves, shapes[1], shapes[0],
             radius, t.dt, *things, found.clearance, found.gap,
         )  # fmt: skip
     return found
@@ -285,7 +288,7 @@ def _may_touch(gap: float, apart: float, closing: float, time: float) -> bool:
 @kernel_without_allocation
 def meet_agents(
     position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
-    leaves: IntArray, radius: FloatArray, top: FloatArray, dt: float,
+    enters: IntArray, leaves: IntArray, radius: FloatArray, top: FloatArray, dt: float,
     clearance: FloatArray, ttc: FloatArray, gap: FloatArray, near: BoolArray,
 ) -> None:  # fmt: skip
     """Lower ``clearance``, ``ttc`` (A,) and ``gap``, fill ``near`` (A, T+1), pair by pair."""
@@ -295,7 +298,7 @@ def meet_agents(
             fastest = top[i] + top[j]
             margin = max(RECORDED, (NEAR - 1.0) * max(radius[i], radius[j]))
             end = min(max(last[i], last[j]), min(leaves[i], leaves[j]))
-            k = 0
+            k = max(enters[i], enters[j])
             while k <= end:
                 dx = position[j, k, 0] - position[i, k, 0]
                 dy = position[j, k, 1] - position[i, k, 1]

@@ -76,7 +76,8 @@ def read_lines(path: Path) -> list[str]:
     try:
         raw = read_file(path, MAX_BYTES)
     except (OSError, ValueError) as error:
-        raise ScenarioError(f"{path}:1: cannot be read: {error}.") from None
+        reason = getattr(error, "strerror", None) or error
+        raise ScenarioError(f"{path}:1: cannot be read: {reason}.") from None
     if len(raw) > MAX_BYTES:
         raise ScenarioError(f"{path}:1: the file must be at most {MAX_BYTES} bytes.")
     try:

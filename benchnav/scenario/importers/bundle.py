@@ -56,9 +56,9 @@ def _contents(mapping: Mapping, out: Path, recording: bytes | None) -> dict[Path
     walls = [dict(wall) for wall in mapping.get("walls", [])]
     for wall in walls:
         shape = wall["shape"]
-        if "file" not in shape:
-            continue
-        wall["shape"] = {**shape, "file": copies.add_map(Path(shape["file"]), shape["format"])}
+        if "file" in shape:
+            name = copies.add_map(Path(shape["file"]), shape.get("format", shape["type"]))
+            wall["shape"] = {**shape, "file": name}
     scenario = {**mapping, "walls": walls} if walls else dict(mapping)
     if recording is not None:
         people = scenario["recording"]
@@ -76,7 +76,7 @@ class _Copies:
         self.contents: dict[Path, bytes] = {}
 
     def add_map(self, source: Path, format: str) -> str:
-        """Add a map, with its image if it has one; return its name in the folder."""
+        """Add a map with its image, or a mesh; return its name in the folder."""
         if format == "ros":
             document, spec = ros_map.read_header(source)
             image = ros_map.image_path(document, spec)

@@ -36,7 +36,8 @@ def find_format(path: Path, format: str | None) -> str:
     try:
         head = read_file(path, _HEAD)
     except (OSError, ValueError) as error:
-        raise ScenarioError(f"{path}:1: cannot be read: {error}.") from None
+        reason = getattr(error, "strerror", None) or error
+        raise ScenarioError(f"{path}:1: cannot be read: {reason}.") from None
     if format not in (None, "pedpy"):
         return str(format)
     found = _format(path, head)

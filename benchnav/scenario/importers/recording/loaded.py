@@ -133,7 +133,8 @@ def _check_size(path: Path, format: str, rate: float | None) -> None:
         with open_file(path) as file:
             size = file.seek(0, 2)
     except (OSError, ValueError) as error:
-        raise ScenarioError(f"{path}:1: cannot be read: {error}.") from None
+        reason = getattr(error, "strerror", None) or error
+        raise ScenarioError(f"{path}:1: cannot be read: {reason}.") from None
     if size > MAX_BYTES:
         raise ScenarioError(f"{path}:1: the file must be at most {MAX_BYTES} bytes; it has {size}.")
     if size == 0:
