@@ -16,7 +16,9 @@ from benchnav.plugins import (
 
 if TYPE_CHECKING:
     from benchnav.api.authoring.import_map import import_map
-    from benchnav.api.authoring.new_navigator import new_navigator
+    from benchnav.api.authoring.import_recording import import_recording
+    from benchnav.api.authoring.import_world import import_world
+    from benchnav.api.authoring.new_package import new_navigator, new_package
     from benchnav.api.authoring.schema import schema
     from benchnav.api.authoring.validate import Validation, validate
     from benchnav.api.components.catalogue import Catalogue, available
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
     from benchnav.api.components.page import Page, show
     from benchnav.api.execution.env import make_env
     from benchnav.api.execution.run import run
+    from benchnav.api.execution.score import score
     from benchnav.api.execution.simulate import simulate
     from benchnav.api.execution.train import train
     from benchnav.api.records.comparison import Comparison
@@ -58,14 +61,18 @@ else:
             "available": "benchnav.api.components.catalogue",
             "doctor": "benchnav.api.components.diagnosis",
             "import_map": "benchnav.api.authoring.import_map",
+            "import_recording": "benchnav.api.authoring.import_recording",
+            "import_world": "benchnav.api.authoring.import_world",
             "load_scenario": "benchnav.api.records.scenario",
             "make_env": "benchnav.api.execution.env",
             "merge": "benchnav.api.records.run",
-            "new_navigator": "benchnav.api.authoring.new_navigator",
+            "new_navigator": "benchnav.api.authoring.new_package",
+            "new_package": "benchnav.api.authoring.new_package",
             "open_run": "benchnav.api.records.run",
             "register_robot": "benchnav.scenario.robots.registry",
             "run": "benchnav.api.execution.run",
             "schema": "benchnav.api.authoring.schema",
+            "score": "benchnav.api.execution.score",
             "show": "benchnav.api.components.page",
             "simulate": "benchnav.api.execution.simulate",
             "train": "benchnav.api.execution.train",
@@ -94,10 +101,13 @@ __all__ = [
     "available",
     "doctor",
     "import_map",
+    "import_recording",
+    "import_world",
     "load_scenario",
     "make_env",
     "merge",
     "new_navigator",
+    "new_package",
     "open_run",
     "register_controller",
     "register_metric",
@@ -106,6 +116,7 @@ __all__ = [
     "register_robot",
     "run",
     "schema",
+    "score",
     "show",
     "simulate",
     "train",

@@ -5,7 +5,9 @@ BenchnavError
 ├── InputError               a wrong file; the text names file:line:key (exit status 2)
 │   ├── ScenarioError        a scenario, suite or recipe file
 │   ├── MapError             an occupancy map, a .scen file
-│   └── MeshError            a mesh
+│   ├── MeshError            a mesh
+│   ├── WorldFileError       an SDF world, a WKT geometry, a picture
+│   └── TrajectoryError      a table of trajectories
 ├── UnsolvableError          a scenario that cannot be drawn
 ├── PluginError              a navigator, planner, controller, metric or scenario plugin
 │   ├── UnknownPluginError   unknown name (the message lists the nearest names)
@@ -51,6 +53,14 @@ class MapError(InputError):
 
 class MeshError(InputError):
     """A mesh file is wrong."""
+
+
+class WorldFileError(InputError):
+    """A file that describes a world is wrong."""
+
+
+class TrajectoryError(InputError):
+    """A table of trajectories is wrong."""
 
 
 class UnsolvableError(BenchnavError):

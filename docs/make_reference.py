@@ -65,14 +65,19 @@ GROUPS = {  # heading → picture in images/keys and its text, and types; any ot
     "Shapes": ("shapes", "shapes", "Box Disc Polygon Polyline Mesh Occupancy"),
     "Obstacles": ("obstacles", "gaps and moved obstacles", "StaticGroup DynamicGroup"),
     "Motion laws": ("laws", "motion laws", "BackAndForth WaypointLoop CircleLaw RecordedTrack"),
+    "Recordings": ("", "", "Recording"),
     "Teams": ("", "", "Team RobotChoice NavigatorChoice"),
     "Dynamics": ("", "", "Holonomic Unicycle DifferentialDrive Ackermann"),
     "Footprints": ("footprints", "footprints", "DiscFootprint Capsule RoundedBox"),
-    "Starts": ("starts", "starts", "RegionStart CircleStart GridStart PackedStart PointsStart"),
+    "Starts": (
+        "starts",
+        "starts",
+        "RegionStart CircleStart GridStart PackedStart PointsStart RecordedStart",
+    ),
     "Goals": (
         "goals",
         "starts (discs) and goals (crosses)",
-        "RegionGoal PointsGoal AntipodalGoal ShiftedGoal",
+        "RegionGoal PointsGoal AntipodalGoal ShiftedGoal RecordedGoal",
     ),
     "Regions": ("regions", "regions and drawn points", "Rectangle DiscRegion Ring Points Anywhere"),
     "Time, rules and sensors": (

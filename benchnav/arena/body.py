@@ -2,6 +2,9 @@
 
 A dynamic obstacle follows a motion law; a static obstacle may be relocated once
 within the episode. Bodies translate and do not turn.
+
+A body that is absent is at `AWAY`, far outside every arena: no sensor reaches it and nothing
+touches it. It appears and vanishes between two substeps, without travelling.
 """
 
 from dataclasses import dataclass
@@ -10,7 +13,10 @@ from enum import IntEnum
 import numpy as np
 
 from benchnav.arena.solid import Solid
-from benchnav.arrays import FloatArray
+from benchnav.arrays import BoolArray, FloatArray
+
+AWAY = (1e7, 1e7)  # [m] the position of an absent body
+BEYOND = 1e6  # [m] a coordinate farther from the origin than this is that of an absent body
 
 
 class LawKind(IntEnum):
@@ -42,6 +48,12 @@ class Body:
 
     solid: Solid
     law: Law
+
+
+def absent(position: FloatArray) -> BoolArray:
+    """Return which positions (…, 2) [m] are those of absent bodies."""
+    beyond: BoolArray = np.asarray((np.abs(position) > BEYOND).any(axis=-1))
+    return beyond
 
 
 def still(position: FloatArray) -> Law:

@@ -15,6 +15,8 @@ import numpy as np
 
 from benchnav.arrays import FloatArray
 
+_THIN = 1e-12  # of its extent, squared: a smaller area comes from rounding
+
 
 class Kind(IntEnum):
     """The kind of object that a ray hits or a body touches."""
@@ -74,10 +76,21 @@ class Solid:
 
 def is_outside(solid: Solid) -> bool:
     """Whether a solid is the outside of a walled arena, which has no end."""
-    return sum(map(signed_area, solid.loops)) < 0.0
+    return not solid.is_disc and _area(solid.capsules[:, 0:2], solid.capsules[:, 2:4]) < 0.0
 
 
 def signed_area(loop: FloatArray) -> float:
-    """Return the area [m²] of a loop (V, 2), negative if it runs clockwise."""
-    x, y = loop.T
-    return 0.5 * float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
+    """Return the area [m²] of a loop (V, 2), negative if it runs clockwise.
+
+    It is 0 for a loop that runs forth and back, whatever the rounding.
+    """
+    return _area(loop, np.roll(loop, -1, axis=0))
+
+
+def _area(begin: FloatArray, end: FloatArray) -> float:
+    """Return the area [m²] to the left of closed edges, from ``begin`` to ``end`` (E, 2)."""
+    origin = begin[0]
+    (x0, y0), (x1, y1) = (begin - origin).T, (end - origin).T
+    area = 0.5 * float(np.dot(x0, y1) - np.dot(x1, y0))
+    extent = float(max(np.ptp(x0), np.ptp(y0)))
+    return area if abs(area) > _THIN * extent * extent else 0.0

@@ -7,12 +7,14 @@ from typing import Annotated, Any
 import typer
 
 import benchnav
-from benchnav.cli.authoring.import_map import import_app
+from benchnav.cli.authoring.import_recording import recording
+from benchnav.cli.authoring.import_world import import_app
 from benchnav.cli.authoring.new import new_app
 from benchnav.cli.authoring.schema import schema
 from benchnav.cli.authoring.validate import validate
 from benchnav.cli.console import put, say
 from benchnav.cli.machine_fault import machine_fault
+from benchnav.cli.running.export import export
 from benchnav.cli.running.merge import merge
 from benchnav.cli.running.pack import pack
 from benchnav.cli.running.run import run
@@ -21,6 +23,7 @@ from benchnav.cli.running.verify import verify
 from benchnav.cli.stopping import report_stop, stop_on_signals, stoppable
 from benchnav.cli.tables.compare import compare
 from benchnav.cli.tables.leaderboard import leaderboard
+from benchnav.cli.tables.score import score
 from benchnav.cli.viewing.doctor import doctor
 from benchnav.cli.viewing.list import list_
 from benchnav.cli.viewing.replay import replay
@@ -62,6 +65,8 @@ app.command("leaderboard")(stoppable(leaderboard))
 app.command("verify")(stoppable(verify))
 app.command("pack")(stoppable(pack))
 app.command("compare")(stoppable(compare))
+app.command("export")(stoppable(export))
+app.command("score")(stoppable(score))
 app.command("merge")(stoppable(merge))
 app.command("replay")(stoppable(replay))
 app.command("report")(stoppable(report))
@@ -71,6 +76,7 @@ app.command("list")(stoppable(list_))
 app.command("show")(stoppable(show))
 app.command("validate")(stoppable(validate))
 app.command("schema")(stoppable(schema))
+import_app.command("recording")(recording)
 app.add_typer(import_app, name="import")
 app.add_typer(new_app, name="new")
 app.command("doctor")(stoppable(doctor))

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from benchnav.arena.body import absent
 from benchnav.arena.outline import outline, placed
 from benchnav.arena.solid import is_outside
 from benchnav.arena.world import World
@@ -52,7 +53,8 @@ class TopView:
         """
         picture = self.background.copy() if canvas is None else canvas
         for body, place in zip(self.world.bodies, bodies, strict=False):
-            picture.solid(body.solid.moved(place))
+            if not absent(place):
+                picture.solid(body.solid.moved(place))
         agents = self.world.agents
         for a in np.flatnonzero(present[: len(agents)]):
             shape, color = self.outlines[a], agent_color(self.world, int(a))

@@ -21,6 +21,12 @@ from benchnav.generation.footprints import draw_bodies
 from benchnav.generation.motion_law import place_at_start
 from benchnav.generation.placement import Fault, NoPlaceError, Part
 from benchnav.generation.prepared import Prepared, Structure, prepare
+from benchnav.generation.recorded_people import (
+    add_reacting,
+    draw_people,
+    people_bodies,
+    with_people,
+)
 from benchnav.generation.static_obstacles import Piece, draw_pieces
 from benchnav.generation.teams import Crowd, draw_numbers, place_team
 from benchnav.geometry.rotation import angle_of
@@ -32,7 +38,7 @@ from benchnav.scenario.terms import SPLITS, Rays
 from benchnav.text.plural import counted
 
 MAX_ATTEMPTS = 100
-_LAYOUT, _STATIC, _ELSEWHERE, _DYNAMIC, _TEAM, _BODY = range(6)  # streams of one draw
+_LAYOUT, _STATIC, _ELSEWHERE, _DYNAMIC, _TEAM, _BODY, _RECORDING = range(7)  # streams of one draw
 
 
 def build(scenario: Scenario, split: str, seed: int) -> World:
@@ -112,9 +118,12 @@ class _Draw:
     """One attempt. Every part draws from its own random stream, independent of the others."""
 
     def __init__(self, prepared: Prepared, split: int, seed: int, attempt: int) -> None:
-        self.prepared, self.scenario = prepared, prepared.scenario
+        self.prepared = prepared
         self.seed, self.attempt = seed, attempt
-        self.key = (split, crc32(self.scenario.name.encode()), attempt)
+        self.key = (split, crc32(prepared.scenario.name.encode()), attempt)
+        rng = self.stream(_RECORDING)
+        self.people = draw_people(prepared.scenario, prepared.people, rng)
+        self.scenario = with_people(prepared.scenario, self.people)
 
     def stream(self, part: int, index: int = 0) -> np.random.Generator:
         sequence = np.random.SeedSequence(self.seed, spawn_key=(*self.key, part, index))
@@ -176,6 +185,8 @@ class _Draw:
                 rng = self.stream(_DYNAMIC, i)
                 bounds = self.scenario.bounds
                 drawn += placed_bodies(group, f"dynamic[{i}]", bounds, standing, rng)
+        if self.people is not None:
+            drawn += people_bodies(self.scenario, self.people)
         return drawn
 
     def agents(
@@ -186,6 +197,9 @@ class _Draw:
         crowd = Crowd()
         columns: list[dict[str, AnyArray]] = []
         for i, team in enumerate(scenario.teams):
+            if self.people is not None and i == len(self.prepared.scenario.teams):
+                columns.append(add_reacting(self.people, team, crowd))
+                continue
             rng = self.stream(_BODY, i)
             count = int(sample(team.count, rng))
             columns.append(_numbers(team, count, rng))

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from benchnav.arena.solid import Kind, Solid
+from benchnav.arena.solid import Kind, Solid, is_outside
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.geometry.capsule import nearest_on_segment, segments_cross
 from benchnav.kernels import kernel, kernel_without_allocation
@@ -48,10 +48,7 @@ def barrier(solids: Sequence[Solid]) -> Barrier:
 
 
 def _hollow(solid: Solid) -> bool:
-    if solid.kind != Kind.WALL or solid.is_disc:
-        return False  # an obstacle is never the outside of its loops
-    c = solid.capsules
-    return float(np.dot(c[:, 0], c[:, 3]) - np.dot(c[:, 2], c[:, 1])) < 0.0
+    return solid.kind == Kind.WALL and is_outside(solid)  # an obstacle is never the outside
 
 
 def joined(one: Barrier, other: Barrier) -> Barrier:

@@ -5,13 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
-from benchnav.arena.body import Law, LawKind
+from benchnav.arena.body import AWAY, Law, LawKind, absent
 from benchnav.arrays import FloatArray
 from benchnav.geometry.rotation import TWO_PI, cos_sin
 from benchnav.scenario.files.track_file import read_tracks
 from benchnav.scenario.law import BackAndForth, CircleLaw, RecordedTrack, WaypointLoop
 from benchnav.scenario.sampling.sampler import sample
 
+_SLACK = 1e-6  # [s]
 _CHORDS = 32  # straight pieces that cover a circle
 
 
@@ -49,11 +50,39 @@ def recorded_laws(law: RecordedTrack, folder: Path) -> list[Law]:
     laws = []
     for track in tracks:
         points = track[:, 1:] * law.scale + np.array(law.offset)
-        times = track[:, 0]
-        if times[0] > 0.0:  # rests at its first point until its first time
-            times, points = np.concatenate([[0.0], times]), np.vstack([points[:1], points])
-        laws.append(Law(LawKind.TRACK, times, points, law.repeat))
+        present = law.presence == "recorded"
+        laws.append(track_law(track[:, 0], points, present=present, periodic=law.repeat))
     return laws
+
+
+def track_law(
+    times: FloatArray,
+    points: FloatArray,
+    *,
+    present: bool,
+    periodic: bool = False,
+    phase: float = 0.0,
+) -> Law:
+    """Return the law that follows a track: ``times`` (T,) [s] ≥ 0, ``points`` (T, 2) [m].
+
+    If ``present``, the body is absent until `_SLACK` before its first time, and from `_SLACK` after
+    its last: the rounding of a clock never decides whether it is there. The smallest difference of
+    two numbers lies between being there and being away. Otherwise it rests.
+    """
+    first, last = float(times[0]), float(times[-1])
+    if present:
+        away, end = np.array([AWAY]), last + _SLACK
+        times = np.append(times, [end, math.nextafter(end, math.inf)])
+        points = np.vstack([points, points[-1:], away])
+        if first > _SLACK:
+            begin = first - _SLACK
+            before = [0.0, math.nextafter(begin, 0.0), begin]
+            times = np.concatenate([before, times])
+            points = np.vstack([away, away, points[:1], points])
+            return Law(LawKind.TRACK, times, points, periodic, phase)
+    if first > 0.0:
+        times, points = np.concatenate([[0.0], times]), np.vstack([points[:1], points])
+    return Law(LawKind.TRACK, times, points, periodic, phase)
 
 
 def moved_law(law: Law, place: FloatArray) -> Law:
@@ -74,7 +103,8 @@ def swept(law: Law, radius: float) -> FloatArray:
         corners = center + reach * ways
         radius += reach * (1.0 - cos_sin(0.5 * step)[0])
     else:
-        corners = law.points if len(law.points) > 1 else np.repeat(law.points, 2, axis=0)
+        corners = law.points[~absent(law.points)]
+        corners = corners if len(corners) > 1 else np.repeat(corners, 2, axis=0)
         if len(corners) == 3 and (corners[0] == corners[2]).all():  # back and forth
             (x0, y0), (x1, y1), _ = corners.tolist()
             return np.array([[x0, y0, x1, y1, radius]])

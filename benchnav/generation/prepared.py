@@ -15,8 +15,10 @@ from benchnav.generation.clearance import Barrier, barrier
 from benchnav.generation.free_space import JoinedSpace, PartedSpace, Space
 from benchnav.generation.layout import draw_layout
 from benchnav.generation.motion_law import swept
+from benchnav.generation.recorded_people import read_people
 from benchnav.generation.solids import bounds_wall, draw_solid, draw_wall, is_convex
 from benchnav.generation.teams import fixed_places
+from benchnav.scenario.files.track_file import Track
 from benchnav.scenario.scenario import Scenario
 
 _KEPT = 64  # scenarios
@@ -40,6 +42,7 @@ class Prepared:
     fixed_statics: bool  # static obstacles, too, are equal in every draw
     clearance: float  # [m] all convex solids are farther apart than this; 0: unknown
     discs: FloatArray  # (N, 5) of fixed starts and goals
+    people: tuple[Track, ...] = ()  # of its recording
     _structure: Structure | None = None
     _spaces: dict[float, Space] = field(default_factory=dict)
 
@@ -102,6 +105,7 @@ def _prepared(key: _ScenarioKey) -> Prepared:
         all(group.fixed for group in scenario.static),
         _clearance(scenario),
         np.vstack([fixed_places(team, scenario.bounds) for team in scenario.teams]),
+        read_people(scenario),
     )
 
 

@@ -19,6 +19,8 @@ from benchnav.scenario.team import (
     PackedStart,
     PointsGoal,
     PointsStart,
+    RecordedGoal,
+    RecordedStart,
     RegionStart,
     ShiftedGoal,
     Team,
@@ -162,6 +164,8 @@ class _Placing:
         start = self.team.start
         if isinstance(start, RegionStart):
             return draw_points(start.region, self.bounds, n, self.rng)
+        if isinstance(start, RecordedStart):
+            raise TypeError("a recorded start must have become that of a person")
         if isinstance(start, PointsStart):
             return np.array([start.points[self.number]])
         if isinstance(start, PackedStart):
@@ -209,6 +213,8 @@ class _Placing:
         goal, crowd = self.team.goal, self.crowd
         if isinstance(goal, AntipodalGoal | ShiftedGoal):
             return _bound_goals(goal, start)
+        if isinstance(goal, RecordedGoal):
+            raise TypeError("a recorded goal must have become that of a person")
         home = self._labels(start[None])
         if isinstance(goal, PointsGoal):
             point = np.array([goal.points[self.number]])

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
     import pyarrow as pa
 
 KEYS = ("split", "track", "perception", "role", "navigator", "metric")
+NOT_APPLICABLE = "n/a: "
+"""A reason that begins so is no failure: the episodes do not hold what the metric needs."""
 Faults = Mapping[tuple[str, ...], Mapping[tuple[str, int], str]]
 """By `KEYS` and scenario, or `ALL`: (scenario, seed) → the reason why the metric failed."""
 
@@ -39,6 +41,8 @@ def with_fault(record: Record, found: Faults) -> Record:
     if key not in found:
         return record
     reasons = Counter(found[key].values())
+    if all(reason.startswith(NOT_APPLICABLE) for reason in reasons):
+        return replace(record, fault=min(reasons))
     (why, _), *others = reasons.most_common()
     count = sum(reasons.values())
     more = f" (and {counted(len(others), 'more reason')})" if others else ""

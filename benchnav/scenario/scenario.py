@@ -18,6 +18,7 @@ from benchnav.scenario.law import RecordedTrack
 from benchnav.scenario.noise import NoiseSpec
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
 from benchnav.scenario.parameters import Parameters, Value, joined_parameters
+from benchnav.scenario.recording import Recording
 from benchnav.scenario.sampling.packing import lattice, most_that_fit
 from benchnav.scenario.sampling.region import region_problem
 from benchnav.scenario.sampling.sampler import support
@@ -27,6 +28,7 @@ from benchnav.scenario.team import (
     PackedStart,
     PointsGoal,
     PointsStart,
+    RecordedStart,
     RegionGoal,
     RegionStart,
     Team,
@@ -37,6 +39,7 @@ from benchnav.system.plain_file import open_file
 
 MAX_AGENTS = 5000
 MAX_OBSTACLES = 2000
+PEOPLE = "people"  # the team of recorded people who react
 _PROSE = {"title", "description", "parameters"}  # parameter values count where they are used
 
 
@@ -72,6 +75,9 @@ class Scenario(Spec):
     )
     dynamic: tuple[DynamicGroup, ...] = Field(
         (), max_length=100, description="obstacles that follow a motion law and never yield"
+    )
+    recording: Recording | None = added_field(
+        None, "0.3", description="recorded people; the evaluated robot may replace one of them"
     )
     teams: tuple[Team, ...] = Field(min_length=1, max_length=100, description="groups of agents")
     clock: Clock = Field(Clock(), description="time step, horizon and decision budget")
@@ -158,6 +164,9 @@ class Scenario(Spec):
         for team in self.teams:
             if not team.evaluated and team.driver not in found:
                 found.append(team.driver)
+        people = self.recording
+        if people is not None and people.driver is not None and people.driver not in found:
+            found.append(people.driver)
         return tuple(found)
 
     @property
@@ -193,6 +202,8 @@ class Scenario(Spec):
         for i, group in enumerate(self.dynamic):
             if isinstance(group.law, RecordedTrack) and group.law.file is not None:
                 yield ("dynamic", i, "law", "file"), self._folder / group.law.file
+        if self.recording is not None:
+            yield ("recording", "file"), self._folder / self.recording.file
 
     def named_files(self) -> dict[str, Path]:
         """Its files by their names relative to `folder`, or by absolute path where given so."""
@@ -257,6 +268,24 @@ def _problems(scenario: Scenario) -> Iterator[Problem]:
             f"must be shorter than the horizon, which is {steps} decisions; got {delay}",
         )
     yield from _room_problems(scenario)
+    yield from _recording_problems(scenario)
+
+
+def _recording_problems(scenario: Scenario) -> Iterator[Problem]:
+    """Yield a start without a recording, and a recording whose robot has no start."""
+    robots = [i for i, t in enumerate(scenario.teams) if isinstance(t.start, RecordedStart)]
+    replaces = scenario.recording is not None and scenario.recording.replace != "none"
+    if robots and not replaces:
+        text = "needs a `recording` in which the robot replaces a person"
+        yield ("teams", robots[0], "start"), text
+    if replaces and len(robots) != 1:
+        text = "must be `none` unless one team has a start of type `recorded`"
+        yield ("recording", "replace"), text
+    people = scenario.recording
+    if people is not None and people.driver is not None:
+        for i, team in enumerate(scenario.teams):
+            if team.name == PEOPLE:
+                yield ("teams", i, "name"), f"must not be {PEOPLE!r}: it is that of reacting people"
 
 
 def _team_problems(scenario: Scenario) -> Iterator[Problem]:

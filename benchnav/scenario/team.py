@@ -76,6 +76,15 @@ class PointsStart(Spec):
     separation: Distance = Field(0.0, description="smallest gap [m] between bodies at the start")
 
 
+class RecordedStart(Spec):
+    """The agent starts where and when a person of the scenario's `recording` appears."""
+
+    type: Literal["recorded"]
+    separation: Distance = Field(
+        0.0, description="smallest gap [m] to the recorded people at the start"
+    )
+
+
 class RegionGoal(Spec):
     """Each agent's goal is a random point of a region."""
 
@@ -107,10 +116,20 @@ class ShiftedGoal(Spec):
     by: Point = Field(description="shift [m] from start to goal: [x, y]")
 
 
+class RecordedGoal(Spec):
+    """The agent's goal is where the person of its recorded start vanishes."""
+
+    type: Literal["recorded"]
+
+
 Start = Annotated[
-    RegionStart | CircleStart | GridStart | PackedStart | PointsStart, Field(discriminator="type")
+    RegionStart | CircleStart | GridStart | PackedStart | PointsStart | RecordedStart,
+    Field(discriminator="type"),
 ]
-Goal = Annotated[RegionGoal | PointsGoal | AntipodalGoal | ShiftedGoal, Field(discriminator="type")]
+Goal = Annotated[
+    RegionGoal | PointsGoal | AntipodalGoal | ShiftedGoal | RecordedGoal,
+    Field(discriminator="type"),
+]
 
 
 class NavigatorChoice(BaseModel):
@@ -126,7 +145,8 @@ class NavigatorChoice(BaseModel):
         return dict(self.model_extra or {})
 
 
-def _named(value: Any) -> Any:
+def named(value: Any) -> Any:
+    """Return the mapping of a navigator that is given by its name only."""
     return {"type": value} if isinstance(value, str) else value
 
 
@@ -135,7 +155,7 @@ def _named_robot(value: Any) -> Any:
         raise ValueError(
             f"must be the name of a robot, or a mapping with its `type`; got {shown(value)}"
         )
-    return _named(value)
+    return named(value)
 
 
 class RobotChoice(Spec):
@@ -206,7 +226,7 @@ class Team(Spec):
         "goal", description="heading [rad] at the start; `goal`: towards the goal"
     )
     driver: Annotated[
-        NavigatorChoice, BeforeValidator(_named, json_schema_input_type=str | NavigatorChoice)
+        NavigatorChoice, BeforeValidator(named, json_schema_input_type=str | NavigatorChoice)
     ] = Field(
         NavigatorChoice(type="evaluated"),
         description="navigator of background agents, which are not scored; `evaluated`: the"
@@ -251,6 +271,10 @@ class Team(Spec):
                     (key, "points"),
                     f"must have a point for each of up to {most:g} agents; got {len(place.points)}",
                 )
+        if isinstance(self.start, RecordedStart) != isinstance(self.goal, RecordedGoal):
+            raise FieldError(("goal",), "must be `recorded` if and only if the start is")
+        if isinstance(self.start, RecordedStart) and not (self.count == 1.0 and self.evaluated):
+            raise FieldError(("start",), "must be of one evaluated agent if it is `recorded`")
         if self.preferred_speed is not None:
             preferred, top = support(self.preferred_speed), support(self.max_speed)
             if preferred[1] > top[1]:

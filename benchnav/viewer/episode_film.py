@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-from benchnav.arena.body import LawKind
+from benchnav.arena.body import LawKind, absent
 from benchnav.arena.solid import Kind
 from benchnav.arrays import ByteArray, FloatArray
 from benchnav.drawing.canvas import Canvas, shade
@@ -64,7 +64,7 @@ class EpisodeFilm:
         self._colors = [agent_color(episode.world, a) for a in range(len(self._trajectories))]
         self._drawn = 0.0  # [s] until when the trails are drawn
         for way in episode.body_position.transpose(1, 0, 2):
-            self._trails.dots(way, FILL[Kind.DYNAMIC], apart=3.0)
+            self._trails.dots(way[~absent(way)], FILL[Kind.DYNAMIC], apart=3.0)
 
     def frame(self, time: float) -> ByteArray:
         """Return the picture (height, width, 3) at ``time`` [s], or of the end if it is later.
@@ -98,11 +98,14 @@ class EpisodeFilm:
         return value
 
     def _bodies(self, time: float) -> FloatArray:
-        """Return the places (M, 2) [m] of moving obstacles; those that are re-placed jump."""
-        places = self._between(self._episode.body_position, time).copy()
+        """Return the places (M, 2) [m] of moving obstacles; some are re-placed, come or go."""
+        states = self._episode.body_position
+        places = self._between(states, time).copy()
         state = int(time / self._episode.world.clock.dt + 1e-6)
-        jumps = [body.law.kind == LawKind.RELOCATE for body in self._episode.world.bodies]
-        places[: len(jumps)][jumps] = self._episode.body_position[state, : len(jumps)][jumps]
+        after = min(state + 1, len(states) - 1)
+        jumps = np.array([b.law.kind == LawKind.RELOCATE for b in self._episode.world.bodies], bool)
+        jumps |= absent(states[state]) != absent(states[after])
+        places[jumps] = states[state, jumps]
         return places
 
     def _extend_trails(self, until: float) -> None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from benchnav.arena.body import absent
 from benchnav.arena.outline import outline, placed
 from benchnav.arena.solid import Kind, Solid, is_outside
 from benchnav.arena.world import World
@@ -81,7 +82,9 @@ def draw_episode(axes: Axes, episode: Episode, time: float | None = None) -> Non
     bodies = episode.body_position[0 if at_start else state]
     frame = draw_arena(axes, world, bodies)
     for way in episode.body_position.transpose(1, 0, 2):
-        axes.plot(*way.T, color=MOVER, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.5)
+        axes.plot(
+            *way[~absent(way)].T, color=MOVER, linewidth=0.7, linestyle=(0, (1, 2)), zorder=1.5
+        )
     draw_goals(axes, world)
     draw_trails(axes, episode, end if time is None else time)
     if at_start:
@@ -101,6 +104,8 @@ def draw_arena(axes: Axes, world: World, bodies: FloatArray) -> Extent:
         color = WALL if solid.kind == Kind.WALL else STATIC
         axes.add_patch(_patch(solid, frame, color=color, linewidth=0.6))
     for body, position in zip(world.bodies, bodies, strict=True):
+        if absent(position):
+            continue
         color = STATIC if body.solid.kind == Kind.STATIC else MOVER
         axes.add_patch(_patch(body.solid.moved(position), frame, color=color, linewidth=0))
     return frame

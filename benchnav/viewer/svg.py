@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Sequence
 
+from benchnav.arena.body import absent
 from benchnav.arena.outline import outline, placed
 from benchnav.arena.solid import Kind, Solid, signed_area
 from benchnav.arena.world import World
@@ -56,7 +57,8 @@ def _scene(world: World, bodies: FloatArray) -> Iterator[str]:
     for solid in world.solids:
         yield _solid(solid)
     for body, position in zip(world.bodies, bodies, strict=False):
-        yield _solid(body.solid.moved(position))
+        if not absent(position):
+            yield _solid(body.solid.moved(position))
 
 
 def _solid(solid: Solid) -> str:

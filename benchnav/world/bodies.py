@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from benchnav.arena.body import Body, LawKind
+from benchnav.arena.body import BEYOND, Body, LawKind
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray, FloatArray, IntArray
 from benchnav.geometry.rotation import cos_sin
@@ -65,7 +65,8 @@ def start_bodies(bodies: AnyArray, count: IntArray, knots: AnyArray, h: FloatArr
             body = bodies[b, m]
             body.x, body.y = body_at(body, knots, 0.0)
             x, y = body_at(body, knots, h[b])
-            body.vx, body.vy = (x - body.x) / h[b], (y - body.y) / h[b]
+            if is_away(x, y) == is_away(body.x, body.y):
+                body.vx, body.vy = (x - body.x) / h[b], (y - body.y) / h[b]
 
 
 @kernel_without_allocation
@@ -78,10 +79,18 @@ def top_speeds(bodies: AnyArray, count: IntArray, knots: AnyArray, top: FloatArr
                 top[b] = max(top[b], abs(knots[first].t * knots[last].x))
             elif bodies[b, m].law == _TRACK:
                 for k in range(first, last):
+                    if is_away(knots[k].x, knots[k].y) or is_away(knots[k + 1].x, knots[k + 1].y):
+                        continue
                     dx, dy = knots[k + 1].x - knots[k].x, knots[k + 1].y - knots[k].y
                     step = knots[k + 1].t - knots[k].t
                     if step > 0.0:
                         top[b] = max(top[b], math.sqrt(dx * dx + dy * dy) / step)
+
+
+@kernel_without_allocation
+def is_away(x: float, y: float) -> bool:
+    """Whether (x, y) [m] is the position of an absent body."""
+    return abs(x) > BEYOND or abs(y) > BEYOND
 
 
 @kernel_without_allocation

@@ -16,7 +16,7 @@ from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Status
 from benchnav.geometry.rotation import angle_of, wrap
 from benchnav.kernels import inlined, kernel, kernel_without_allocation
-from benchnav.world.bodies import body_at
+from benchnav.world.bodies import body_at, is_away
 from benchnav.world.contacts import MAX_HITS, follow_up, touch
 from benchnav.world.crowd import ROWS, advance_crowd, find_all_in_crowd, sort_spots
 from benchnav.world.dynamics import limited, planar_velocity
@@ -188,11 +188,16 @@ def find_directions(vx: FloatArray, vy: FloatArray, direction: FloatArray) -> No
 
 @inlined
 def aim_bodies(end: float, world: Any, bodies: AnyArray, knots: AnyArray) -> None:
-    """Set the velocities that move the bodies straight to their laws' positions at ``end`` [s]."""
+    """Set the velocities that move the bodies straight to their laws' positions at ``end`` [s].
+
+    A body that appears or vanishes within the substep stands still until its end.
+    """
     for m in range(world.bodies):
         body = bodies[m]
         body.next_x, body.next_y = body_at(body, knots, end)
         body.vx, body.vy = (body.next_x - body.x) / world.h, (body.next_y - body.y) / world.h
+        if is_away(body.next_x, body.next_y) != is_away(body.x, body.y):
+            body.vx, body.vy = 0.0, 0.0
 
 
 @inlined

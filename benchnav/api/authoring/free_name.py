@@ -8,7 +8,7 @@ from importlib.metadata import PackageNotFoundError, distribution, requires
 from importlib.util import find_spec
 from itertools import chain, count
 
-from benchnav.plugins import NAVIGATORS
+from benchnav.plugins import NAVIGATORS, Registry
 
 
 def module_name(name: str) -> str:
@@ -21,11 +21,11 @@ def class_name(name: str) -> str:
     return "".join(part.capitalize() for part in name.split("-"))
 
 
-def name_taken(name: str) -> str:
-    """Return the owner of this name, as a sentence; "" if the name is free."""
+def name_taken(name: str, registry: Registry = NAVIGATORS) -> str:
+    """Return the owner of a plugin's name, as a sentence; "" if the name is free."""
     module = module_name(name)
-    if name in NAVIGATORS.names():
-        return f"{name!r} is a navigator of {NAVIGATORS.source(name).distribution}"
+    for each in {name, module} & {*registry.names()}:
+        return f"{each!r} is a {registry.kind} of {registry.source(each).distribution}"
     for word in (module, class_name(name)):
         if keyword.iskeyword(word) or keyword.issoftkeyword(word):
             return f"{word!r} is a word of Python's grammar"
@@ -38,11 +38,11 @@ def name_taken(name: str) -> str:
     return ""
 
 
-def free_name(name: str) -> str:
+def free_name(name: str, registry: Registry = NAVIGATORS) -> str:
     """Return a name like ``name`` that is free."""
     first = f"my-{name}"
     others = (f"{first}-{number}" for number in count(2))
-    return next(each for each in chain((first,), others) if not name_taken(each))
+    return next(each for each in chain((first,), others) if not name_taken(each, registry))
 
 
 def _is_distribution(name: str) -> bool:

@@ -20,6 +20,8 @@ from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
     import pandas as pd
+    import pedpy
+    import shapely
 
     from benchnav.api.records.replay import Replay
     from benchnav.verify.own_map import Origin
@@ -113,6 +115,24 @@ class Episode:
                 "status": names[self.record.status.ravel()],
             }
         )  # fmt: skip
+
+    def to_pedpy(self) -> "pedpy.TrajectoryData":
+        """Return the trajectories as a recording of PedPy, with a frame for each decision time.
+
+        An agent that vanishes has no rows after its arrival or end.
+        """
+        from benchnav.api.output.export import pedpy_trajectories
+
+        return pedpy_trajectories(self.record)
+
+    def walkable_area(self) -> "shapely.Polygon":
+        """Return the free part of the arena, for `pedpy.WalkableArea`.
+
+        If walls divide the arena, it is the part with most of the measurement area.
+        """
+        from benchnav.metrics.quantities.density import walkable_area
+
+        return walkable_area(self.record.world)
 
     def svg(self) -> str:
         """Return a picture of the world and of every agent's path, as SVG text."""

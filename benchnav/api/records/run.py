@@ -265,6 +265,42 @@ class Run:
             found = worst_episodes(self.folder, found.places, worst, owner=self)
         return found
 
+    def export(
+        self,
+        out: "str | PathLike[str]",
+        *,
+        to: str | None = None,
+        navigator: str | None = None,
+        scenario: str | None = None,
+        track: str | None = None,
+        perception: str | None = None,
+        seed: int | None = None,
+    ) -> list[Path]:
+        """Write the trajectories of all or some episodes for other programs; return the files.
+
+        Args:
+            out: a file of one table that ends in .csv or .parquet; for PedPy, a folder.
+            to: "csv", "parquet", or "pedpy": a text file that PedPy loads and a walkable area (WKT)
+                for each episode; None: by the suffix of ``out``.
+            navigator: its label; None: all.
+            scenario: its name; None: all.
+            track: the knowledge track; None: all.
+            perception: exact or noisy; None: all.
+            seed: of the world; None: all.
+
+        Raises UsageError for a wrong format or name, StoreError if a file cannot be written.
+        """
+        from benchnav.api.output.export import export
+
+        target = Path(out)
+        found = self.episodes(navigator, scenario, track, seed, perception=perception)
+        if not len(found):
+            raise UsageError(
+                f"There must be an episode to export. {self.path} holds none of these."
+            )
+        kind = to or target.suffix.lower().removeprefix(".") or "pedpy"
+        return export((episode.record for episode in found), target, kind)
+
     def pack(self, out: "str | PathLike[str] | None" = None, *, quiet: bool = False) -> Path:
         """Write the run into one file, with everything that verifying it needs.
 

@@ -8,7 +8,9 @@ import typer
 from benchnav.cli.console import put
 from benchnav.cli.stopping import stoppable
 
-import_app = typer.Typer(help="Convert a published map into a scenario.", no_args_is_help=True)
+import_app = typer.Typer(
+    help="Convert a map, a world or a recording of people into a scenario.", no_args_is_help=True
+)
 
 Out = Annotated[
     Path,

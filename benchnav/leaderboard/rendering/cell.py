@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from benchnav.leaderboard.metric_faults import NOT_APPLICABLE
 from benchnav.leaderboard.record import Record
 from benchnav.leaderboard.rendering.digits import aligned, figure, figures, number, prefixed, signed
 from benchnav.text.plural import counted
@@ -25,6 +26,8 @@ def cell(r: Record | None, *, interval: bool, decided: bool) -> Cell:
     """
     if r is None or not r.episodes:
         return Cell("")
+    if math.isnan(r.value) and r.fault.startswith(NOT_APPLICABLE):
+        return Cell(f"n/a ({r.fault.removeprefix(NOT_APPLICABLE)})")
     if math.isnan(r.value):
         return Cell("–")
     text, name = _figures(r, interval)

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from benchnav.leaderboard.columns import DESCRIPTIVE, MIDDLE_HALF, NAMES, choose
+from benchnav.leaderboard.metric_faults import NOT_APPLICABLE
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICES, Leaderboard, Record
 from benchnav.leaderboard.rendering.cell import Cell, cell, entrant, heading
 from benchnav.leaderboard.rendering.footnotes import with_footnotes
@@ -244,7 +245,9 @@ class _Table:
             f"{metric} of {name} {self.at[name, metric].fault}."
             for name in names
             for metric in self.metrics
-            if (name, metric) in self.at and self.at[name, metric].fault
+            if (name, metric) in self.at
+            and self.at[name, metric].fault
+            and not self.at[name, metric].fault.startswith(NOT_APPLICABLE)
         ]
         if self.verified:
             notes.append("verified: its runs were re-simulated here; timings cannot be verified.")

@@ -21,12 +21,14 @@ from benchnav.geometry.sweep import segment_distance2
 from benchnav.kernels import kernel, kernel_without_allocation
 from benchnav.metrics.quantities.footprint_gaps import lower_gaps
 from benchnav.metrics.quantities.trajectory import Trajectories
+from benchnav.world.bodies import is_away
 
 TTC_CAP = 5.0  # [s] later collisions do not count
 RECORDED = 2.4  # [m] gaps between agents are recorded up to this
 NEAR = 4.0  # radii between centres: two diameters
 SLACK = 1e-9  # [m] tolerance for rounding when steps are skipped
 GROUP = 8  # capsules that are tested together
+FARTHEST = 1e6  # [m] the gap to a body that is absent
 LONG = 4.0  # [m] longer capsules are tested alone
 
 
@@ -79,11 +81,14 @@ def encounters(
     )  # fmt: skip
     top = t.speed.max(axis=1, initial=0.0)
     meet_things(t.position, t.velocity, t.duration, t.last, radius, top, t.dt, *things, *found[:2])
-    meet_agents(t.position, t.velocity, t.duration, t.last, t.leaves, radius, top, t.dt, *found)
+    enters = np.zeros(len(t), np.int64) if t.enters is None else t.enters
+    meet_agents(
+        t.position, t.velocity, t.duration, t.last, enters, t.leaves, radius, top, t.dt, *found
+    )
     if shapes is not None:
         found.clearance[:], found.gap[:] = math.inf, RECORDED
         lower_gaps(
-            t.position, t.velocity, t.duration, t.last, t.leaves, shapes[1], shapes[0],
+            t.position, t.velocity, t.duration, t.last, enters, t.leaves, shapes[1], shapes[0],
             radius, t.dt, *things, found.clearance, found.gap,
         )  # fmt: skip
     return found
@@ -192,20 +197,33 @@ def _meet_groups(
                         jumps, last[a] > 0, clearance, ttc,
                     )  # fmt: skip
                     least = min(least, gap)
+                if least >= FARTHEST:  # it is absent
+                    k += 1
+                    continue
                 ahead = _skip(least, clearance[a], ttc[a], fastest, dt)
                 k = last[a] + 1 if ahead > last[a] else k + max(1, int(ahead))
 
 
 @kernel_without_allocation
 def _find_body_top(offset: FloatArray, jumps: BoolArray, dt: float, top: FloatArray) -> None:
-    """Write the largest speeds (M,) [m/s] of bodies to ``top``; inf for bodies that jump."""
+    """Write the largest speeds (M,) [m/s]; inf for bodies that jump, appear or vanish."""
     for m in range(len(offset)):
         for k in range(offset.shape[1] - 1):
+            if _comes_or_goes(offset, m, k, k + 1):
+                top[m] = math.inf
             dx = offset[m, k + 1, 0] - offset[m, k, 0]
             dy = offset[m, k + 1, 1] - offset[m, k, 1]
             top[m] = max(top[m], math.sqrt(dx * dx + dy * dy) / dt)
         if jumps[m] and top[m] > 0.0:
             top[m] = math.inf
+
+
+@kernel_without_allocation
+def _comes_or_goes(offset: FloatArray, m: int, k: int, after: int) -> bool:
+    """Whether body m appears or vanishes between the states k and ``after``."""
+    here = is_away(offset[m, k, 0], offset[m, k, 1])
+    there = is_away(offset[m, after, 0], offset[m, after, 1])
+    return bool(here != there)
 
 
 @kernel_without_allocation
@@ -218,7 +236,10 @@ def _thing_step(
 
     In the capsule's frame the agent's centre goes from p to q with velocity w. An
     obstacle is re-placed at the beginning of a step: the next state holds its new position.
+    One that appears within a step counts from its end on; one that vanishes stands until then.
     """
+    if m >= 0 and is_away(offset[m, k, 0], offset[m, k, 1]):
+        return FARTHEST
     px, py = position[a, k, 0], position[a, k, 1]
     x0, y0, x1, y1 = capsules[c, 0], capsules[c, 1], capsules[c, 2], capsules[c, 3]
     reach = radius + capsules[c, 4]
@@ -231,6 +252,8 @@ def _thing_step(
         ox, oy = offset[m, after, 0], offset[m, after, 1]
         if not jumps[m]:
             ux, uy = (ox - offset[m, k, 0]) / dt, (oy - offset[m, k, 1]) / dt
+            if _comes_or_goes(offset, m, k, after):
+                ux, uy = 0.0, 0.0
             ox, oy = offset[m, k, 0], offset[m, k, 1]
             wx, wy = wx - ux, wy - uy
             if moves:
@@ -265,7 +288,7 @@ def _may_touch(gap: float, apart: float, closing: float, time: float) -> bool:
 @kernel_without_allocation
 def meet_agents(
     position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
-    leaves: IntArray, radius: FloatArray, top: FloatArray, dt: float,
+    enters: IntArray, leaves: IntArray, radius: FloatArray, top: FloatArray, dt: float,
     clearance: FloatArray, ttc: FloatArray, gap: FloatArray, near: BoolArray,
 ) -> None:  # fmt: skip
     """Lower ``clearance``, ``ttc`` (A,) and ``gap``, fill ``near`` (A, T+1), pair by pair."""
@@ -275,7 +298,7 @@ def meet_agents(
             fastest = top[i] + top[j]
             margin = max(RECORDED, (NEAR - 1.0) * max(radius[i], radius[j]))
             end = min(max(last[i], last[j]), min(leaves[i], leaves[j]))
-            k = 0
+            k = max(enters[i], enters[j])
             while k <= end:
                 dx = position[j, k, 0] - position[i, k, 0]
                 dy = position[j, k, 1] - position[i, k, 1]

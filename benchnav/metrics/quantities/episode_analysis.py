@@ -17,7 +17,7 @@ from benchnav.metrics.quantities.density import frame_times, voronoi_density
 from benchnav.metrics.quantities.encounters import Encounters, encounters, things_of
 from benchnav.metrics.quantities.footprint_gaps import shapes_of
 from benchnav.metrics.quantities.lowpass import smooth_velocities
-from benchnav.metrics.quantities.trajectory import Trajectories, cut, positions_at
+from benchnav.metrics.quantities.trajectory import Trajectories, cut, entered_at, positions_at
 
 TeamMotion = tuple[FloatArray, FloatArray, BoolArray, FloatArray]
 """Places, steps (n, N, 2) [m] and activity (n, N) of n members, and their radii (n,) [m]."""
@@ -113,7 +113,8 @@ class Analysis(Endings):
         times = frame_times(self.trajectories)
         place = positions_at(self.trajectories, times)
         step = positions_at(self.trajectories, times + 0.25) - place
-        return place, step, times[None] < self.trajectories.end[:, None]
+        active = times[None] < self.trajectories.end[:, None]
+        return place, step, active & entered_at(self.trajectories, times)
 
     def teams_together(self, members: BoolArray) -> list[TeamMotion]:
         """Return the `group_motion` of each team, while two or more members are on their way.
@@ -161,6 +162,11 @@ class Analysis(Endings):
 _KEPT = "_analysis"
 
 
+def keep(episode: Episode, analysis: Analysis) -> None:
+    """Let `analyse` return this analysis, of trajectories that no simulation gave."""
+    vars(episode)[_KEPT] = analysis
+
+
 def analyse(episode: Episode) -> Analysis:
     """Return the analysis of an episode: the same object in every call."""
     found: Analysis | None = vars(episode).get(_KEPT)
@@ -172,5 +178,5 @@ def analyse(episode: Episode) -> Analysis:
             body_position=episode.body_position, heading=episode.heading, status=episode.status,
             decision=episode.timings.decision,
         )  # fmt: skip
-        vars(episode)[_KEPT] = found
+        keep(episode, found)
     return found

@@ -8,6 +8,7 @@ from benchnav.geometry.capsule import nearest_on_segment
 from benchnav.geometry.rotation import cos_sin, wrap
 from benchnav.geometry.segment_sum import distance_to_sum
 from benchnav.kernels import kernel, kernel_without_allocation
+from benchnav.world.bodies import is_away
 
 SAMPLES = 4  # of each step
 
@@ -23,8 +24,9 @@ def shapes_of(agents: Agents) -> FloatArray:
 @kernel
 def lower_gaps(
     position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
-    leaves: IntArray, heading: FloatArray, shape: FloatArray, radius: FloatArray, dt: float,
-    capsules: FloatArray, body: IntArray, offset: FloatArray, jumps: BoolArray,
+    enters: IntArray, leaves: IntArray, heading: FloatArray, shape: FloatArray,
+    radius: FloatArray, dt: float, capsules: FloatArray, body: IntArray, offset: FloatArray,
+    jumps: BoolArray,
     clearance: FloatArray, gap: FloatArray,
 ) -> None:  # fmt: skip
     """Lower ``clearance`` (A,) and ``gap`` (A, T+1) to the gaps of the shapes (A, 3).
@@ -32,15 +34,19 @@ def lower_gaps(
     Positions and headings (A, T+1) are interpolated within a step, at SAMPLES times.
     """
     for a in range(len(position)):
-        for k in range(last[a] + 1):
+        for k in range(enters[a], last[a] + 1):
             for s in range(SAMPLES if k < last[a] else 1):
                 t = duration[a, k] * s / SAMPLES if s > 0 else 0.0
-                counts = k < last[a] or k == 0
+                counts = k < last[a] or k == enters[a]
                 x, y, angle = _pose(a, k, t, position, velocity, duration, last, heading, dt)
                 for c in range(len(capsules)):
                     m, px, py = body[c], x, y
                     if m >= 0:
+                        if is_away(offset[m, k, 0], offset[m, k, 1]):
+                            continue
                         later = k + 1 if k + 1 < offset.shape[1] and not jumps[m] else k
+                        if is_away(offset[m, later, 0], offset[m, later, 1]):
+                            later = k  # it stands until it vanishes
                         px -= offset[m, k, 0] + (offset[m, later, 0] - offset[m, k, 0]) * (t / dt)
                         py -= offset[m, k, 1] + (offset[m, later, 1] - offset[m, k, 1]) * (t / dt)
                     x0, y0, x1, y1, r = capsules[c]
@@ -53,7 +59,7 @@ def lower_gaps(
                     apart = cores_apart(fx, fy, angle, shape[a], half)
                     clearance[a] = min(clearance[a], apart - shape[a, 2] - r)
                 for j in range(len(position)):
-                    if j == a or k > leaves[j]:
+                    if j == a or k < enters[j] or k > leaves[j] or (k == leaves[j] and s > 0):
                         continue
                     u, v, other = _pose(j, k, t, position, velocity, duration, last, heading, dt)
                     limit = max(clearance[a], gap[a, k]) if s == 0 else clearance[a]

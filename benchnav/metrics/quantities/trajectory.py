@@ -33,6 +33,7 @@ class Trajectories:
     leaves: IntArray  # (A,) index of the first state without a body of the agent; T+1: never
     length: FloatArray  # (A,) [m] travelled
     moved: BoolArray  # (A,) it travelled at least its own radius
+    enters: IntArray | None = None  # (A,) index of its first state with a body; None: 0 for all
 
     def __len__(self) -> int:
         return len(self.last)
@@ -145,4 +146,12 @@ def present_at(trajectories: Trajectories, times: FloatArray) -> BoolArray:
     """
     gone = trajectories.leaves <= trajectories.duration.shape[1]
     here: BoolArray = ~gone[:, None] | (times[None] <= trajectories.end[:, None] + INSTANT)
-    return here
+    return here & entered_at(trajectories, times)
+
+
+def entered_at(trajectories: Trajectories, times: FloatArray) -> BoolArray:
+    """Return the mask (A, N) of agents that have a body by ``times`` (N,) [s]."""
+    if trajectories.enters is None:
+        return np.ones((len(trajectories), len(times)), np.bool_)
+    entered: BoolArray = times[None] >= trajectories.enters[:, None] * trajectories.dt - INSTANT
+    return entered

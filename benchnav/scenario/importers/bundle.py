@@ -17,8 +17,12 @@ Mapping = dict[str, Any]
 _MAX_BYTES = 1 << 28  # of a map file
 
 
-def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> list[Path]:
+def write_scenario(
+    mapping: Mapping, out: Path | str, force: bool = False, recording: bytes | None = None
+) -> list[Path]:
     """Write a scenario as YAML, and copy its maps into the same folder.
+
+    ``recording`` is the content of the file that the key ``recording`` names.
 
     If another file has a map's name, the copy gets a new name: no map is ever
     overwritten, because other scenarios may need it.
@@ -32,7 +36,7 @@ def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> li
     """
     out = Path(out)
     try:
-        contents = _contents(mapping, out)
+        contents = _contents(mapping, out, recording)
         if out.exists() and not force:
             raise UsageError(f"{out} must not exist yet; the option 'force' overwrites it.")
         if out.is_file() and not _is_scenario(out):
@@ -46,14 +50,20 @@ def write_scenario(mapping: Mapping, out: Path | str, force: bool = False) -> li
     return list(contents)
 
 
-def _contents(mapping: Mapping, out: Path) -> dict[Path, bytes]:
+def _contents(mapping: Mapping, out: Path, recording: bytes | None) -> dict[Path, bytes]:
     """Return the content of each file, the scenario first."""
     copies = _Copies(out)
     walls = [dict(wall) for wall in mapping.get("walls", [])]
     for wall in walls:
         shape = wall["shape"]
-        wall["shape"] = {**shape, "file": copies.add_map(Path(shape["file"]), shape["format"])}
-    scenario = {**mapping, "walls": walls}
+        if "file" in shape:
+            name = copies.add_map(Path(shape["file"]), shape.get("format", shape["type"]))
+            wall["shape"] = {**shape, "file": name}
+    scenario = {**mapping, "walls": walls} if walls else dict(mapping)
+    if recording is not None:
+        people = scenario["recording"]
+        name = copies.add(Path(people["file"]), recording)
+        scenario["recording"] = {**people, "file": name}
     text = yaml.safe_dump(scenario, sort_keys=False, default_flow_style=None, allow_unicode=True)
     return {out: text.encode(), **dict(reversed(copies.contents.items()))}
 
@@ -66,20 +76,20 @@ class _Copies:
         self.contents: dict[Path, bytes] = {}
 
     def add_map(self, source: Path, format: str) -> str:
-        """Add a map, with its image if it has one; return its name in the folder."""
+        """Add a map with its image, or a mesh; return its name in the folder."""
         if format == "ros":
             document, spec = ros_map.read_header(source)
             image = ros_map.image_path(document, spec)
-            name = self._add(image, read_bytes(image, _MAX_BYTES, "the image"))
+            name = self.add(image, read_bytes(image, _MAX_BYTES, "the image"))
             if spec.image != name:
                 renamed = {**document.data, "image": name}
                 text = yaml.safe_dump(renamed, sort_keys=False, default_flow_style=None)
-                return self._add(source, text.encode())
-        return self._add(source, read_bytes(source, _MAX_BYTES, "the map"))
+                return self.add(source, text.encode())
+        return self.add(source, read_bytes(source, _MAX_BYTES, "the map"))
 
-    def _add(self, source: Path, content: bytes) -> str:
+    def add(self, source: Path, content: bytes) -> str:
         """Add a file under the first free name."""
-        if self.out.exists() and self.out.samefile(source):
+        if self.out.exists() and source.exists() and self.out.samefile(source):
             raise UsageError(f"{self.out} is the map's own name; give the scenario another name.")
         name = next(n for n in _names(source, self.out) if self._free(n, content))
         self.contents[self.out.parent / name] = content

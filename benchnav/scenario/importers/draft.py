@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from benchnav.arrays import FloatArray
+from benchnav.arrays import Extent, FloatArray
 from benchnav.config.document import shown
 from benchnav.errors import MapError, UsageError
 from benchnav.scenario.base import MAX_NAME, NAME_PATTERN
@@ -25,7 +25,7 @@ _PATIENCE = 3.0  # ratio of the horizon to the time of an undisturbed journey
 _COMMON = {"", "map", "maps", "out", "s", "scenario", "scenarios"}  # names shared by many maps
 
 
-def _silent(text: str) -> None:
+def silent(text: str) -> None:
     """Ignore a remark."""
 
 
@@ -38,7 +38,7 @@ def import_movingai(
     cell: float = 1.0,
     radius: float | None = None,
     name: str | None = None,
-    remark: Remark = _silent,
+    remark: Remark = silent,
 ) -> Mapping:
     """Return a scenario on a MovingAI map.
 
@@ -60,7 +60,7 @@ def import_movingai(
         MapError: a file is wrong or has too few rows, or no agent fits.
         UsageError: a bucket without a ``.scen`` file, or no agents, or no radius.
     """
-    _demand_sane(agents, radius, name)
+    demand_sane(agents, radius, name)
     path = Path(map_path)
     occupancy = movingai.read_map(path, cell)
     demand_free(f"{path}:1", occupancy, False, "")
@@ -72,13 +72,13 @@ def import_movingai(
         if bucket is not None:
             raise UsageError(f"A bucket needs a .scen file; got bucket {bucket} without one.")
         room = _room(path, occupancy, False, (size,))
-        places, journey, count = _drawn(room, agents, remark)
+        places, journey, count = drawn_places(room, agents, remark)
         return _scenario(called, path, shape, occupancy, places, count, size, journey)
     queries = movingai.read_scen(scen_path, path, occupancy)
     rows = _rows(Path(scen_path), queries, agents, bucket, remark)
     places = {
-        "start": _points(occupancy.centres(*queries.start[rows].T)),
-        "goal": _points(occupancy.centres(*queries.goal[rows].T)),
+        "start": points(occupancy.centres(*queries.start[rows].T)),
+        "goal": points(occupancy.centres(*queries.goal[rows].T)),
     }
     lengths = queries.length[rows] * cell
     remark(journeys.summary(lengths))
@@ -93,7 +93,7 @@ def import_ros_map(
     radius: float | None = None,
     unknown_is_free: bool = False,
     name: str | None = None,
-    remark: Remark = _silent,
+    remark: Remark = silent,
 ) -> Mapping:
     """Return a scenario on a map_server map.
 
@@ -113,7 +113,7 @@ def import_ros_map(
         MapError: the file is wrong, or no agent fits.
         UsageError: no agents, or no radius.
     """
-    _demand_sane(agents, radius, name)
+    demand_sane(agents, radius, name)
     path = Path(path)
     occupancy = ros_map.read_map(path)
     demand_free(f"{path}:1", occupancy, unknown_is_free, "The option 'unknown-is-free'")
@@ -123,7 +123,7 @@ def import_ros_map(
         shape["unknown_is_free"] = True
     sizes = _RADII if radius is None else (radius,)
     room = _room(path, occupancy, unknown_is_free, sizes)
-    places, journey, count = _drawn(room, agents, remark)
+    places, journey, count = drawn_places(room, agents, remark)
     called = name or default_name("ros", path)
     return _scenario(called, path, shape, occupancy, places, count, room.radius, journey)
 
@@ -169,31 +169,48 @@ def _scenario(
     radius: float,
     journey: float,
 ) -> Mapping:
+    title = f"{agents} agents on {shown(path.name)}"
+    bounds = occupancy.bounds
+    walls = [{"shape": shape}]
+    return scenario_mapping(name, title, bounds, False, walls, places, agents, radius, journey)
+
+
+def scenario_mapping(
+    name: str, title: str, bounds: Extent, walled: bool, walls: Sequence[Mapping], places: Mapping,
+    agents: int, radius: float, journey: float,
+) -> Mapping:  # fmt: skip
+    """Return the keys of a scenario file with one team; ``journey`` [m] sets the horizon."""
     horizon = 10.0 * math.ceil(max(50.0, _PATIENCE * journey / _SPEED) / 10.0)
     team = {"name": "agents", "count": agents, "radius": radius, "max_speed": _SPEED, **places}
     return {
         "name": name,
         "version": 1,
-        "title": f"{agents} agents on {shown(path.name)}",
-        "bounds": [float(b) for b in occupancy.bounds],
-        "walled": False,
-        "walls": [{"shape": shape}],
+        "title": title,
+        "bounds": [float(b) for b in bounds],
+        "walled": walled,
+        "walls": list(walls),
         "teams": [team],
         "clock": {"dt": 0.2, "horizon": horizon},
         "rules": {"goal_tolerance": radius, "on_arrival": "vanish"},
     }
 
 
-def _demand_sane(agents: int | None, radius: float | None, name: str | None) -> None:
+def demand_sane(agents: int | None, radius: float | None, name: str | None) -> None:
+    """Refuse a wrong name, number of agents or radius. Raises UsageError."""
+    demand_name(name)
+    if agents is not None and agents < 1:
+        raise UsageError(f"agents must be ≥ 1; got {agents}.")
+    if radius is not None and not 0.0 < radius < math.inf:
+        raise UsageError(f"radius must be > 0 m; got {radius}.")
+
+
+def demand_name(name: str | None) -> None:
+    """Raise UsageError unless ``name`` can be that of a scenario, or is None."""
     if name is not None and not (re.fullmatch(NAME_PATTERN, name) and len(name) <= MAX_NAME):
         raise UsageError(
             "A scenario's name must consist of small letters, digits, - and _, with / between its"
             f" parts, such as ros/warehouse; got {shown(name)!r}."
         )
-    if agents is not None and agents < 1:
-        raise UsageError(f"agents must be ≥ 1; got {agents}.")
-    if radius is not None and not 0.0 < radius < math.inf:
-        raise UsageError(f"radius must be > 0 m; got {radius}.")
 
 
 def _room(path: Path, occupancy: Occupancy, unknown_is_free: bool, radii: Sequence[float]) -> Room:
@@ -214,7 +231,7 @@ def _room(path: Path, occupancy: Occupancy, unknown_is_free: bool, radii: Sequen
     return found
 
 
-def _drawn(room: Room, agents: int | None, remark: Remark) -> tuple[Mapping, float, int]:
+def drawn_places(room: Room, agents: int | None, remark: Remark) -> tuple[Mapping, float, int]:
     """Return starts and goals, the length [m] of a long journey, and the number of agents."""
     count = max(1, min(_MAX_AGENTS, room.capacity)) if agents is None else agents
     places = _within(room)
@@ -236,7 +253,8 @@ def _within(room: Room) -> Mapping:
     }
 
 
-def _points(places: FloatArray) -> Mapping:
+def points(places: FloatArray | Sequence[tuple[float, float]]) -> Mapping:
+    """Return starts or goals at given places (N, 2) [m]."""
     return {"type": "points", "points": [[float(x), float(y)] for x, y in places]}
 
 

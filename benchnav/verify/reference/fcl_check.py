@@ -14,6 +14,7 @@ from importlib.util import find_spec
 import numpy as np
 
 from benchnav.arena.agents import Dynamics
+from benchnav.arena.body import absent
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards
 from benchnav.arrays import BoolArray, FloatArray
@@ -106,6 +107,8 @@ class _Judgement:
             return there
         tick = math.floor(time / h + 1e-9)
         a, b = (law_position(body, (tick + s) * h, False) for s in (0, 1))
+        if absent(a) != absent(b):  # it stands until the substep ends
+            return a
         return a + (b - a) * min(max(time / h - tick, 0.0), 1.0)
 
     def lasting(self) -> Iterator[str]:
@@ -164,10 +167,16 @@ class _Judgement:
                     if gap < -OVERLAP:
                         reported.add((int(i), partner))
                         name, k = partner
+                        if name == "bodies" and self._appears(k, t):
+                            continue  # on the agent, which is no touch
                         yield (
                             f"agent {i} overlaps {name} {k} by {-gap:.6f} m"
                             f" at about {t * self.dt:.3f} s, and there is no event"
                         )
+
+    def _appears(self, m: int, t: int) -> bool:
+        """Whether body m was absent in the state before t."""
+        return t > 0 and bool(absent(self.episode.body_position[t - 1, m]))
 
     def _covered(self, i: int, partner: Partner, t: int) -> bool:
         """Whether there is an event of the two in the decisions before or after state t."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from benchnav.arena.agents import Dynamics
+from benchnav.arena.body import absent
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards, Charge, ContactRule, World
 from benchnav.arrays import BoolArray, ByteArray, FloatArray
@@ -152,7 +153,8 @@ class Twin:
             law_position(b, begin + h, self.placed[m]) for m, b in enumerate(self.world.bodies)
         ]
         target = np.array(goals).reshape(-1, 2)
-        self._carry = (target - self.bodies) / h
+        jumps = absent(target) != absent(self.bodies)
+        self._carry = np.where(jumps[:, None], 0.0, (target - self.bodies) / h)
         left = h
         while (touch := self._earliest()) is not None and touch.time <= left:
             self._drift(touch.time)

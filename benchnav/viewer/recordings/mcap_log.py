@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from benchnav.arena.body import absent
 from benchnav.arena.solid import Kind
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.drawing.palette import FILL, agent_color, rgb
@@ -63,6 +64,7 @@ class _Log:
         ]
         yield 0.0, "/arena", self._scene(0.0, arena)
         shapes = [extrude(body.solid, world.bounds) for body in world.bodies]
+        away = absent(self._episode.body_position)
         for t, time in enumerate(self._episode.times):
             bodies = [
                 self._mesh(
@@ -71,8 +73,9 @@ class _Log:
                     rgb(FILL[Kind(world.bodies[m].solid.kind)]),
                 )
                 for m, shape in enumerate(shapes)
+                if not away[t, m]
             ]  # fmt: skip
-            if bodies:
+            if shapes:
                 yield time, "/bodies", self._scene(time, bodies)
             yield time, "/agents", self._poses(t, time)
             yield time, "/agents/discs", self._scene(time, self._discs(t))

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from benchnav.arena.body import absent
 from benchnav.arena.solid import Kind
 from benchnav.arrays import IntArray
 from benchnav.drawing.palette import FILL, agent_color, rgb
@@ -82,7 +83,10 @@ def _log_motion(rerun: Any, stream: Any, episode: Episode) -> None:
     for t, time in enumerate(episode.times):
         stream.set_time("time", duration=float(time))
         for m, place in enumerate(episode.body_position[t]):
-            stream.log(f"bodies/{m}", rerun.Transform3D(translation=[*place, 0.0]))
+            if absent(place):  # its mesh is logged once: only a scale of zero hides it
+                stream.log(f"bodies/{m}", rerun.Transform3D(scale=0.0))
+            else:
+                stream.log(f"bodies/{m}", rerun.Transform3D(translation=[*place, 0.0]))
         here = np.flatnonzero(t < leaves)
         for a in [a for a, mesh in enumerate(meshes) if mesh is not None]:
             seen = t < leaves[a]

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from benchnav.arena.body import absent
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.episode.episode import Episode
 from benchnav.geometry.rotation import cos_sin
@@ -9,6 +10,7 @@ from benchnav.kernels import kernel
 from benchnav.metrics.quantities.encounters import things_of
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.quantities.footprint_gaps import cores_apart, shapes_of
+from benchnav.world.bodies import is_away
 
 _ROOM = 2_000_000  # distances that are held at a time
 
@@ -38,7 +40,8 @@ def clearance(episode: Episode, agent: int) -> FloatArray:
         offset = np.zeros((len(capsules), len(here), 2))
         moving = owner >= 0
         offset[moving] = things.offset[owner[moving]]
-        gap = np.minimum(gap, _to_capsules(here[None] - offset, capsules).min(axis=0))
+        apart = np.where(absent(offset), np.inf, _to_capsules(here[None] - offset, capsules))
+        gap = np.minimum(gap, apart.min(axis=0))
     clear: FloatArray = gap - radius[agent]
     return clear
 
@@ -68,7 +71,10 @@ def lower_to_shapes(
             x0, y0, x1, y1, r = capsules[c]
             fx, fy = x - 0.5 * (x0 + x1), y - 0.5 * (y0 + y1)
             if body[c] >= 0:
-                fx, fy = fx - offset[body[c], k, 0], fy - offset[body[c], k, 1]
+                away_x, away_y = offset[body[c], k, 0], offset[body[c], k, 1]
+                if is_away(away_x, away_y):
+                    continue
+                fx, fy = fx - away_x, fy - away_y
             half = (0.5 * (x1 - x0), 0.5 * (y1 - y0), 0.0, 0.0)
             gap = cores_apart(fx, fy, angle, shape[a], half) - shape[a, 2] - r
             clear[k] = min(clear[k], gap)

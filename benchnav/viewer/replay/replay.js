@@ -4,6 +4,7 @@
 
 const ACTIVE = 0,
   ARRIVED = 1;
+const BEYOND = 1e6; // [m] a place farther out is that of an absent obstacle
 const TRAIL = 6; // [s] length of the trail behind an agent
 const POINTS = 40000; // of whole trails, at most
 const NUMBERED = 12; // agents have their numbers at any size if there are no more than these
@@ -123,9 +124,10 @@ class View {
   motionPaths() {
     return this.scene.bodies.map((_, m) => {
       const path = new Path2D();
-      for (let k = 0; k < this.times; k++) {
+      for (let k = 0, drawn = 0; k < this.times; k++) {
+        if (this.absent(m, k)) continue;
         const [x, y] = this.bodyAt(m, k);
-        if (k === 0) path.moveTo(x, y);
+        if (drawn++ === 0) path.moveTo(x, y);
         else path.lineTo(x, y);
       }
       return path;
@@ -151,10 +153,15 @@ class View {
     ];
   }
   bodyAt(m, k) {
-    return [
-      this.value(this.scene.body_position, 2 * m, k),
-      this.value(this.scene.body_position, 2 * m + 1, k),
-    ];
+    const places = this.scene.body_position,
+      low = Math.floor(k + 1e-6);
+    if (this.absent(m, low) || this.absent(m, low + 1)) k = low;
+    return [this.value(places, 2 * m, k), this.value(places, 2 * m + 1, k)];
+  }
+  /** Whether a moving obstacle is absent, which is written as a place far outside the arena. */
+  absent(m, k) {
+    const places = this.scene.body_position;
+    return [2 * m, 2 * m + 1].some((row) => Math.abs(this.exact(places, row, k)) > BEYOND);
   }
   /** The exact value at the last state, for what must not be interpolated. */
   exact(array, row, k) {
@@ -287,6 +294,7 @@ class View {
     c.globalAlpha = 1;
     c.setLineDash([]);
     this.bodies.forEach(([kind, path], m) => {
+      if (this.absent(m, k)) return;
       const [x, y] =
         kind === "static"
           ? [

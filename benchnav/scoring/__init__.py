@@ -1,0 +1,1 @@
+"""Metrics of trajectories that other programs recorded or simulated."""
