@@ -8,10 +8,11 @@ Untried, like `bridge_node.py`. `nav2:=false` launches the bridge alone, for nod
 import sys
 from pathlib import Path
 
-from launch import LaunchDescription
+from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, ExecuteProcess, OpaqueFunction
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
+from nav2_common.launch import ReplaceString
 
 HERE = Path(__file__).resolve().parent
 TF = [("/tf", "tf"), ("/tf_static", "tf_static")]  # each robot has its own tree of frames
@@ -33,7 +34,7 @@ def generate_launch_description() -> LaunchDescription:
     return LaunchDescription([*arguments, OpaqueFunction(function=_actions)])
 
 
-def _actions(context) -> list:
+def _actions(context: LaunchContext) -> list:
     given = {name: LaunchConfiguration(name).perform(context) for name in ARGUMENTS}
     settings = (f"socket:={given['socket']}", f"command_timeout:={float(given['command_timeout'])}")
     options = [word for setting in settings for word in ("-p", setting)]
@@ -46,11 +47,12 @@ def _actions(context) -> list:
 
 def _nav2(robot: str, params: str) -> list:
     common = {"namespace": robot, "output": "screen"}
+    own = ReplaceString(source_file=params, replacements={"<robot_namespace>": f"/{robot}"})
     managed = {"use_sim_time": True, "autostart": True, "node_names": ["controller_server"]}
     return [
         Node(
             package="nav2_controller", executable="controller_server", remappings=TF,
-            parameters=[params, {"use_sim_time": True}], **common,
+            parameters=[own, {"use_sim_time": True}], **common,
         ),
         Node(
             package="nav2_lifecycle_manager", executable="lifecycle_manager",

@@ -5,6 +5,7 @@ of rclpy and rosidl_runtime_py. It needs Python 3.10 and ROS 2 Humble or newer, 
 """
 
 from time import monotonic
+from typing import Any
 
 import rclpy
 from channel import Channel, ChannelError, serve
@@ -26,15 +27,15 @@ class Bridge:
         self.socket = self.node.declare_parameter("socket", "/tmp/benchnav.sock").value  # noqa: S108
         self.patience = self.node.declare_parameter("command_timeout", 2.0).value
         self._outgoing, self._incoming, self._received = {}, {}, {}
-        self._now = 0.0  # [s] ROS time
+        self._now = 0  # [ns] ROS time
 
     def drive(self, channel: Channel) -> None:
         """Serve one episode. Raises ChannelError when it ends."""
-        channel.send({"start": self._now + PAUSE if self._now else 0.0})
+        channel.send({"start": self._now * 1e-9 + PAUSE if self._now else 0.0})
         while True:
             request = channel.receive()
             self._listen(request["await"])
-            for each in request["publish"]:
+            for each in request["publish"]:  # the clock comes last
                 self._publish(each["topic"], get_message(each["type"]), each["message"])
             channel.send({"received": self._wait(set(request["await"]))})
 
@@ -48,8 +49,11 @@ class Bridge:
             rclpy.spin_once(self.node, timeout_sec=0.0)
         self._received.clear()
 
-    def _receive(self, topic: str, message) -> None:
-        self._received[topic] = message_to_ordereddict(message)
+    def _receive(self, topic: str, message: Any) -> None:
+        """Keep a message, unless its stamp is that of an earlier decision."""
+        stamp = _nanoseconds(message.header.stamp) if hasattr(message, "header") else 0
+        if not stamp or stamp >= self._now:
+            self._received[topic] = message_to_ordereddict(message)
 
     def _publish(self, topic: str, kind: type, fields: dict) -> None:
         if topic not in self._outgoing:
@@ -59,7 +63,7 @@ class Bridge:
         set_message_fields(message, fields)
         self._outgoing[topic].publish(message)
         if topic == "/clock":
-            self._now = fields["clock"]["sec"] + fields["clock"]["nanosec"] * 1e-9
+            self._now = _nanoseconds(message.clock)
 
     def _wait(self, topics: set) -> dict:
         """Return the messages that come on these topics within ``command_timeout``."""
@@ -67,6 +71,10 @@ class Bridge:
         while topics - set(self._received) and (left := deadline - monotonic()) > 0:
             rclpy.spin_once(self.node, timeout_sec=left)
         return {topic: self._received[topic] for topic in topics & set(self._received)}
+
+
+def _nanoseconds(time: Any) -> int:
+    return time.sec * 10**9 + time.nanosec
 
 
 def main() -> None:

@@ -85,7 +85,8 @@ def scan(
     Args:
         seconds: [s] ROS time.
         angle: (R,) [rad] from the heading, evenly spaced.
-        distance, kind: (R,) as in `Rays`.
+        distance: (R,) [m] as in `Rays`.
+        kind: (R,) as in `Rays`.
         range_max: [m] of the sensor.
         period: [s] between two scans.
 

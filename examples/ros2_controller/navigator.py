@@ -6,8 +6,10 @@ robot comes back. Tested with `stub_node.py`; the ROS 2 node, `bridge_node.py`, 
 
 import math
 import sys
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Literal
+from types import MappingProxyType
+from typing import Any, Literal
 
 import numpy as np
 from pydantic import Field, field_validator
@@ -19,8 +21,10 @@ from channel import Channel, ChannelError, connect
 
 from benchnav.errors import NavigatorError
 from benchnav.isolation import host
+from benchnav.navigation.briefing import Briefing
 from benchnav.navigation.command_check import CallFailed
 from benchnav.navigation.navigator import Navigator, Need, PluginConfig
+from benchnav.navigation.observation import Observation
 
 TWISTS = {True: "geometry_msgs/msg/TwistStamped", False: "geometry_msgs/msg/Twist"}
 
@@ -62,17 +66,16 @@ class Ros2Controller(Navigator):
             raise NavigatorError(f"{error}.") from None
 
     @property
-    def required(self):
+    def required(self) -> frozenset[Need]:
         return frozenset({Need.RAYS, *((Need.NEIGHBOURS,) if self.config.people else ())})
 
     @property
-    def reproducible(self):
+    def reproducible(self) -> bool:
         return self.config.reproducible
 
-    def reset(self, briefings, rows):
+    def reset(self, briefings: Sequence[Briefing], rows: np.ndarray) -> None:
         self._disconnect()
-        if len(briefings) > 1:  # benchnav then runs each world on its own
-            raise CallFailed("a ROS 2 graph holds one world at a time", np.arange(len(rows)))
+        _require_one_world(rows)
         (self._briefing,) = briefings
         self._heading, self._missed = self._briefing.heading.copy(), 0
         self._command = np.zeros((1, len(self._briefing), 2))
@@ -89,9 +92,8 @@ class Ros2Controller(Navigator):
         except ChannelError as error:
             raise CallFailed(f"reset: {error}") from None
 
-    def act(self, observation):
-        if len(observation.rows) > 1:
-            raise CallFailed("a ROS 2 graph holds one world at a time", np.arange(len(observation)))
+    def act(self, observation: Observation) -> np.ndarray:
+        _require_one_world(observation.rows)
         robots = np.flatnonzero(observation.active[0]).tolist()
         topics = {f"/robot_{k}/cmd_vel": TWISTS[self.config.stamped] for k in robots}
         try:
@@ -107,12 +109,12 @@ class Ros2Controller(Navigator):
         self._heading = observation.heading[0].copy()
         return self._command.copy()
 
-    def remarks(self, row):
+    def remarks(self, row: int) -> Sequence[str]:
         if not self._missed:
             return ()
         return (f"cmd_vel did not come {self._missed} times: {self.config.missing}",)
 
-    def _robot(self, seen, k):
+    def _robot(self, seen: Observation, k: int) -> Iterator[messages.Message]:
         """Yield the messages about robot k."""
         at, now, dt = (0, k), self._start + float(seen.time[0]), self._briefing.dt
         position, heading = seen.position[at], float(seen.heading[at])
@@ -137,7 +139,7 @@ class Ros2Controller(Navigator):
             topic, kind = name.split()
             yield messages.publication(f"/robot_{k}/{topic}", kind, message)
 
-    def _twist(self, k, message):
+    def _twist(self, k: int, message: messages.Message | None) -> Sequence[float]:
         if message is not None:
             return messages.twist(message)
         if self.config.missing == "fail":
@@ -145,18 +147,27 @@ class Ros2Controller(Navigator):
         self._missed += 1
         return self._command[0, k] if self.config.missing == "hold" else (0.0, 0.0)
 
-    def _connect(self):
+    def _connect(self) -> Channel:
         """Return a new channel; the ROS time of its episode begins at ``_start`` [s]."""
         channel = connect(self.config.socket, self.config.timeout)
-        self._start = float(channel.receive()["start"])
+        start = channel.receive().get("start")
+        if not isinstance(start, (int, float)):
+            channel.close()
+            raise ChannelError("the node must greet with the number 'start'")
+        self._start = float(start)
         return channel
 
-    def _disconnect(self):
+    def _disconnect(self) -> None:
         if self._channel is not None:
             self._channel.close()
         self._channel = None
 
-    def _exchange(self, published, topics=()):
+    def _exchange(
+        self,
+        published: Iterable[messages.Message],
+        topics: Mapping[str, str] = MappingProxyType({}),
+    ) -> dict[str, Any]:
+        """Publish messages, and return those that came on ``topics`` (topic: type)."""
         if self._channel is None:
             raise ChannelError("the connection to the node was lost")
         self._channel.send({"publish": list(published), "await": dict(topics)})
@@ -164,6 +175,12 @@ class Ros2Controller(Navigator):
         if not isinstance(received, dict):
             raise ChannelError("the node must answer with the field 'received'")
         return received
+
+
+def _require_one_world(rows: np.ndarray) -> None:
+    """Raise CallFailed for several worlds: benchnav then runs each of them on its own."""
+    if len(rows) > 1:
+        raise CallFailed("a ROS 2 graph holds one world at a time", np.arange(len(rows)))
 
 
 if __name__ == "__main__":

@@ -7,10 +7,11 @@ import math
 
 import rclpy
 from action_msgs.msg import GoalStatus
-from geometry_msgs.msg import PoseStamped
+from geometry_msgs.msg import Point, PoseStamped
 from nav2_msgs.action import FollowPath
 from nav_msgs.msg import Odometry
 from rclpy.action import ActionClient
+from rclpy.action.client import ClientGoalHandle
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 
@@ -42,7 +43,7 @@ class PathClient(Node):
         sent = self._client.send_goal_async(request)
         sent.add_done_callback(lambda answer: self._on_answer(answer.result(), goal))
 
-    def _on_answer(self, handle, goal: PoseStamped) -> None:
+    def _on_answer(self, handle: ClientGoalHandle, goal: PoseStamped) -> None:
         if handle.accepted:
             finished = handle.get_result_async()
             finished.add_done_callback(lambda done: self._on_end(done.result().status, goal))
@@ -54,7 +55,7 @@ class PathClient(Node):
             self._unsent = goal
 
 
-def straight(start, goal: PoseStamped) -> list:
+def straight(start: Point, goal: PoseStamped) -> list:
     """Return the poses on the line from the point ``start`` to ``goal``."""
     end = goal.pose.position
     x, y = end.x - start.x, end.y - start.y

@@ -7,14 +7,16 @@ Equal messages give equal commands, so a run with it can be repeated bit for bit
 
 import argparse
 import math
+from typing import Any
 
 from channel import Channel, serve
 
+Message = dict[str, Any]
 SIDE = 0.35  # [rad] a direction must be free so far to both sides
 TURNING = 0.3  # cost of turning away from the heading, per radian
 
 
-def steer(odometry, scan, goal, options):
+def steer(odometry: Message, scan: Message, goal: Message, options: argparse.Namespace) -> Message:
     """Return a geometry_msgs/Twist: to the free direction that is nearest to the goal."""
     pose = odometry["pose"]["pose"]
     yaw = 2 * math.atan2(pose["orientation"]["z"], pose["orientation"]["w"])
@@ -54,8 +56,8 @@ def main() -> None:
             received = {}
             for topic, kind in request["await"].items():
                 robot = topic.removesuffix("/cmd_vel")
-                known = (latest[f"{robot}/{name}"] for name in ("odom", "scan", "goal_pose"))
-                odometry, scan, goal = known
+                topics = (f"{robot}/{name}" for name in ("odom", "scan", "goal_pose"))
+                odometry, scan, goal = (latest[topic] for topic in topics)
                 twist = steer(odometry, scan, goal["pose"], options)
                 stamp = odometry["header"]["stamp"]
                 header = {"stamp": stamp, "frame_id": "base_link"}
