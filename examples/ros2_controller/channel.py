@@ -85,7 +85,8 @@ def connect(path: str, timeout: float) -> Channel:
 
 def serve(path: str, handle: Callable[[Channel], None]) -> None:
     """Listen at ``path``, and call ``handle`` with each connection, one after another."""
-    Path(path).unlink(missing_ok=True)
+    if Path(path).is_socket():  # of a node that was stopped
+        Path(path).unlink()
     with socket.socket(socket.AF_UNIX) as listening:
         listening.bind(path)
         listening.listen()

@@ -63,7 +63,7 @@ class Ros2Controller(Navigator):
         try:
             self._connect().close()
         except ChannelError as error:
-            raise NavigatorError(f"{error}.") from None
+            raise NavigatorError(str(error)) from None
 
     @property
     def required(self) -> frozenset[Need]:

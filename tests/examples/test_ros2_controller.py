@@ -97,10 +97,17 @@ def test_the_suite_of_the_readme(tmp_path, monkeypatch):
 
 def test_a_twist_without_a_stamp_drives_the_same_way():
     with node(STUB) as path:
-        stamped, bare = (play(path, stamped=stamped)[0] for stamped in (True, False))
+        (stamped,), (bare,) = play(path), play(path, stamped=False, people=True)
     assert stamped.failure == ""
     assert (stamped.requested == bare.requested).all()
     assert stamped.requested.any()
+
+
+def test_a_file_that_is_no_socket_is_kept(tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    started = subprocess.run([sys.executable, STUB, tmp_path / "notes.txt"], capture_output=True)
+    assert started.returncode == 1
+    assert (tmp_path / "notes.txt").read_text() == "mine"
 
 
 def test_worlds_run_one_at_a_time():
