@@ -60,6 +60,7 @@ class Ros2Controller(Navigator):
     def __init__(self, config: Config | None = None) -> None:
         super().__init__(config)
         self._channel: Channel | None = None
+        self._missed = 0  # cmd_vel of this episode that did not come
         try:
             self._connect().close()
         except ChannelError as error:
@@ -112,7 +113,7 @@ class Ros2Controller(Navigator):
     def remarks(self, row: int) -> Sequence[str]:
         if not self._missed:
             return ()
-        return (f"cmd_vel did not come {self._missed} times: {self.config.missing}",)
+        return (f"{self._missed} commands did not come in time (missing: {self.config.missing})",)
 
     def _robot(self, seen: Observation, k: int) -> Iterator[messages.Message]:
         """Yield the messages about robot k."""

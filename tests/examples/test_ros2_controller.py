@@ -151,7 +151,7 @@ def test_a_robot_without_cmd_vel(missing, moves, failure):
     if not failure:
         assert (episode.requested[:2] == [0.5, 0.0]).all()
         assert (episode.requested[2:] == [0.5 * moves, 0.0]).all()
-        assert episode.remarks == (f"cmd_vel did not come 16 times: {missing}",)
+        assert episode.remarks == (f"16 commands did not come in time (missing: {missing})",)
 
 
 def test_a_range_that_is_not_that_of_the_rays_is_refused():
