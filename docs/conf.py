@@ -58,6 +58,7 @@ SHOWN = {  # page of the site: file of the project that it shows
     "changelog": "CHANGELOG.md",
     "contributing": "CONTRIBUTING.md",
     "guides/c-navigator": "examples/c_navigator/README.md",
+    "guides/ros2": "examples/ros2_controller/README.md",
     "results/model-card-recurrent-ppo": f"{CARDS}/recurrent-ppo.md",
     "results/model-card-recurrent-ppo-plus": f"{CARDS}/recurrent-ppo-plus.md",
 }
