@@ -177,7 +177,7 @@ def page(evidence: Evidence) -> str:
             f"The suite `{suite['name']}@{suite['version']}` with {seeds} seeds of the test split,"
             f" run with benchnav {version} on {manifest.created[:10]}, and written by `python -m"
             " studies.robots`. It drives four robots with their published limits through the four"
-            " scenarios of the [family `robots`](../../scenarios/robots/README.md), with exact and"
+            " scenarios of the [family `robots`](../gallery.md), with exact and"
             " with noisy senses. [Bodies](../bodies.md) describes the robots,"
             " [observations](../observations.md) the senses."
         ),
