@@ -26,7 +26,7 @@ PLACES = [Place(None, "orca", "x@1", "known", seed, None) for seed in range(3)]
 @pytest.fixture(autouse=True)
 def results(monkeypatch):
     columns = dict(zip(("seed", "role", "metric", "value"), zip(*ROWS, strict=True), strict=True))
-    same = {"navigator": "orca", "scenario": "x@1", "track": "known"}
+    same = {"navigator": "orca", "scenario": "x@1", "track": "known", "perception": "exact"}
     table = pa.table({**columns, **{name: [text] * len(ROWS) for name, text in same.items()}})
     monkeypatch.setattr(episode_choice, "results_of", lambda folder: table)
 

@@ -104,7 +104,7 @@ def test_episodes_are_chosen_by_name_and_read_when_used(run):
     assert repr(some) == "Episodes(2: 1 navigator, 1 scenario)"
     assert "<td>orca</td>" in some._repr_html_()
     frame = some.to_pandas()
-    assert list(frame.columns[:4]) == ["navigator", "scenario", "track", "seed"]
+    assert list(frame.columns[:5]) == ["navigator", "scenario", "track", "perception", "seed"]
     assert set(frame.seed) == {0, 1}
     for wrong, near in (
         ({"navigator": "orka"}, "Did you mean 'orca'"),
