@@ -222,8 +222,8 @@ def settings_of(folders: Sequence[RunFolder], axis: str) -> dict[str, Setting]:
             )
     if not found:
         raise UsageError(
-            f"The axis of a curve must be {HORIZON!r}, or a number that a scenario left open:"
-            f" {', '.join(sorted(axes - {HORIZON})) or 'here is none'}. Got {axis!r} instead."
+            f"The axis of a curve must be {HORIZON!r}, or a number parameter of a scenario that was"
+            f" run: {', '.join(sorted(axes - {HORIZON})) or 'here is none'}. Got {axis!r} instead."
             f"{did_you_mean(axis, sorted(axes))}"
         )
     return found

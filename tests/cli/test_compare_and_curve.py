@@ -99,7 +99,7 @@ def test_a_metric_is_shown_against_a_parameter_with_its_default(call, suite, tmp
         assert len(json.loads(call("compare", out, "orca", "straight-line", *wanted)[1])) == count
     code, _, stderr = call("leaderboard", out, "--curve", "sise")
     assert code == 2
-    assert "a parameter of a scenario that was run: size. Got 'sise'" in stderr
+    assert "a number parameter of a scenario that was run: size. Got 'sise'" in stderr
 
 
 def test_only_what_is_shown_is_computed(call, run, monkeypatch):

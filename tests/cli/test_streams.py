@@ -67,7 +67,7 @@ def test_every_locale_carries_the_text(locale):
 def test_help_on_a_terminal_without_such_characters_is_spelled_in_ascii():
     code, stdout, _ = shell("B run --help", PYTHONIOENCODING="ascii")
     assert code == 0
-    assert b"Scenarios x tracks x navigators x seeds" in stdout
+    assert b"Scenarios x tracks x perceptions x navigators x seeds" in stdout
     code, _, stderr = shell("B run quick --scenario trap/ü", PYTHONIOENCODING="ascii")
     assert code == 2
     assert stderr.isascii()

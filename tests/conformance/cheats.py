@@ -437,6 +437,6 @@ class Descriptors(Cheat):
     def peek(self, observation):
         for file in Path("/proc/self/fd").iterdir():
             with contextlib.suppress(OSError):
-                if ".parquet" in str(file.readlink()):
+                if file.readlink().name == ".lock":  # that of the run folder
                     return "descriptors"
         return None

@@ -43,6 +43,8 @@ def test_a_genuine_run_has_no_findings(genuine, findings):
 def test_every_column_of_episodes(forger, findings, column, cell):
     (stem,) = forger.stems(cell)
     table = pq.read_table(stem + EPISODES_FILE)
+    if column not in table.column_names:
+        pytest.skip("parts of exact perception have no such column")
     rows = [i for i, value in enumerate(table[column].to_pylist()) if value not in (None, [])]
     if not rows:
         pytest.skip("there is nothing to flip")
@@ -61,7 +63,8 @@ def test_every_column_of_episodes(forger, findings, column, cell):
 @pytest.mark.parametrize("column", EPISODES.names)
 def test_every_column_of_rehearsals(forger, findings, column):
     (stem,) = forger.stems("guided")
-    if pq.read_table(stem + REHEARSALS_FILE)[column].to_pylist()[1] in (None, []):
+    table = pq.read_table(stem + REHEARSALS_FILE)
+    if column not in table.column_names or table[column].to_pylist()[1] in (None, []):
         pytest.skip("there is nothing to flip")
 
     def change(value):
@@ -178,6 +181,8 @@ def test_an_episode_that_was_cut_or_goes_on(forger, findings, steps):
 def test_every_column_of_results(forger, findings, column, cell):
     (stem,) = forger.stems(cell)
     rows = pq.read_table(stem + RESULTS_FILE).to_pylist()
+    if column not in rows[0]:
+        pytest.skip("parts of exact perception have no such column")
     row = next(
         i for i, r in enumerate(rows)
         if r["metric"] not in TIMINGS and r["value"] == r["value"] and abs(r["value"]) > 0.01

@@ -71,7 +71,7 @@ def test_executed_commands_hold_the_limits_of_their_world(bodies):
     for episode in episodes_of(bodies):
         agents, dt = episode.world.agents, episode.world.clock.dt
         v, w = np.moveaxis(episode.executed, 2, 0)
-        faster = np.diff(v, axis=0, prepend=0.0)[:, :2]
+        faster = np.diff(abs(v), axis=0, prepend=0.0)[:, :2]
         assert (faster <= agents.max_acceleration[:2] * dt + 1e-12).all()
         assert (abs(v) + 0.2 * abs(w))[:, 2:4].max() <= 1.0 + 1e-12
         moving = v[:, :2] != 0.0
