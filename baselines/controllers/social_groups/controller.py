@@ -93,7 +93,7 @@ class SocialGroups(SocialForce):
             body = bodies_of(briefing)
             changes = np.full((len(briefing), 2 * MOST_STOPS), np.inf)
             for group in groups:
-                body[group, 2] = body[group, 2].min()  # preferred speed
+                body[group, 2] = body[group, 2].mean()  # preferred speed
                 if c.stop_every is not None:
                     changes[group] = draw_changes(c.stop_every, c.stop_for, briefing.rng)
             self.groups[row] = groups
