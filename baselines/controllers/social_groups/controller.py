@@ -40,7 +40,10 @@ class SocialGroupsConfig(SocialForceConfig):
     attraction: float = Field(3.0, ge=0, description="[m/s²] β₂, to the centre of the group")
     repulsion: float = Field(1.0, ge=0, description="[m/s²] β₃, from each member that is too near")
     view_angle: float = Field(
-        0.5 * math.pi, ge=0, le=math.pi, description="[rad] φ, to each side without a turn of the head"
+        0.5 * math.pi,
+        ge=0,
+        le=math.pi,
+        description="[rad] φ, to each side without a turn of the head",
     )
     group_spacing: float = Field(
         1.0,

@@ -20,7 +20,9 @@ class GroupForces(NamedTuple):
     attraction: float  # β₂ [m/s²]
     repulsion: float  # β₃ [m/s²]
     view_angle: float  # φ [rad] to each side that needs no turn of the head
-    spacing: float  # [m] between neighbours side by side; attraction begins at half of (N − 1) times it
+    spacing: (
+        float  # [m] between neighbours side by side; attraction begins at half of (N − 1) times it
+    )
     ramp: float  # [m] over which the attraction grows to its full strength
     distance: float  # d₀ [m] between the centres of two members that repel each other
 
