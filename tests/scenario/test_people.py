@@ -42,6 +42,7 @@ def test_speeds_are_mixed_as_published(name):
     assert len(np.unique(speed)) == 500
 
 
+@pytest.mark.slow
 def test_five_navigators_run_and_verify(tmp_path):
     few = [f"{name}:reactive=5,unaware=2" for name in FAMILY]
     run = benchnav.run(
@@ -56,4 +57,4 @@ def test_five_navigators_run_and_verify(tmp_path):
     episodes = list(run.episodes())
     assert len(episodes) == len(FAMILY) * len(NAVIGATORS)
     assert not any(episode.record.failure for episode in episodes)
-    assert run.verify(twin=2, rerun=True, workers=0, quiet=True)
+    assert run.verify(twin=1, twin_seconds=1.0, rerun=True, workers=0, quiet=True)
