@@ -85,13 +85,23 @@ class SocialForce(Controller):
             self._table.put(int(row), body=bodies_of(briefing), push=push)
 
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
+        agents = observation.active.shape[1]
+        body, push = (self._table.take(name, observation.rows, agents) for name in ("body", "push"))
+        return self._velocity(observation, guide.target, body, push)
+
+    def _velocity(
+        self, observation: Observation, target: FloatArray, body: FloatArray, push: FloatArray
+    ) -> FloatArray:
+        """Return velocities (B, A, 2) [m/s] towards ``target`` (B, A, 2) [m].
+
+        ``body`` (B, A, 6) is as `bodies_of` returns it, ``push`` (B, A, 2) an acceleration [m/s²].
+        """
         worlds, agents = observation.active.shape
         rows = worlds * agents
-        body, push = (self._table.take(name, observation.rows, agents) for name in ("body", "push"))
         position, velocity, radius, _, count, *edges = sensed(observation)
         arrays = (
-            observation.active, observation.position, observation.velocity, guide.target, body,
-            push, position, velocity, radius, count, *edges,
+            observation.active, observation.position, observation.velocity, target, body, push,
+            position, velocity, radius, count, *edges,
         )  # fmt: skip
         answer = np.zeros((rows, 2))
         run_rows(social_force, rows, *flat(rows, arrays), self._forces, answer)
