@@ -48,6 +48,7 @@ class Body:
 
     solid: Solid
     law: Law
+    person: bool = False  # whether it is a person of the scenario's recording
 
 
 def absent(position: FloatArray) -> BoolArray:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from benchnav.arena.body import Body
 from benchnav.arena.motion_limits import MotionLimits
 from benchnav.arena.world import World
 from benchnav.generation.build import build
@@ -30,6 +31,8 @@ def _chunks(part: Any) -> Iterator[bytes]:
         yield np.ascontiguousarray(part).tobytes()
     elif is_dataclass(part):
         out = part.without_limit() if isinstance(part, MotionLimits) else frozenset({"redraws"})
+        if isinstance(part, Body) and not part.person:
+            out = frozenset({"person"})  # worlds of earlier versions have no people
         for item in fields(part):
             if item.name not in out:
                 yield item.name.encode()

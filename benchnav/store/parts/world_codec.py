@@ -32,6 +32,7 @@ from pydantic_core.core_schema import (
     with_default_schema,
 )
 
+from benchnav.arena.body import Body
 from benchnav.arena.motion_limits import NO_LIMIT, MotionLimits
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
@@ -50,7 +51,8 @@ _MAX_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of 
 
 def world_to_json(world: World) -> bytes:
     """Return the world as one line of JSON in UTF-8 (infinities as in Python: ``Infinity``)."""
-    return to_json(World, world, {"agents": world.agents.without_limit()})
+    others = {n: {"person"} for n, body in enumerate(world.bodies) if not body.person}
+    return to_json(World, world, {"agents": world.agents.without_limit(), "bodies": others})
 
 
 def world_from_json(text: str) -> World:
@@ -71,7 +73,7 @@ def world_from_json(text: str) -> World:
 def to_json(kind: Any, value: Any, exclude: Any = None) -> bytes:
     """Return JSON of a value of type ``kind``: a dataclass, array, enum, tuple or number.
 
-    ``exclude`` names the fields that are left out: {field: {field of its value}}.
+    ``exclude`` names the fields that are left out, as pydantic does: {field: {field of its value}}.
     Raises TypeError if this type cannot be encoded.
     """
     return _codec(kind)[0].to_json(value, exclude=exclude, warnings=False, fallback=_encoded)
@@ -122,8 +124,10 @@ def _schema(kind: Any) -> CoreSchema:
 
 
 def _field_schema(kind: type, name: str, hint: Any) -> DataclassField:
-    """Return the description of a field; a column of `MotionLimits` may be missing."""
+    """Return the description of a field; those that earlier worlds do not have may be missing."""
     schema = _schema(hint)
+    if kind is Body and name == "person":
+        schema = with_default_schema(schema, default=False)
     if issubclass(kind, MotionLimits) and name in NO_LIMIT:
         schema = with_default_schema(schema, default=None)
     return dataclass_field(name, schema)
