@@ -32,7 +32,9 @@ NAMES = (*DESCRIPTIVE, MIDDLE_HALF)
 def choose(held: Sequence[str], metrics: Sequence[str] | None) -> tuple[str, ...]:
     """Return the metrics of ``held`` to show: the default ones, all (``["all"]``), or ``metrics``.
 
-    A name of `PROFILES` stands for its metrics. Raises UsageError for a metric that is not in ``held``.
+    A name of `PROFILES` stands for its metrics.
+
+    Raises UsageError for a metric that is not in ``held``.
     """
     if metrics is None:
         return tuple(name for name in DEFAULT if name in held) or tuple(held[:FEW])

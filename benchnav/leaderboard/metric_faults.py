@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from benchnav.leaderboard.record import ALL, Record
 from benchnav.text.plural import counted
@@ -31,16 +31,30 @@ def faults(results: pa.Table) -> Faults:
     if "missing" not in results.column_names:
         return found
     gaps = results.filter(pc.not_equal(results["missing"], ""))
-    failed = pc.invert(pc.starts_with(gaps["missing"], NOT_APPLICABLE))
-    without = gaps.filter(pc.invert(failed)).select([*KEYS, "scenario", "missing", "seed"])
-    each = without.group_by([*KEYS, "scenario", "missing"]).aggregate([("seed", "min")])
-    each = each.rename_columns([name.removesuffix("_min") for name in each.column_names])
-    for row in [*gaps.filter(failed).to_pylist(), *each.to_pylist()]:
+    failed = pc.invert(pc.starts_with(gaps["missing"].cast("string"), NOT_APPLICABLE))
+    for row in [*gaps.filter(failed).to_pylist(), *_one_each(gaps.filter(pc.invert(failed)))]:
         world = row["scenario"], row["seed"]
         for scenario in (row["scenario"], ALL):
             key = *(row[name] for name in KEYS), scenario
             found.setdefault(key, {})[world] = row["missing"]
     return found
+
+
+def _one_each(gaps: pa.Table) -> list[dict[str, Any]]:
+    """Return one row for each scenario and reason, without the numbers: runs have many."""
+    names = [*KEYS, "scenario", "missing"]
+    plain = gaps.select([*names, "seed"]).cast(_plain(gaps.schema, [*names, "seed"]))
+    each = plain.group_by(names).aggregate([("seed", "min")])
+    return [row | {"seed": row["seed_min"]} for row in each.to_pylist()]
+
+
+def _plain(schema: pa.Schema, names: Sequence[str]) -> pa.Schema:
+    """Return the schema of some columns, with values in place of dictionaries."""
+    import pyarrow as pa
+
+    kinds = [schema.field(name).type for name in names]
+    kinds = [k.value_type if pa.types.is_dictionary(k) else k for k in kinds]
+    return pa.schema(list(zip(names, kinds, strict=True)))
 
 
 def with_fault(record: Record, found: Faults) -> Record:

@@ -347,3 +347,16 @@ def test_differently_configured_runs_are_told_by_their_names():
     one, two = (hashed([row("a", 0, "success", 1.0)], h) for h in ("aaaa", "bbbb"))
     with pytest.raises(UsageError, match="aaaa in runs/x and bbbb in runs/y"):
         require_one_navigator_per_label({"runs/x": one, "runs/y": two})
+
+
+def test_worlds_that_do_not_hold_what_a_metric_needs_are_no_failures():
+    def gap(scenario, seed, missing):
+        return row("a", seed, "spl", math.nan, scenario=scenario) | {"missing": missing}
+
+    without = [gap("x@1", seed, "n/a: needs people") for seed in range(3)]
+    held = [row("a", seed, "spl", 0.5, scenario="y@1") | {"missing": ""} for seed in range(3)]
+    raised = [gap("z@1", 0, "ValueError: no"), gap("z@1", 1, "n/a: needs people")]
+    found = board(without + held + raised)
+    assert only(found, "a", "spl", scenario="x@1").fault == "n/a: needs people"
+    assert only(found, "a", "spl", scenario="y@1").fault == ""
+    assert only(found, "a", "spl", scenario="z@1").fault == "failed in 1 episode: ValueError: no"

@@ -33,8 +33,8 @@ def leaderboard(
     metric: Annotated[
         list[str] | None,
         typer.Option(
-            help="Show this metric; 'people' for those of people, 'all' for every one. Repeatable."
-            " [default: a few]"
+            help="Show this metric; 'people' for those of people, 'all' for every one."
+            " Repeatable. [default: a few]"
         ),
     ] = None,
     columns: Annotated[

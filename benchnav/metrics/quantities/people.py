@@ -59,11 +59,11 @@ def approaches_of(
     times = frame_times(t, RATE)
     place, radius = positions_at(t, times), world.agents.radius
     walks = times <= t.end[evaluated, None] + INSTANT
-    own = _tracks(place[evaluated], walks, radius[evaluated])
+    own = tracks(place[evaluated], walks, radius[evaluated])
     body_place = np.empty((len(bodies), len(times), 2))
     there = np.empty((len(bodies), len(times)), np.bool_)
     write_bodies(body_position, bodies, t.dt, times, body_place, there)
-    people = _tracks(
+    people = tracks(
         np.concatenate([place[agents], body_place]),
         np.concatenate([present_at(t, times)[agents], there]),
         np.concatenate([radius[agents], [world.bodies[m].solid.radius for m in bodies]]),
@@ -78,7 +78,8 @@ def approaches(agents: Tracks, people: Tracks, preferred: FloatArray) -> Approac
     return found
 
 
-def _tracks(place: FloatArray, there: BoolArray, radius: FloatArray) -> Tracks:
+def tracks(place: FloatArray, there: BoolArray, radius: FloatArray) -> Tracks:
+    """Return tracks of discs at ``place`` (N, F, 2) [m], with their velocities."""
     velocity = np.zeros_like(place)
     write_velocities(place, there, RATE, velocity)
     return Tracks(place, velocity, there, np.asarray(radius, np.float64))

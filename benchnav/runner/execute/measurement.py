@@ -35,10 +35,9 @@ def measured(episodes: Iterable[Episode], metrics: Sequence[Metric]) -> pa.Table
 
 def failed_metrics(results: pa.Table) -> list[tuple[str, str]]:
     """Return (metric, reason) for each value of `RESULTS` that is missing after a failure."""
-    failed = pc.not_equal(results["missing"], "")
-    gaps = results.filter(
-        pc.and_(failed, pc.invert(pc.starts_with(results["missing"], NOT_APPLICABLE)))
-    )
+    gaps = results.filter(pc.not_equal(results["missing"], ""))
+    inapplicable = pc.starts_with(gaps["missing"].cast("string"), NOT_APPLICABLE)
+    gaps = gaps.filter(pc.invert(inapplicable))
     return list(zip(gaps["metric"].to_pylist(), gaps["missing"].to_pylist(), strict=True))
 
 
