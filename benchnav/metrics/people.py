@@ -1,4 +1,4 @@
-"""People: what evaluated agents do to the people around them.
+"""People: effects of evaluated agents on the people around them.
 
 People are the agents that the evaluated navigator does not drive, and the recorded people of a
 scenario's `recording`. An obstacle with another law of motion is no person. Without people, these
@@ -109,7 +109,7 @@ def collisions_people(episode: Episode) -> FloatArray:
     people=True,
 )
 def collisions_at_fault(episode: Episode) -> FloatArray:
-    """(A,) number of charged events with people towards whom the agent moved at the first touch.
+    """(A,) number of charged events with people that the agent moved towards at the first touch.
 
     It moved if its own speed along the normal of the touch, by its executed command, was above
     0.05 m/s. If both moved into each other, it is at fault; if a person walks into an agent that

@@ -1,4 +1,4 @@
-"""What evaluated agents do to people: dimensionless numbers and approaches, kernels.
+"""Encounters of evaluated agents with people: dimensionless numbers and approaches, kernels.
 
 People are those of `World.people`. As PedPy does, the numbers take places in frames, and
 velocities from the frame before to the frame after; at the ends of a track, from one frame.
