@@ -7,9 +7,12 @@ import pandas as pd
 import pedpy
 import pytest
 import shapely
+import yaml
 
 import benchnav
 from benchnav.errors import TrajectoryError, UsageError
+from benchnav.scenario.importers.recording.formats import FORMATS
+from benchnav.scoring.bodies import SHAPE
 from tests.importers.data import published
 
 SCENARIO = {
@@ -93,8 +96,6 @@ def test_what_a_table_does_not_hold_is_not_applicable_with_the_reason(tmp_path, 
 def run(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
     path = folder / "two.yaml"
-    import yaml
-
     path.write_text(yaml.safe_dump(SCENARIO))
     return path, benchnav.run(
         str(path), navigators=["orca", "straight-line"], seeds=2, out=folder / "run", workers=0,
@@ -223,3 +224,125 @@ def test_what_cannot_be_asked_for(tmp_path):
         scored(table, tmp_path, columns={"x": "X"})
     with pytest.raises(TrajectoryError, match="rate', in frames a second"):
         scored(table.rename(columns={"time": "frame"}), tmp_path)
+
+
+NOISY = SCENARIO | {
+    "name": "two/noisy",
+    "noise": {"rays": {"sensor": "lidar"}, "odometry": {"sensor": "dead-reckoning"}},
+    "teams": [
+        {
+            "name": "crowd", "count": 6, "max_speed": 1.2,
+            "footprint": {"type": "capsule", "length": 0.9, "width": 0.4},
+            "start": {"type": "circle", "radius": 5, "jitter": 0.3}, "goal": {"type": "antipodal"},
+        }
+    ],
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def noisy_run(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("noisy")
+    path = folder / "noisy.yaml"
+    path.write_text(yaml.safe_dump(NOISY))
+    return path, benchnav.run(
+        str(path), navigators=["straight-line"], seeds=1, out=folder / "run", workers=0,
+        tracks=["known"], perception=["exact", "noisy"], quiet=True,
+    )  # fmt: skip
+
+
+def test_exact_and_noisy_episodes_of_one_seed_are_two_episodes(noisy_run, tmp_path):
+    scenario, made = noisy_run
+    (file,) = made.export(tmp_path / "run.csv")
+    assert set(pd.read_csv(file).perception) == {"exact", "noisy"}
+    scores = benchnav.score(file, scenario=scenario, quiet=True, metrics="path_length").records
+    found = {r.perception: r.value for r in scores}
+    for record in made.leaderboard(metrics="path_length").records:
+        if record.perception in ("exact", "noisy"):
+            assert found[record.perception] == pytest.approx(record.value, rel=2e-3)
+    assert {"exact", "noisy"} <= set(found)
+    assert found["exact"] != found["noisy"]
+    one = made.export(tmp_path / "one.csv", perception="noisy")[0]
+    assert set(pd.read_csv(one).perception) == {"noisy"}
+    files = made.export(tmp_path / "pedpy", to="pedpy")
+    assert len({f.name for f in files}) == 4
+    assert sum("noisy" in f.name.removeprefix("straight-line-two-noisy") for f in files) == 2
+    table = pd.read_csv(one).assign(perception="blurred")
+    with pytest.raises(TrajectoryError, match=r"a perception must be one of exact, noisy; got 'bl"):
+        scored(table, tmp_path)
+
+
+@pytest.mark.parametrize("shape", ["columns", "scenario"])
+def test_a_body_that_is_not_a_disc_has_the_clearance_of_its_shape(noisy_run, tmp_path, shape):
+    scenario, made = noisy_run
+    (file,) = made.export(tmp_path / "run.csv", perception="exact")
+    table = pd.read_csv(file)
+    assert table.body_length.tolist() == [0.9] * len(table)
+    assert table.body_width.tolist() == [0.4] * len(table)
+    if shape == "scenario":
+        table = table.drop(columns=["body_length", "body_width", "corner_radius"])
+    found = scored(table, tmp_path, scenario=scenario)
+    run = {r.metric: r for r in made.leaderboard(metrics="all").records if r.perception == "exact"}
+    for name in ("min_clearance", "personal_space_intimate"):
+        assert found[name].value == pytest.approx(run[name].value, rel=2e-3, abs=2e-3)
+    for name in ("success", "collided", "collisions_wall", "spl"):
+        assert math.isnan(found[name].value)
+        assert found[name].fault == "n/a: needs bodies that are discs"
+    blind = scored(table.drop(columns="heading"), tmp_path, scenario=scenario)
+    assert blind["min_clearance"].fault == "n/a: needs headings"
+    disc = scored(table.drop(columns=list(set(table) & {*SHAPE})).assign(radius=0.2), tmp_path)
+    assert not math.isnan(disc["collided"].value)
+    assert disc["min_clearance"].value != pytest.approx(found["min_clearance"].value)
+
+
+def test_shapes_that_are_not_there_at_the_same_time_do_not_meet(tmp_path):
+    size = {"body_length": 1.0, "body_width": 0.4, "corner_radius": 0.2, "heading": 0.0}
+    first, later = ("a", 0, (0, 0), (1, 0), 41), ("b", 5, (0, 0), (1, 0), 41)
+    found = scored(rows(first, later).assign(**size), tmp_path)
+    assert math.isnan(found["min_clearance"].value)
+    behind = rows(first, ("b", 1, (0, 0), (1, 0), 41)).assign(**size)
+    assert scored(behind, tmp_path)["min_clearance"].value == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("cells", "text"),
+    [
+        ({"body_length": 1.0}, "must be given together; body_width, corner_radius is missing"),
+        (
+            {"body_length": 1.0, "body_width": 0.3, "corner_radius": 0.2},
+            ":2: corner_radius must be",
+        ),
+        (
+            {"body_length": 1.0, "body_width": 0.3, "corner_radius": 0.0},
+            ":2: corner_radius must be",
+        ),
+    ],
+)
+def test_sizes_must_fit(tmp_path, cells, text):
+    with pytest.raises(TrajectoryError, match=text):
+        scored(rows(("a", 0, (0, 0), (1, 0), 11)).assign(**cells), tmp_path)
+
+
+def test_recordings_are_scored_in_every_format_that_is_imported(tmp_path, capsys):
+    obsmat, ndjson = tmp_path / "obsmat.txt", tmp_path / "tracks.ndjson"
+    obsmat.write_text("".join(f"{k} 7 {k / 10} 0 2 0 0 0\n" for k in range(21)))
+    ndjson.write_text(
+        "".join(f'{{"track": {{"f": {k}, "p": 7, "x": {k / 10}, "y": 2}}}}\n' for k in range(21))
+    )
+    for path in (obsmat, ndjson):
+        found = {r.metric: r.value for r in benchnav.score(path, rate=10, quiet=True).records}
+        assert found["path_length"] == pytest.approx(2)
+    half = benchnav.score(
+        obsmat, rate=10, unit=0.5, format="eth", quiet=True, metrics="path_length"
+    )
+    assert half.records[0].value == pytest.approx(1)
+    obsmat.write_text(
+        "# a\n\n" + "".join(f"{k} 7 {k / 10} 0 2 0 0 0\n" for k in range(21) if k != 9)
+    )
+    with pytest.raises(TrajectoryError, match=r"obsmat\.txt:12: a track must have no gap"):
+        benchnav.score(obsmat, rate=10, quiet=True)
+    from benchnav.cli.main import status
+
+    for command in (["score", "--help"], ["import", "recording", "--help"]):
+        status(command)
+        words = "".join(c if c.isalnum() or c == "-" else " " for c in capsys.readouterr().out)
+        assert set(FORMATS) <= set(words.replace("- ", "-").split()) | {"pedpy"}, command

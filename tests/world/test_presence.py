@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from benchnav.arena.body import Body, absent
+from benchnav.arena.noise import NeighbourNoise, Noise, RayNoise
 from benchnav.arena.solid import Kind
 from benchnav.generation.motion_law import swept, track_law
 from benchnav.metrics.quantities.encounters import encounters, things_of
@@ -14,6 +15,7 @@ from benchnav.sensors.sense import sense
 from benchnav.verify.reference.reference_geometry import law_position
 from benchnav.verify.reference.reference_simulator import Twin
 from benchnav.world.simulation import Simulation
+from tests.sensors.noisy import NEEDS, active, noisy
 from tests.worlds import agents, disc, world
 
 DT = 0.2
@@ -108,15 +110,19 @@ def test_sensors_do_not_see_what_is_absent():
     assert seen[4.0] == (0, False)
 
 
-@pytest.mark.parametrize("seed", range(5))
-def test_the_twin_agrees_on_random_crowds(seed):
+CAPSULE = {"half_length": 0.5, "half_width": 0.2, "rounding": 0.2}
+
+
+@pytest.mark.parametrize("shape", [{}, CAPSULE], ids=["discs", "capsules"])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_twin_agrees_on_random_crowds(seed, shape):
     rng = np.random.default_rng(seed)
     people = []
     for _ in range(8):
         first = rng.uniform(0.0, 3.0)
         times = first + np.concatenate([[0.0], np.cumsum(rng.uniform(0.3, 1.0, 4))])
         people.append(person(times, rng.uniform(3, 17, (5, 2))))
-    crew = agents(rng.uniform(3, 17, (3, 2)), rng.uniform(3, 17, (3, 2)))
+    crew = agents(rng.uniform(3, 17, (3, 2)), rng.uniform(3, 17, (3, 2)), **shape)
     here = world(crew, bodies=people)
     for _ in stepped(here, command=rng.uniform(-1, 1, 2), steps=25):
         pass
@@ -124,6 +130,26 @@ def test_the_twin_agrees_on_random_crowds(seed):
         for time in rng.uniform(0.0, 6.0, 20):
             here = body.law.times[2] <= time <= body.law.times[-2]
             assert absent(law_position(body, time, False)) == (not here)
+
+
+def test_noisy_senses_invent_nobody_for_what_is_absent():
+    """The noise of a reading is that of an object which is there."""
+    noise = Noise(
+        RayNoise(0.05, 0.05, 0.01, 0.0, 0.0), NeighbourNoise(0.3, 0.3, 0.3, 0.0, 4.0), delay=1
+    )
+    here = world(agents([5, 5], [18, 5]), bodies=[person([1.0, 3.0], [[8, 5], [8, 5]])])
+    simulation, senses = noisy([here], noise)
+    seen = {}
+    for k in range(25):
+        rays, neighbours, _ = senses.sense(active(simulation, senses), NEEDS)
+        dynamic = bool((rays.kind[0, 0] == int(Kind.DYNAMIC)).any())
+        seen[round(k * DT, 6)] = int(neighbours.count[0, 0]), dynamic
+        assert np.isfinite(neighbours.position[0, 0]).all()
+        assert np.abs(neighbours.position[0, 0]).max() < 20.0
+        simulation.step(np.zeros((1, 1, 2)), np.zeros((1, 1), bool))
+    assert seen[0.8] == seen[1.0] == (0, False)  # one decision late
+    assert seen[2.0] == seen[3.0] == (1, True)
+    assert seen[4.0] == (0, False)
 
 
 def trajectories(position):
@@ -145,6 +171,11 @@ def test_clearance_counts_a_person_while_it_is_there():
     # until it vanishes between 2.0 and 2.2 s, the agent is 4.0 to 4.2 m along
     assert found.clearance[0] == pytest.approx(8.0 - 4.2 - 0.6, abs=1e-9)
     assert found.time_to_collision[0] == pytest.approx(8.0 - 4.2 - 0.6, abs=1e-6)
+    shape = np.array([[0.3, 0.0, 0.2]]), np.zeros((1, 16))  # 0.5 m ahead of its centre
+    ahead = encounters(trajectories(position), np.array([0.5]), things_of(here, bodies), shape)
+    assert ahead.clearance[0] == pytest.approx(8.0 - 4.15 - 0.8, abs=1e-9)  # at a quarter of a step
     away = np.broadcast_to(np.array([1e7, 1e7]), bodies.shape)
     nothing = encounters(trajectories(position), np.array([0.3]), things_of(here, away))
     assert nothing.clearance[0] == math.inf
+    none = encounters(trajectories(position), np.array([0.5]), things_of(here, away), shape)
+    assert none.clearance[0] == math.inf

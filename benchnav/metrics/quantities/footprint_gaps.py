@@ -59,7 +59,7 @@ def lower_gaps(
                     apart = _apart(fx, fy, angle, shape[a], half)
                     clearance[a] = min(clearance[a], apart - shape[a, 2] - r)
                 for j in range(len(position)):
-                    if j == a or not enters[j] <= k <= leaves[j]:
+                    if j == a or k < enters[j] or k > leaves[j] or (k == leaves[j] and s > 0):
                         continue
                     u, v, other = _pose(j, k, t, position, velocity, duration, last, heading, dt)
                     limit = max(clearance[a], gap[a, k]) if s == 0 else clearance[a]
