@@ -48,6 +48,11 @@ class Body:
 
     solid: Solid
     law: Law
+    person: bool = False  # whether it is a person of the scenario's recording
+
+    def left_out(self) -> frozenset[str]:
+        """Return the names of the fields that are not hashed or stored: added, and at default."""
+        return frozenset() if self.person else frozenset({"person"})
 
 
 def absent(position: FloatArray) -> BoolArray:

@@ -7,12 +7,14 @@ records it. It does not know its scenario.
 from dataclasses import dataclass
 from enum import IntEnum
 
+import numpy as np
+
 from benchnav.arena.agents import Agents
 from benchnav.arena.body import Body
 from benchnav.arena.mesh import Mesh
 from benchnav.arena.sensing import Sensing
 from benchnav.arena.solid import Kind, Solid
-from benchnav.arrays import BoolArray, Extent
+from benchnav.arrays import BoolArray, Extent, IntArray
 
 
 class ContactRule(IntEnum):
@@ -82,6 +84,22 @@ class World:
     measurement_area: Extent | None = None  # the area of density measurements [m]
     meshes: tuple[Mesh, ...] = ()  # the meshes whose cross-sections are among the solids
     redraws: int = 0  # unsolvable draws that were rejected
+
+    @property
+    def people(self) -> tuple[IntArray, IntArray]:
+        """The people: indices of agents (N,) and of bodies (K,), ascending.
+
+        People are the agents that the evaluated navigator does not drive, and the obstacles that
+        are recorded people.
+        """
+        agents = np.flatnonzero(~self.agents.evaluated)
+        bodies = [m for m, body in enumerate(self.bodies) if body.person]
+        return agents.astype(np.int64), np.array(bodies, np.int64)
+
+    @property
+    def has_people(self) -> bool:
+        """Whether there are `people`."""
+        return any(map(len, self.people))
 
     @property
     def relocates(self) -> bool:

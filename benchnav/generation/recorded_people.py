@@ -113,7 +113,7 @@ def people_bodies(scenario: Scenario, people: People) -> list[Body]:
         for track in people.tracks
         if track not in people.reacting
     ]
-    return [Body(solid, law) for law in laws]
+    return [Body(solid, law, person=True) for law in laws]
 
 
 def with_people(scenario: Scenario, people: People | None) -> Scenario:

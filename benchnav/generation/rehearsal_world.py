@@ -5,7 +5,7 @@ from dataclasses import fields, replace
 import numpy as np
 
 from benchnav.arena.agents import Agents, Role
-from benchnav.arena.body import Body, Law, LawKind
+from benchnav.arena.body import Law, LawKind
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import World
 from benchnav.arrays import IntArray
@@ -30,7 +30,7 @@ def rehearsal_world(world: World, rng: np.random.Generator) -> tuple[World, IntA
     rehearsed = replace(
         world,
         solids=world.solids + placed,
-        bodies=tuple(Body(body.solid, _rephased(body.law, rng)) for body in moving),
+        bodies=tuple(replace(body, law=_rephased(body.law, rng)) for body in moving),
         agents=replace(agents, role=role),
         stale_solids=None if stale is None else stale + placed,
     )

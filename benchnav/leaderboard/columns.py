@@ -7,6 +7,13 @@ from benchnav.leaderboard.record import Record
 from benchnav.leaderboard.rendering.cell import Cell, rank, rehearsal, training, verified
 
 DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
+PROFILES: Mapping[str, tuple[str, ...]] = {
+    "people": (
+        "success", "collisions_people", "collisions_at_fault", "personal_space_approach",
+        "intrusion", "avoidance",
+    ),
+}  # fmt: skip
+"""Names that stand for several metrics."""
 FEW = 4  # metrics to show if the results contain none of the default ones
 
 DESCRIPTIVE: Mapping[str, Callable[[Record], Cell]] = {
@@ -25,6 +32,8 @@ NAMES = (*DESCRIPTIVE, MIDDLE_HALF)
 def choose(held: Sequence[str], metrics: Sequence[str] | None) -> tuple[str, ...]:
     """Return the metrics of ``held`` to show: the default ones, all (``["all"]``), or ``metrics``.
 
+    A name of `PROFILES` stands for its metrics.
+
     Raises UsageError for a metric that is not in ``held``.
     """
     if metrics is None:
@@ -32,12 +41,18 @@ def choose(held: Sequence[str], metrics: Sequence[str] | None) -> tuple[str, ...
     if list(metrics) == ["all"]:
         return tuple(held)
     for name in metrics:
-        if name not in held:
+        if name not in held and not _held_of(name, held):
             raise UsageError(
                 f"A metric to show must be one that the leaderboard holds. Got {name!r} instead."
-                f"{did_you_mean(name, held)} 'all' shows all."
+                f"{did_you_mean(name, [*held, *PROFILES])} 'all' shows all."
             )
-    return tuple(dict.fromkeys(metrics))
+    shown = [part for name in metrics for part in _held_of(name, held) or (name,)]
+    return tuple(dict.fromkeys(shown))
+
+
+def _held_of(profile: str, held: Sequence[str]) -> tuple[str, ...]:
+    """Return the metrics of a profile that the leaderboard holds; none of another name."""
+    return tuple(name for name in PROFILES.get(profile, ()) if name in held)
 
 
 def choose_columns(held: Sequence[str], columns: Sequence[str]) -> tuple[str, ...]:

@@ -38,6 +38,7 @@ class _Declaration(BaseModel):
     conditional: StrictBool
     verifiable: StrictBool
     rate: StrictBool
+    people: StrictBool = False
 
 
 def declared_metrics() -> tuple[dict[str, Metric], list[str]]:

@@ -18,6 +18,9 @@ from benchnav.navigation.command_check import exception_text
 from benchnav.navigation.plugin.trace import trace
 from benchnav.plugins import METRICS
 
+NOT_APPLICABLE = "n/a: "
+"""Begins the reason of a missing value that no failure caused; leaderboards show it as such."""
+
 
 def load_metric(name: str) -> Metric:
     """Return the registered metric of this name. Raises the errors of the registry."""
@@ -69,6 +72,9 @@ class Cell(NamedTuple):
     traceback: str | None = None
 
 
+NO_PEOPLE = Cell(missing=f"{NOT_APPLICABLE}needs people")
+
+
 def measure_roles(
     episode: Episode, metrics: Sequence[Metric]
 ) -> list[tuple[dict[str, Any], list[Cell]]]:
@@ -79,6 +85,7 @@ def measure_roles(
     _no_metrics_twice(tuple(metric.name for metric in metrics))
     rows = np.full((len(metrics), len(episode.world.agents)), math.nan)
     alone = [n for n, metric in enumerate(metrics) if not _agents_values(metric, episode, rows[n])]
+    unpopulated = [] if episode.world.has_people else [n for n, m in enumerate(metrics) if m.people]
     found = []
     for common, members in subjects(episode):
         means, defined = np.empty(len(metrics)), np.empty(len(metrics), np.int64)
@@ -86,6 +93,8 @@ def measure_roles(
         cells = list(map(Cell, means.tolist(), defined.tolist()))
         for n in (*alone, *np.flatnonzero(np.abs(means) > LARGEST).tolist()):
             cells[n] = measure_alone(metrics[n], episode, members)
+        for n in unpopulated:
+            cells[n] = NO_PEOPLE
         found.append((common, cells))
     return found
 

@@ -37,6 +37,7 @@ class Metric:
     conditional: bool = False  # defined only for agents that arrive: shows n, never ranks
     verifiable: bool = True  # False for timings
     rate: bool = False  # 0 or 1 per agent: it has a binomial interval
+    people: bool = False  # of people around the agents: not applicable in a world without any
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "__doc__", self.function.__doc__)  # for `help`
@@ -57,6 +58,7 @@ def metric(
     conditional: bool = False,
     verifiable: bool = True,
     rate: bool = False,
+    people: bool = False,
 ) -> Callable[[Function], Metric]:
     """Return a decorator that converts a function into a `Metric` with the function's name.
 
@@ -68,7 +70,7 @@ def metric(
         return Metric(
             name=function.__name__, title=title, unit=unit, better=better, low=low, high=high,
             reference=reference, function=function, scope=scope, conditional=conditional,
-            verifiable=verifiable, rate=rate,
+            verifiable=verifiable, rate=rate, people=people,
         )  # fmt: skip
 
     return decorate

@@ -10,7 +10,7 @@ from benchnav.plugins import METRICS
 
 SECTIONS = (
     "success", "safety", "efficiency", "smoothness", "congestion", "groups", "following",
-    "compute",
+    "people", "compute",
 )  # fmt: skip
 HEAD = '''# Metrics
 

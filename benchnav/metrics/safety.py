@@ -15,9 +15,9 @@ from benchnav.metrics.metric import metric
 from benchnav.metrics.quantities.encounters import TTC_CAP
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.quantities.numpy_sum import numpy_sum
+from benchnav.metrics.quantities.people import PERSONAL
 
 INTIMATE = 0.45  # [m] Hall 1966: upper limit of intimate distance
-PERSONAL = 1.2  # [m] Hall 1966: upper limit of personal distance
 _HALL = "Hall 1966, The Hidden Dimension"
 
 

@@ -2,11 +2,8 @@
 
 from collections.abc import Collection
 
-from benchnav.metrics.measure import is_own
+from benchnav.metrics.measure import NOT_APPLICABLE, is_own
 from benchnav.metrics.metric import Metric
-
-NOT_APPLICABLE = "n/a: "
-"""Begins the reason of a missing value that no failure caused; leaderboards show it as such."""
 
 NAMES = {
     "goals": "goals",
@@ -23,6 +20,7 @@ NAMES = {
     "common_start": "common start",
     "discs": "bodies that are discs",
     "heading": "headings",
+    "people": "people",
 }
 """Unknown quantity → its name in the reason."""
 CURES = {
@@ -34,11 +32,13 @@ CURES = {
     "area": "measurement area: the option 'area', or a scenario with one",
     "teams": "teams: a column team, or a scenario",
     "heading": "headings: a column heading",
+    "people": "people: a scenario with background agents, which the table holds",
 }
 """Unknown quantity → how a user adds it."""
 
 _CONTACTS = ("radius", "discs")  # contacts are found between discs
 _GAPS = ("radius", "heading")
+_PEOPLE = ("people", "radius")
 _RUN = ("goals", *_CONTACTS)
 _NEEDS: dict[str, tuple[str, ...]] = {
     "success": _RUN,
@@ -77,6 +77,11 @@ _NEEDS: dict[str, tuple[str, ...]] = {
     "splits": ("teams", "radius"),
     "path_keeping": ("roles", "radius"),
     "catch_up_time": ("roles", "radius"),
+    "intrusion": ("people",),
+    "avoidance": _PEOPLE,
+    "personal_space_approach": (*_PEOPLE, "preferred_speed"),
+    "collisions_people": ("people", *_CONTACTS),
+    "collisions_at_fault": ("people", *_CONTACTS),
 }
 
 

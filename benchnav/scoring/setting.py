@@ -60,6 +60,8 @@ def setting_of(table: Table, tracks: Tracks, options: Options, drawn: World | No
     else:
         world = _of_scenario(drawn, tracks, agents, names, tolerance)
         known |= {"walls", "horizon"} if drawn.bodies else {"walls", "horizon", "movers"}
+        if theirs is not None and world.has_people and not len(drawn.people[1]):
+            known.add("people")  # the table holds no bodies
         remarks = _remarks(drawn, theirs)
     if options.area is not None:
         world = replace(world, measurement_area=options.area)

@@ -88,9 +88,10 @@ class _Motion:
         points = self.place(law.points)
         if law.kind == LawKind.CIRCLE:
             points[1] = law.points[1] + (0.0, self.angle)
-        return Body(
-            about.solid(body.solid), Law(law.kind, law.times, points, law.periodic, law.phase)
-        )
+        return replace(
+            body, solid=about.solid(body.solid),
+            law=Law(law.kind, law.times, points, law.periodic, law.phase),
+        )  # fmt: skip
 
     def heading(self, heading: FloatArray) -> FloatArray:
         turned: FloatArray = np.remainder(heading + self.angle + np.pi, 2.0 * np.pi) - np.pi

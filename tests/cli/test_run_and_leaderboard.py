@@ -207,4 +207,4 @@ def test_a_metric_that_fails_is_told_at_the_end_and_under_the_table(call, suite,
         del METRICS._local["tests_broken"]
     told = {(r["navigator"], r["metric"]): r["fault"] for r in json.loads(text)}
     assert told["orca", "tests_broken"] == f"failed in 2 episodes: {fault}"
-    assert {fault for (who, _), fault in told.items() if who != "orca"} == {""}
+    assert {fault for (who, _), fault in told.items() if who != "orca"} <= {"", "n/a: needs people"}

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard import Leaderboard, NotApplicable, leaderboard, render
+from benchnav.leaderboard.columns import choose
 from benchnav.leaderboard.rendering import escape
 from benchnav.leaderboard.rendering.digits import number
 from tests.leaderboard.tables import METRICS, metric, row, scores, simulated, table
@@ -263,3 +264,11 @@ def test_what_training_cost_stands_beside_success():
     kept = {r["navigator"]: r["training_decisions"] for r in json.loads(render(board, "json"))}
     assert kept == {"learner": 6.5e6, "plain": None}
     assert "training" not in render(leaderboard(table(rows), METRICS), "markdown")
+
+
+def test_a_profile_stands_for_its_metrics_that_are_held():
+    held = ("intrusion", "spl", "success", "avoidance")
+    assert choose(held, ["people", "spl"]) == ("success", "intrusion", "avoidance", "spl")
+    assert choose(held, ["intrusion", "people"])[:2] == ("intrusion", "success")
+    with pytest.raises(UsageError, match=r"Got 'poeple' instead\. Did you mean 'people'"):
+        choose(held, ["poeple"])

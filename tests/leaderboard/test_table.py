@@ -10,6 +10,7 @@ from scipy import stats
 from benchnav.errors import UsageError
 from benchnav.leaderboard import Leaderboard, NotApplicable, comparisons, leaderboard
 from benchnav.leaderboard.label import require_one_navigator_per_label
+from benchnav.leaderboard.metric_faults import faults
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, IGNORANCE
 from benchnav.leaderboard.statistics.head_to_head import duel
 from tests.leaderboard.tables import METRICS, metric, row, scores, simulated, table
@@ -347,3 +348,23 @@ def test_differently_configured_runs_are_told_by_their_names():
     one, two = (hashed([row("a", 0, "success", 1.0)], h) for h in ("aaaa", "bbbb"))
     with pytest.raises(UsageError, match="aaaa in runs/x and bbbb in runs/y"):
         require_one_navigator_per_label({"runs/x": one, "runs/y": two})
+
+
+def test_worlds_that_do_not_hold_what_a_metric_needs_are_no_failures():
+    def gap(scenario, seed, missing):
+        return row("a", seed, "spl", math.nan, scenario=scenario) | {"missing": missing}
+
+    without = [gap("x@1", seed, "n/a: needs people") for seed in range(3)]
+    held = [row("a", seed, "spl", 0.5, scenario="y@1") | {"missing": ""} for seed in range(3)]
+    raised = [gap("z@1", 0, "ValueError: no"), gap("z@1", 1, "n/a: needs people")]
+    rows = without + held + raised
+    coded = pa.Table.from_arrays(
+        [c.combine_chunks() if pa.types.is_floating(c.type) or pa.types.is_nested(c.type)
+         else c.combine_chunks().dictionary_encode() for c in table(rows).columns],
+        table(rows).column_names,
+    )  # fmt: skip
+    assert faults(coded) == faults(table(rows))  # a run is read with dictionaries
+    found = board(rows)
+    assert only(found, "a", "spl", scenario="x@1").fault == "n/a: needs people"
+    assert only(found, "a", "spl", scenario="y@1").fault == ""
+    assert only(found, "a", "spl", scenario="z@1").fault == "failed in 1 episode: ValueError: no"

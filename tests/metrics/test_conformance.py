@@ -49,6 +49,11 @@ SHIPPED = [
     "splits",
     "path_keeping",
     "catch_up_time",
+    "intrusion",
+    "avoidance",
+    "personal_space_approach",
+    "collisions_people",
+    "collisions_at_fault",
     "decision_time_p50",
     "decision_time_p95",
     "decision_time_p99",
@@ -206,7 +211,7 @@ def test_bad_metric_is_caught(mistake):
 def test_nothing_that_ranks_is_best_in_a_crash():
     """The reviewer's case: what ends early adds up to less, and is no achievement."""
     unranked = [name for name in SHIPPED if name.startswith(("collisions_", "personal_space_"))]
-    unranked += ["jam", "timeout", "stuck", "failed"]
+    unranked += ["jam", "timeout", "stuck", "failed", "intrusion", "avoidance"]
     assert {name for name in unranked if load_metric(name).better is not None} == set()
     crash = zoo()["crashing"]
     for name in SHIPPED:

@@ -150,7 +150,9 @@ def test_a_metric_that_raises_costs_its_values_and_the_run_goes_on(suite_file, t
     rows = read_results(tmp_path / "run").to_pylist()
     why = {r["seed"]: r["missing"] for r in rows if r["metric"] == "tests_broken"}
     assert why == {3: "", 4: fault}
-    assert {r["missing"] for r in rows if r["metric"] != "tests_broken"} == {""}
+    assert {r["missing"] for r in rows if r["metric"] != "tests_broken"} <= {
+        "", "n/a: needs people",
+    }  # fmt: skip
 
 
 @needs_memory

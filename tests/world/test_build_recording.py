@@ -111,3 +111,11 @@ def test_a_start_that_another_person_is_in_cannot_be_taken(tmp_path):
 def test_refusals(tmp_path, recording, team, message):
     with pytest.raises(ScenarioError, match=message):
         build(scenario(tmp_path, recording, team), "test", 0)
+
+
+def test_recorded_people_are_people_whether_they_react_or_not(tmp_path):
+    follows = build(scenario(tmp_path, ", replace: 2"), "test", 0)
+    assert [len(part) for part in follows.people] == [0, 2]
+    reacts = build(scenario(tmp_path, ", replace: 2, driver: social-force"), "test", 0)
+    assert [len(part) for part in reacts.people] == [1, 1]  # 3 appears later
+    assert reacts.has_people

@@ -32,7 +32,10 @@ def leaderboard(
     ] = None,
     metric: Annotated[
         list[str] | None,
-        typer.Option(help="Show this metric; 'all' for every one. Repeatable. [default: a few]"),
+        typer.Option(
+            help="Show this metric; 'people' for those of people, 'all' for every one."
+            " Repeatable. [default: a few]"
+        ),
     ] = None,
     columns: Annotated[
         str | None,

@@ -17,6 +17,7 @@ from benchnav.metrics.quantities.density import frame_times, voronoi_density
 from benchnav.metrics.quantities.encounters import Encounters, encounters, things_of
 from benchnav.metrics.quantities.footprint_gaps import shapes_of
 from benchnav.metrics.quantities.lowpass import smooth_velocities
+from benchnav.metrics.quantities.people import Approaches, approaches_of
 from benchnav.metrics.quantities.trajectory import Trajectories, cut, entered_at, positions_at
 
 TeamMotion = tuple[FloatArray, FloatArray, BoolArray, FloatArray]
@@ -156,6 +157,11 @@ class Analysis(Endings):
         if (agents.rounding > 0.0).any():
             shapes = shapes_of(agents), np.ascontiguousarray(self.heading.T)
         return encounters(self.trajectories, agents.radius, things, shapes)
+
+    @cached_property
+    def approaches(self) -> Approaches:
+        """How the evaluated agents meet people."""
+        return approaches_of(self.world, self.trajectories, self.body_position)
 
 
 # The attribute of an episode. A global cache here would give navigators access to episodes.

@@ -7,7 +7,7 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from benchnav.episode.episode import Episode
-from benchnav.metrics.measure import Cell, measure_roles
+from benchnav.metrics.measure import NOT_APPLICABLE, Cell, measure_roles
 from benchnav.metrics.metric import Metric
 from benchnav.navigation.command_check import kind_of
 from benchnav.store.parts.results import RESULTS
@@ -36,6 +36,8 @@ def measured(episodes: Iterable[Episode], metrics: Sequence[Metric]) -> pa.Table
 def failed_metrics(results: pa.Table) -> list[tuple[str, str]]:
     """Return (metric, reason) for each value of `RESULTS` that is missing after a failure."""
     gaps = results.filter(pc.not_equal(results["missing"], ""))
+    inapplicable = pc.starts_with(gaps["missing"].cast("string"), NOT_APPLICABLE)
+    gaps = gaps.filter(pc.invert(inapplicable))
     return list(zip(gaps["metric"].to_pylist(), gaps["missing"].to_pylist(), strict=True))
 
 

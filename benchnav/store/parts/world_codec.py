@@ -34,6 +34,7 @@ from pydantic_core.core_schema import (
 
 from benchnav.arena.agent_bodies import PLAIN_BODY, AgentBodies
 from benchnav.arena.agents import Agents
+from benchnav.arena.body import Body
 from benchnav.arena.sensing import RaySensor
 from benchnav.arena.world import World
 from benchnav.arrays import AnyArray
@@ -48,6 +49,7 @@ _PLAIN: dict[type, CoreSchema] = {
 }  # types of JSON itself
 _LEFT_OUT: dict[type, dict[str, Any]] = {
     Agents: dict.fromkeys(PLAIN_BODY),
+    Body: {"person": False},
     RaySensor: {"circumscribed": False},
 }  # fields that may be missing, and their defaults
 MAX_TEXT = 64 << 20  # characters of a world; one of a million triangles takes 50 MB
@@ -56,7 +58,10 @@ _MAX_CONTAINERS = 1_000_000  # lists and objects in it; an array is one list of 
 
 def world_to_json(world: World) -> bytes:
     """Return the world as one line of JSON in UTF-8 (infinities as in Python: ``Infinity``)."""
-    left_out: dict[str, Any] = {"agents": world.agents.left_out()}
+    left_out: dict[str, Any] = {
+        "agents": world.agents.left_out(),
+        "bodies": {n: body.left_out() for n, body in enumerate(world.bodies)},
+    }
     if world.sensing.rays is not None:
         left_out["sensing"] = {"rays": world.sensing.rays.left_out()}
     return to_json(World, world, left_out)
@@ -80,7 +85,7 @@ def world_from_json(text: str) -> World:
 def to_json(kind: Any, value: Any, exclude: Any = None) -> bytes:
     """Return JSON of a value of type ``kind``: a dataclass, array, enum, tuple or number.
 
-    ``exclude`` names the fields that are left out: {field: {field of its value}}.
+    ``exclude`` names the fields that are left out, as pydantic does: {field: {field of its value}}.
     Raises TypeError if this type cannot be encoded.
     """
     return _codec(kind)[0].to_json(value, exclude=exclude, warnings=False, fallback=_encoded)
