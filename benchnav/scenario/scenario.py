@@ -36,6 +36,7 @@ from benchnav.scenario.team import (
 from benchnav.scenario.terms import Clock, Rules, Sensing, Track
 from benchnav.scenario.wall import Layout, Wall, layout_problem
 from benchnav.system.plain_file import open_file
+from benchnav.text.plural import counted
 
 MAX_AGENTS = 5000
 MAX_OBSTACLES = 2000
@@ -326,10 +327,13 @@ def _room_problems(scenario: Scenario) -> Iterator[Problem]:
             elif isinstance(place, RegionStart | RegionGoal):
                 gap = place.separation if isinstance(place, RegionStart) else 0.0
                 room = most_that_fit(place.region, scenario.bounds, 2.0 * radius + gap, margin)
+                apart = f" that are {gap:g} m apart" if gap else ""
                 text = (
-                    f"the region holds at most {room} agents of radius {radius:g} m that are"
-                    f" {gap:g} m apart, in the densest packing"
+                    f"the region holds at most {room} agents of radius {radius:.3g} m{apart},"
+                    " in the densest packing"
                 )
+                if room == 0:
+                    text = f"no circle of radius {radius:.3g} m fits into the region and the bounds"
             else:
                 continue
             if most > room:
@@ -337,7 +341,8 @@ def _room_problems(scenario: Scenario) -> Iterator[Problem]:
                     text += ". Enlarge the region, or shrink the footprint"
                 yield (
                     ("teams", i, key),
-                    f"must have room for all of {team.name!r}, up to {most} agents; {text}",
+                    f"must have room for all of {team.name!r}, up to {counted(most, 'agent')};"
+                    f" {text}",
                 )
 
 

@@ -83,8 +83,9 @@ class EpisodeFilm:
         self._draw_ends(picture, time)
         self._draw_contacts(picture, time, places, bodies)
         state = int(time / episode.world.clock.dt + 1e-6)
-        arrived = int((episode.status[state] == int(Status.ARRIVED)).sum())
-        text = f"{arrived} of {len(self._colors)} arrived, {time:.1f} s{self._note}"
+        status = episode.status[state, episode.world.agents.evaluated]
+        arrived = int((status == int(Status.ARRIVED)).sum())
+        text = f"{arrived} of {len(status)} arrived, {time:.1f} s{self._note}"
         return _headed(picture.array(self._larger), episode.identity.navigator, text, self._larger)
 
     def _between(self, states: FloatArray, time: float) -> FloatArray:

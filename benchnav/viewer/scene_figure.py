@@ -170,9 +170,9 @@ def _panels(
     for episode in episodes:
         name = episode.identity.navigator
         if not times:
-            arrived = int(np.isfinite(episode.arrival).sum())
-            count = len(episode.arrival)
-            yield episode, None, f"{name}: {arrived} of {count} arrived"
+            arrivals = episode.arrival[episode.world.agents.evaluated]
+            arrived = int(np.isfinite(arrivals).sum())
+            yield episode, None, f"{name}: {arrived} of {len(arrivals)} arrived"
         for n, time in enumerate(times):
             yield episode, time, f"{name}, {time:g} s" if n == 0 else f"{time:g} s"
 

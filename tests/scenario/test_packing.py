@@ -104,8 +104,7 @@ def _hall(count, start=NARROW, goal=WIDE):
          None),
         (90, WIDE, NARROW.replace(", separation: 0.1", ""),
          "hall.yaml:9: teams[0].goal must have room for all of 'many', up to 90 agents;"
-         " the region holds at most 80 agents of radius 0.25 m that are 0 m apart, in the"
-         " densest packing."),
+         " the region holds at most 80 agents of radius 0.25 m, in the densest packing."),
         (60, PACKED, "{type: shifted, by: [10, 0]}",
          "hall.yaml:8: teams[0].start must have room for all of 'many', up to 60 agents;"
          " the region holds 25 points 0.6 m apart."),

@@ -122,9 +122,9 @@ def test_a_footprint_larger_than_its_start_region(said):
     region = "{type: region, region: {type: rectangle, bounds: [-5, -1, -4, 1]}}"
     text = PLAIN.replace(BODY, f"{CAPSULE.replace('1', '3')}\n    max_speed: 1")
     assert said(text.replace(start, region)) == (
-        "f.yaml:7: teams[0].start must have room for all of 'one', up to 1 agents; the region holds"
-        " at most 0 agents of radius 1.5 m that are 0 m apart, in the densest packing. Enlarge the"
-        " region, or shrink the footprint."
+        "f.yaml:7: teams[0].start must have room for all of 'one', up to 1 agent; no circle of"
+        " radius 1.5 m fits into the region and the bounds. Enlarge the region, or shrink the"
+        " footprint."
     )
 
 

@@ -155,7 +155,8 @@ def _team(team: "Team") -> str:
     many = "" if support(team.count)[1] == 1 else "s"
     text = (
         f"{team.name}: {number(team.count)} {team.dynamics.type} {team.role}{many},"
-        f" {_robot(team)}{_body(team)}, {number(speed)} m/s; start {start}, goal {goal}"
+        f" {_robot(team)}{_body(team)}, {number(speed)} m/s{_limits(team)}; start {start},"
+        f" goal {goal}"
     )
     if team.goal.type == "region" and team.goal.min_distance:
         text += f" at least {team.goal.min_distance:g} m away"
@@ -178,6 +179,33 @@ def _body(team: "Team") -> str:
     return f"{shape.type} of {number(shape.length)} m × {number(shape.width)} m"
 
 
+def _limits(team: "Team") -> str:
+    limits = [
+        f"{verb} at {number(limit)} {unit}"
+        for verb, limit, unit in (
+            ("accelerates", team.max_acceleration, "m/s²"),
+            ("brakes", team.max_deceleration, "m/s²"),
+            ("turns faster", team.max_turn_acceleration, "rad/s²"),
+        )
+        if limit is not None
+    ]
+    return "".join(f", {limit}" for limit in limits)
+
+
+def _noise(scenario: "Scenario") -> str:
+    """Return the errors of noisy perception: those of the scenario's own sensors with numbers."""
+    usual, texts = type(scenario.noise)(), []
+    for sense in ("rays", "neighbours", "edges", "odometry"):
+        errors = getattr(scenario.noise, sense)
+        text = f"{sense} {errors.sensor}"
+        if errors != getattr(usual, sense):
+            numbers = errors.numbers.items()
+            shown = (f"no {k}" if value is None else f"{k} {value:.4g}" for k, value in numbers)
+            text += f" ({', '.join(shown)})"
+        texts.append(text)
+    return f"{'; '.join(texts)}; late by {counted(scenario.noise.delay, 'decision')}"
+
+
 def _terms(scenario: "Scenario") -> Iterator[Fact]:
     clock, rules, sensing = scenario.clock, scenario.rules, scenario.sensing
     seen = []
@@ -190,6 +218,8 @@ def _terms(scenario: "Scenario") -> Iterator[Fact]:
         seen.append(f"the nearest {sensing.edges.count} edges within {sensing.edges.range:g} m")
     hidden = "" if sensing.occlusion else "; without occlusion"
     yield "sensing", (", ".join(seen) or "nothing") + hidden
+    if scenario.noise != type(scenario.noise)():
+        yield "noise", _noise(scenario)
     budget = "" if clock.decision_budget is None else f" within {clock.decision_budget:g} s"
     yield (
         "clock",
