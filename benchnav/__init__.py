@@ -80,7 +80,7 @@ else:
         },
     )
 
-__version__ = "0.2.0"
+__version__ = "0.3.0.dev0"
 
 __all__ = [
     "BenchnavError",
