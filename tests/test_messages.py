@@ -7,7 +7,6 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 OPTION = re.compile(r"(?<![\w-])--[a-z]")
 COMMANDS = {  # which show the command line of a program
-    "benchnav/api/authoring/navigator_template.py",
     "benchnav/api/authoring/plugin_templates.py",
     "benchnav/isolation/sandbox.py",
     "benchnav/isolation/subprocess_host.py",

@@ -14,7 +14,7 @@ Range = tuple[float, float]
 
 
 class DiscFootprint(Spec):
-    """A disc. The key `radius` of the team says the same."""
+    """A disc, equal to the key `radius` of the team."""
 
     type: Literal["disc"]
     radius: PositiveScalar = Field(description="radius [m]")

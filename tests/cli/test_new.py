@@ -8,8 +8,8 @@ import tomllib
 import pytest
 
 import benchnav
-from benchnav.api.authoring.navigator_template import navigator_package
 from benchnav.api.authoring.new_package import KINDS
+from benchnav.api.authoring.plugin_templates import navigator_package
 from benchnav.cli.main import status
 from benchnav.errors import UsageError
 from tests.docs.blocks import NAMED, ROOT, blocks

@@ -6,10 +6,10 @@ from os import PathLike
 from pathlib import Path
 
 from benchnav.api.authoring.free_name import free_name, name_taken
-from benchnav.api.authoring.navigator_template import navigator_package
 from benchnav.api.authoring.plugin_templates import (
     controller_package,
     metric_package,
+    navigator_package,
     planner_package,
     scenario_package,
 )

@@ -1,4 +1,4 @@
-"""The files of new packages of planners, controllers, metrics and scenarios."""
+"""The files of new packages of navigators, planners, controllers, metrics and scenarios."""
 
 from benchnav.api.authoring.free_name import class_name, module_name
 
@@ -34,6 +34,26 @@ A {title} for [benchnav](https://pypi.org/project/benchnav/). Its code is in `sr
 
 The test calls `{check}`, which reports violated rules in sentences.
 """
+
+_NAVIGATOR = '''\
+"""The navigator {name} for benchnav."""
+
+from benchnav.navigation.navigator import AgentNavigator, PluginConfig
+from pydantic import Field
+
+
+class {cls}(AgentNavigator):
+    """Walk straight to the goal and slow down near it. Replace `act_agent` with your idea."""
+
+    class Config(PluginConfig):
+        pace: float = Field(1.0, gt=0, le=1, description="share of the preferred speed")
+
+    def act_agent(self, view, briefing):
+        """Return the velocity [m/s] of one agent, in the world frame."""
+        way = view.goal - view.position
+        speed = self.config.pace * briefing.preferred_speed[view.agent]
+        return way * min(speed / max((way @ way) ** 0.5, 1e-9), 1 / briefing.dt)
+'''
 
 _PLANNER = '''\
 """The planner {name} for benchnav."""
@@ -207,6 +227,13 @@ def test_it_is_valid(file):
     found = benchnav.validate(file)
     assert found.valid, found.text()
 '''
+
+
+def navigator_package(name: str) -> dict[str, str]:
+    """Return path → text of a package with a navigator."""
+    use = f"    benchnav run quick --navigator {name} --navigator orca --out runs/first\n"
+    use += "    benchnav leaderboard runs/first"
+    return _package(name, "navigator", _NAVIGATOR, _class_entry(name), name, use, f'"{name}"', "")
 
 
 def planner_package(name: str) -> dict[str, str]:

@@ -60,7 +60,7 @@ class SuiteFile(BaseModel):
     perception: tuple[Perception, ...] = Field(
         ("exact",),
         min_length=1,
-        description="Perceptions: exact, and noisy as the key `noise` of each scenario says.",
+        description="Perceptions: exact, and noisy with the key `noise` of each scenario.",
     )
     navigators: tuple[Name | dict[str, Any], ...] = Field(
         min_length=1,

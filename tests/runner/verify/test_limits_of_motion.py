@@ -7,6 +7,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
+from benchnav.episode.episode import Status
 from benchnav.runner.plan.suite import load_suite
 from benchnav.runner.run import run_suite
 from benchnav.store.parts.episodes import from_table
@@ -73,6 +74,8 @@ def test_executed_commands_hold_the_limits_of_their_world(bodies):
         v, w = np.moveaxis(episode.executed, 2, 0)
         faster = np.diff(abs(v), axis=0, prepend=0.0)[:, :2]
         assert (faster <= agents.max_acceleration[:2] * dt + 1e-12).all()
+        drives = episode.status[: len(v), :2] == Status.ACTIVE
+        assert (-faster <= agents.max_deceleration[:2] * dt + 1e-12)[drives].all()
         assert (abs(v) + 0.2 * abs(w))[:, 2:4].max() <= 1.0 + 1e-12
         moving = v[:, :2] != 0.0
         curvature = abs(w[:, :2][moving] / v[:, :2][moving])

@@ -272,4 +272,6 @@ def _sentence(path: Path, format: str, error: BaseException) -> str:
     if "frame rate seems to differ" in text:
         return "has another frame rate than the one given; leave out the option 'rate'."
     reason = shown(text.removesuffix("."), 200)
-    return f"must be {_NAMES[format]}; PedPy's loader says: {reason}. Set the option 'format'."
+    return (
+        f"must be {_NAMES[format]}; message of PedPy's loader: {reason}. Set the option 'format'."
+    )
