@@ -8,14 +8,13 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from benchnav.leaderboard.record import ALL, Record
+from benchnav.metrics.metric import NOT_APPLICABLE
 from benchnav.text.plural import counted
 
 if TYPE_CHECKING:
     import pyarrow as pa
 
 KEYS = ("split", "track", "perception", "role", "navigator", "metric")
-NOT_APPLICABLE = "n/a: "
-"""A reason that begins so is no failure: the episodes do not hold what the metric needs."""
 Faults = Mapping[tuple[str, ...], Mapping[tuple[str, int], str]]
 """By `KEYS` and scenario, or `ALL`: (scenario, seed) → the reason why the metric failed.
 

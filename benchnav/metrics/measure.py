@@ -12,14 +12,11 @@ from benchnav.arrays import LARGEST, BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode
 from benchnav.errors import PluginError
 from benchnav.kernels import kernel
-from benchnav.metrics.metric import Metric, evaluate
+from benchnav.metrics.metric import NOT_APPLICABLE, Metric, evaluate
 from benchnav.metrics.quantities.numpy_sum import numpy_sum
 from benchnav.navigation.command_check import exception_text
 from benchnav.navigation.plugin.trace import trace
 from benchnav.plugins import METRICS
-
-NOT_APPLICABLE = "n/a: "
-"""Begins the reason of a missing value that no failure caused; leaderboards show it as such."""
 
 
 def load_metric(name: str) -> Metric:

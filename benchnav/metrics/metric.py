@@ -12,6 +12,8 @@ from benchnav.arrays import LARGEST, BoolArray, FloatArray
 from benchnav.episode.episode import Episode
 
 OWN = "own definition"
+NOT_APPLICABLE = "n/a: "
+"""Begins the reason of a missing value that no failure caused; leaderboards show it as such."""
 Direction = Literal["higher", "lower"]
 Scope = Literal["agent", "group"]
 Function = Callable[..., FloatArray | float]

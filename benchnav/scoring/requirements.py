@@ -2,8 +2,8 @@
 
 from collections.abc import Collection
 
-from benchnav.metrics.measure import NOT_APPLICABLE, is_own
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.measure import is_own
+from benchnav.metrics.metric import NOT_APPLICABLE, Metric
 
 NAMES = {
     "goals": "goals",

@@ -4,9 +4,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from benchnav.leaderboard.metric_faults import NOT_APPLICABLE
 from benchnav.leaderboard.record import Record
 from benchnav.leaderboard.rendering.digits import aligned, figure, figures, number, prefixed, signed
+from benchnav.metrics.metric import NOT_APPLICABLE
 from benchnav.text.plural import counted
 
 

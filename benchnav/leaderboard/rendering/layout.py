@@ -5,7 +5,6 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 
 from benchnav.leaderboard.columns import DESCRIPTIVE, MIDDLE_HALF, NAMES, choose
-from benchnav.leaderboard.metric_faults import NOT_APPLICABLE
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, PRICES, Leaderboard, Record
 from benchnav.leaderboard.rendering.cell import Cell, cell, entrant, heading
 from benchnav.leaderboard.rendering.footnotes import with_footnotes
@@ -13,6 +12,7 @@ from benchnav.leaderboard.rendering.price_table import LEGENDS as PRICE_LEGENDS
 from benchnav.leaderboard.rendering.price_table import price_sections
 from benchnav.leaderboard.rendering.section import Section
 from benchnav.leaderboard.statistics.order import by_merit, leading
+from benchnav.metrics.metric import NOT_APPLICABLE
 from benchnav.scenario.condition import condition, described
 from benchnav.text.plural import counted
 

@@ -7,8 +7,8 @@ import pyarrow as pa
 import pyarrow.compute as pc
 
 from benchnav.episode.episode import Episode
-from benchnav.metrics.measure import NOT_APPLICABLE, Cell, measure_roles
-from benchnav.metrics.metric import Metric
+from benchnav.metrics.measure import Cell, measure_roles
+from benchnav.metrics.metric import NOT_APPLICABLE, Metric
 from benchnav.navigation.command_check import kind_of
 from benchnav.store.parts.results import RESULTS
 from benchnav.store.runs.reading import episodes_of, in_every_track
