@@ -94,5 +94,5 @@ def test_a_footprint_larger_than_its_start_region_says_so(tmp_path):
     with pytest.raises(ScenarioError) as error:
         load_scenario(path)
     assert "teams[0].start must have room for all of 'one', up to 4 agents" in str(error.value)
-    assert "at most 0 agents of radius" in str(error.value)
+    assert "no circle of radius 10 m fits into the region" in str(error.value)
     assert "Enlarge the region, or shrink the footprint." in str(error.value)
