@@ -1,5 +1,6 @@
 """The immutable record of one run of one navigator in one world."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -93,6 +94,8 @@ class Episode:
     remarks: tuple[str, ...] = ()  # remarks of its navigator on the episode
     traceback: str = ""  # of the navigator's exception; "" without one
     twist: BoolArray | None = None  # (A,) True: requested are twists; None: unknown (older)
+    # returns the episode in the same world without the evaluated agents; None: there is none
+    undisturbed: "Callable[[], Episode | None] | None" = None
 
     @property
     def times(self) -> FloatArray:

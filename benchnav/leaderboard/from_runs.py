@@ -294,7 +294,7 @@ def _not_applicable(folder: RunFolder) -> Iterator[NotApplicable]:
     entries = folder.manifest.suite.get("navigators", ())
     asked = {entry["label"]: int(entry.get("rehearsal", 0)) for entry in entries}
     for cell in folder.manifest.cells:
-        if cell["reason"]:
+        if cell["reason"] and not folder.manifest.is_undisturbed(cell):
             yield NotApplicable(
                 cell["navigator"], cell["scenario"], cell["track"], cell["reason"],
                 asked.get(cell["navigator"], 0), perception_of(cell),

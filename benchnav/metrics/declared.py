@@ -39,6 +39,7 @@ class _Declaration(BaseModel):
     verifiable: StrictBool
     rate: StrictBool
     people: StrictBool = False
+    undisturbed: StrictBool = False
 
 
 def declared_metrics() -> tuple[dict[str, Metric], list[str]]:

@@ -69,7 +69,21 @@ class Cell(NamedTuple):
     traceback: str | None = None
 
 
-NO_PEOPLE = Cell(missing=f"{NOT_APPLICABLE}needs people")
+
+def _inapplicable(metric: Metric, episode: Episode) -> str:
+    """Return what a metric needs that an episode does not have; "" if it has all."""
+    if metric.people and not episode.world.has_people:
+        return "needs people"
+    return _undisturbed_gap(episode) if metric.undisturbed else ""
+
+
+def _undisturbed_gap(episode: Episode) -> str:
+    if not len(episode.world.people[0]):
+        return "needs people who react: recorded people without a driver do not"
+    other = episode.undisturbed() if episode.undisturbed is not None else None
+    if other is None:
+        return "needs the undisturbed world: key `undisturbed` of the suite"
+    return f"the undisturbed world failed: {other.failure}" if other.failure else ""
 
 
 def measure_roles(
@@ -82,7 +96,7 @@ def measure_roles(
     _no_metrics_twice(tuple(metric.name for metric in metrics))
     rows = np.full((len(metrics), len(episode.world.agents)), math.nan)
     alone = [n for n, metric in enumerate(metrics) if not _agents_values(metric, episode, rows[n])]
-    unpopulated = [] if episode.world.has_people else [n for n, m in enumerate(metrics) if m.people]
+    gaps = {n: why for n, m in enumerate(metrics) if (why := _inapplicable(m, episode))}
     found = []
     for common, members in subjects(episode):
         means, defined = np.empty(len(metrics)), np.empty(len(metrics), np.int64)
@@ -90,8 +104,8 @@ def measure_roles(
         cells = list(map(Cell, means.tolist(), defined.tolist()))
         for n in (*alone, *np.flatnonzero(np.abs(means) > LARGEST).tolist()):
             cells[n] = measure_alone(metrics[n], episode, members)
-        for n in unpopulated:
-            cells[n] = NO_PEOPLE
+        for n, why in gaps.items():
+            cells[n] = Cell(missing=NOT_APPLICABLE + why)
         found.append((common, cells))
     return found
 

@@ -40,6 +40,7 @@ class Metric:
     verifiable: bool = True  # False for timings
     rate: bool = False  # 0 or 1 per agent: it has a binomial interval
     people: bool = False  # of people around the agents: not applicable in a world without any
+    undisturbed: bool = False  # compares with `Episode.undisturbed`: not applicable without it
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "__doc__", self.function.__doc__)  # for `help`
@@ -61,6 +62,7 @@ def metric(
     verifiable: bool = True,
     rate: bool = False,
     people: bool = False,
+    undisturbed: bool = False,
 ) -> Callable[[Function], Metric]:
     """Return a decorator that converts a function into a `Metric` with the function's name.
 
@@ -73,6 +75,7 @@ def metric(
             name=function.__name__, title=title, unit=unit, better=better, low=low, high=high,
             reference=reference, function=function, scope=scope, conditional=conditional,
             verifiable=verifiable, rate=rate, people=people,
+            undisturbed=undisturbed,
         )  # fmt: skip
 
     return decorate

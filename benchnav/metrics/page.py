@@ -10,7 +10,7 @@ from benchnav.plugins import METRICS
 
 SECTIONS = (
     "success", "safety", "efficiency", "smoothness", "congestion", "groups", "following",
-    "people", "compute",
+    "people", "disturbance", "compute",
 )  # fmt: skip
 HEAD = '''# Metrics
 

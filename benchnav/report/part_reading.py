@@ -56,7 +56,7 @@ def readings_of(folders: Sequence[RunFolder], plan: ReplayPlan | None) -> list[P
     found, known = list[PartReading](), dict[str, set[int]]()
     for folder in folders:
         for cell in folder.manifest.cells:
-            if not cell["reason"]:
+            if not cell["reason"] and not folder.manifest.is_undisturbed(cell):
                 found += _cell_readings(folder, cell, known.setdefault(cell["key"], set()), plan)
     return _with_worlds(found)
 

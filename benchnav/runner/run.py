@@ -122,7 +122,8 @@ def run_suite(
     refuse_edited(here)
     if workers != 0:
         refuse_limits_here(here, (timeout, memory) != (None, None))
-        summary.in_process = tuple(dict.fromkeys(job.contestant.label for job in here))
+        evaluated = [job for job in here if not job.undisturbed]
+        summary.in_process = tuple(dict.fromkeys(job.contestant.label for job in evaluated))
     wanted = _wanted(suite, jobs, shard)
     manifest = planned(suite, jobs, wanted, shard)
     begun, limits = start(suite, out, manifest, timeout, memory)
@@ -142,7 +143,8 @@ def run_suite(
         count = default_workers() if workers is None else workers
         tasks = _tasks(suite, target, jobs, wanted, summary, None if executor else count)
         keys = {job.key for job in here}
-        folder = folder.unguard(t.job.contestant.label for t in tasks if t.job.key in keys)
+        unguarded = [t.job for t in tasks if t.job.key in keys and not t.job.undisturbed]
+        folder = folder.unguard(job.contestant.label for job in unguarded)
         reporter.begin(summary.total, summary.stored)
         reporter.expect(task.load for task in tasks)
         try:
@@ -163,14 +165,20 @@ def _finished(
     tasks: Sequence[Task], here: Sequence[Job], workers: int | None, progress: Progress,
     limits: Limits, executor: Executor | None,
 ) -> Generator[Finished, None, None]:  # fmt: skip
-    """Run all tasks; those of the cells ``here`` run last, in this process."""
+    """Run all tasks; of those of undisturbed worlds and of others, the cells ``here`` run last.
+
+    The cells ``here`` run in this process. Undisturbed episodes are stored before others are
+    measured.
+    """
     keys = {job.key for job in here}
-    mine = [task for task in tasks if task.job.key in keys]
-    away = [task for task in tasks if task.job.key not in keys]
-    for chosen, run_tasks, count in ((away, executor or _locally, workers), (mine, _locally, 0)):
-        if chosen:
-            with closing(run_tasks(chosen, count, progress, limits)) as finished:
-                yield from finished
+    for undisturbed in (True, False):
+        group = [task for task in tasks if task.job.undisturbed == undisturbed]
+        mine = [task for task in group if task.job.key in keys]
+        away = [task for task in group if task.job.key not in keys]
+        for chosen, run, count in ((away, executor or _locally, workers), (mine, _locally, 0)):
+            if chosen:
+                with closing(run(chosen, count, progress, limits)) as finished:
+                    yield from finished
 
 
 def _locally(
@@ -200,9 +208,11 @@ def _tasks(
         missing = seeds - folder.done(job.key)
         summary.total += len(seeds)
         summary.stored += len(seeds) - len(missing)
+        other = "" if job.undisturbed else folder.undisturbed_key(job.scenario.identity)
         task = Task(
-            job, folder.cell(job.key), 0, 0, salt=folder.manifest.salt, probe=suite.seeds.start
-        )
+            job, folder.cell(job.key), 0, 0, salt=folder.manifest.salt, probe=suite.seeds.start,
+            undisturbed=folder.cell(other) if other else None,
+        )  # fmt: skip
         found.append((task, missing))
     summary.found = summary.stored
     total = sum(len(missing) for _, missing in found)

@@ -12,6 +12,7 @@ from benchnav.episode.episode import Episode
 from benchnav.errors import BenchnavError, CorruptPartError, ForeignRowError
 from benchnav.generation.build import build
 from benchnav.generation.rehearsal_world import rehearsal_world
+from benchnav.generation.undisturbed_world import undisturbed_world
 from benchnav.plugins import METRICS
 from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.task import Measuring
@@ -155,6 +156,8 @@ def _world(task: PartCheck, episode: Episode) -> World:
         world = _WORLDS[key] = build(job.scenario, job.split, seed)
         while len(_WORLDS) > _KEPT:
             _WORLDS.popitem(last=False)
+    if job.undisturbed:
+        return undisturbed_world(world)
     if not k:
         return world
     return rehearsal_world(world, phases(task.salt, *key, k))[0]

@@ -17,7 +17,7 @@ from benchnav.errors import BenchnavError, CorruptPartError
 from benchnav.generation.build import sensing_of
 from benchnav.runner.execute.executor import execute
 from benchnav.runner.execute.progress import Progress
-from benchnav.runner.plan.contestant import Contestant, ContestantFactory
+from benchnav.runner.plan.contestant import NONE, Contestant, ContestantFactory
 from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.task import Task, chunks
@@ -155,6 +155,8 @@ def installed(
     No module that an untrusted pack names is imported, and none of its programs is started:
     only registered plugins are used. ``jobs`` have the sensors that it must support.
     """
+    if contestant == NONE:
+        return NONE, ""
     label = contestant.label
     if packed and is_program(contestant.spec):
         return None, f"{label} is a program, in an untrusted pack"

@@ -75,7 +75,7 @@ def resimulate(pairs: Sequence[tuple[World, Episode]]) -> list[Resimulated]:
         replace(
             new, timings=old.timings, failure=old.failure, reproducible=old.reproducible,
             remarks=old.remarks, rehearsals=old.rehearsals,
-            rehearsal_decisions=old.rehearsal_decisions,
+            rehearsal_decisions=old.rehearsal_decisions, undisturbed=old.undisturbed,
         )
         for new, old in zip(made, stored, strict=True)
     ]  # fmt: skip

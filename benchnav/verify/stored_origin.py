@@ -20,7 +20,10 @@ def stored_origin(run: RunFolder, part: Part, episode: Episode) -> Production | 
     """
     identity = episode.identity
     label = identity.navigator
-    fields = next(each for each in run.manifest.suite["navigators"] if each["label"] == label)
+    named = [each for each in run.manifest.suite["navigators"] if each["label"] == label]
+    if not named:
+        return "no navigator is evaluated in an undisturbed world"
+    fields = named[0]
     spec = fields["config"]
     if run.packed is not None and (is_program(spec) or is_by_module(spec)):
         return "it is a program or is named by its module, and packs are not trusted"

@@ -128,7 +128,8 @@ def tasks_of(
     """
     report.caveats += [caveat.text for caveat in caveats_of(run.manifest)]
     report.claims = _claims(run.manifest) if report.clean else ""
-    contestants = {job.contestant.label: job.contestant for job in suite.jobs}
+    evaluated = [job for job in suite.jobs if not job.undisturbed]
+    contestants = {job.contestant.label: job.contestant for job in evaluated}
     report.sources += [compare_source(e, run.packed is not None) for e in contestants.values()]
     version = str(run.manifest.versions.get("benchnav", ""))
     metrics = {name: metric.verifiable for name, metric in declared_metrics()[0].items()}

@@ -24,7 +24,7 @@ class EpisodeResult:
 
 def episode_results(folder: RunFolder, places: Sequence[Place]) -> list[EpisodeResult]:
     """Return the result of each episode. No episode is decoded for it."""
-    table = results_of(folder)
+    table = results_of(folder, undisturbed=True)
     success = metric_values(table, SUCCESS)
     causes = {words: metric_values(table, name) for name, words in CAUSES.items()}
     rows = table.filter(pc.equal(table["metric"], SUCCESS))

@@ -145,6 +145,8 @@ def stored_episodes(
     Raises UsageError for a name that the run does not have.
     """
     cells = [cell for cell in folder.manifest.cells if not cell["reason"]]
+    # undisturbed episodes are hidden unless they are named
+    cells = [cell for cell in cells if navigator or not folder.manifest.is_undisturbed(cell)]
     _require("navigator", navigator, [cell["navigator"] for cell in folder.manifest.cells])
     tracks = [t for cell in folder.manifest.cells for t in (*cell.get("also", ()), cell["track"])]
     # 'unknown' is no misspelt 'known': it was not run.

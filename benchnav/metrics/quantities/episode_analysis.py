@@ -11,7 +11,7 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import World
-from benchnav.arrays import BoolArray, ByteArray, FloatArray
+from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.episode.episode import Contacts, Episode, Status
 from benchnav.metrics.quantities.density import frame_times, voronoi_density
 from benchnav.metrics.quantities.encounters import Encounters, encounters, things_of
@@ -83,14 +83,22 @@ class Analysis(Endings):
     @cached_property
     def geodesic(self) -> FloatArray:
         """(A,) [m] shortest way of each disc to its goal; NaN if there is none, or walls move."""
-        agents, count = self.world.agents, len(self.world.agents)
+        agents = self.world.agents
+        return self.ways_to_goal(np.arange(len(agents)), agents.start)
+
+    def ways_to_goal(self, chosen: IntArray, place: FloatArray) -> FloatArray:
+        """Return the shortest ways (N,) [m] of ``chosen`` agents from ``place`` (N, 2) [m].
+
+        NaN if there is none, or walls move.
+        """
+        agents = self.world.agents
         if self.world.relocates:
-            return np.full(count, np.nan)
+            return np.full(len(chosen), np.nan)
         from benchnav.geometry.geodesic import geodesic_lengths
 
         solids = [np.zeros((0, 5)), *(solid.capsules for solid in self.world.solids)]
         lengths = geodesic_lengths(
-            np.vstack(solids), agents.start, agents.goal, agents.radius,
+            np.vstack(solids), place, agents.goal[chosen], agents.radius[chosen],
             self.world.rules.goal_tolerance,
         )  # fmt: skip
         return np.where(np.isfinite(lengths), lengths, np.nan)

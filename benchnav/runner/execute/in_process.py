@@ -29,7 +29,8 @@ def refuse_limits_here(jobs: Iterable[Job], limited: bool) -> None:
 
 def refuse_edited(jobs: Iterable[Job]) -> None:
     """Raise UsageError if this process would run code that differs from its source files."""
-    for job in {job.contestant.label: job for job in jobs}.values():
+    evaluated = {job.contestant.label: job for job in jobs if not job.undisturbed}
+    for job in evaluated.values():
         for place in job.contestant.places:
             with suppress(Exception, SystemExit):  # the construction reports the reason
                 load_by_module(place)

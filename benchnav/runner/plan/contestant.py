@@ -16,7 +16,7 @@ from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.limits import Limits
 from benchnav.source.digest import FoundSource, find_source
 from benchnav.source.parts import local_names, places_of
-from benchnav.store.runs.manifest import IN_PROCESS, ISOLATED, Mode
+from benchnav.store.runs.manifest import IN_PROCESS, ISOLATED, UNDISTURBED, Mode
 from benchnav.store.runs.navigator_hash import navigator_hash
 
 
@@ -51,6 +51,10 @@ class Contestant:
         return navigator_hash(self.spec, self.source, self.fingerprint, led, self.mode)
 
 
+NONE = Contestant(UNDISTURBED, {}, "", frozenset())
+"""Stands for a navigator in the cells of undisturbed worlds, which have no evaluated agents."""
+
+
 @dataclass(frozen=True)
 class ContestantFactory:
     """Creates contestants from specs. Reads the properties of each navigator in a separate process.
@@ -69,6 +73,8 @@ class ContestantFactory:
 
     def create_all(self, wanted: Sequence[tuple[Spec, str]]) -> tuple[Contestant, ...]:
         """Return the contestants of (spec, place for messages) pairs, read in parallel."""
+        for spec, where in wanted:
+            _refuse_reserved(label_of(spec), where)
         specs = [(_without_label(spec, where), where) for spec, where in wanted]
         capabilities = self._read_capabilities(specs)
         return tuple(
@@ -148,6 +154,14 @@ def _without_label(spec: Spec, where: str) -> Spec:
     if not label.strip() or len(label) > 80:
         raise ScenarioError(f"{where} label must have 1 to 80 characters; got {label[:90]!r}.")
     return {key: value for key, value in spec.items() if key != "label"}
+
+
+def _refuse_reserved(label: str, where: str) -> None:
+    if label == UNDISTURBED:
+        raise ScenarioError(
+            f"{where}: The label {label!r} is reserved for worlds without evaluated agents."
+            " Give the navigator another label."
+        )
 
 
 def _isolated(spec: Spec, sensings: Sequence[Sensing], where: str) -> Capabilities:

@@ -6,12 +6,14 @@ import re
 from dataclasses import dataclass, replace
 from typing import Any
 
-from benchnav.generation.build import noise_of, sensing_of
+from benchnav.arena.world import World
+from benchnav.generation.build import build, noise_of, sensing_of
+from benchnav.generation.undisturbed_world import undisturbed_world
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.plugin.capabilities import undriven
 from benchnav.navigation.plugin.configure import Spec, split
 from benchnav.plugins import NAVIGATORS
-from benchnav.runner.plan.contestant import Contestant
+from benchnav.runner.plan.contestant import NONE, Contestant
 from benchnav.runner.rollouts.rollout import Assignment
 from benchnav.scenario.condition import EXACT, NOISY, condition
 from benchnav.scenario.sampling.sampler import support
@@ -35,14 +37,29 @@ class Job:
     def assignment(self) -> Assignment:
         """The navigator, the scenario and the condition."""
         scenario, contestant = self.scenario, self.contestant
+        navigator, background = contestant.spec, scenario.driver_specs
+        if self.undisturbed:
+            navigator, *others = background
+            background = tuple(others)
         return Assignment(
             scenario.identity, scenario.hash, self.split, self.track, contestant.label,
-            contestant.spec, scenario.driver_specs, navigator_hash=contestant.hash,
+            navigator, background, navigator_hash=contestant.hash,
             source_hash=contestant.source_hash, rehearsals=contestant.rehearsal,
             leader=contestant.leader.spec if contestant.leader else None,
             isolated=contestant.mode == ISOLATED,
             noise=noise_of(scenario) if self.perception == NOISY else None,
+            undisturbed=self.undisturbed,
         )  # fmt: skip
+
+    @property
+    def undisturbed(self) -> bool:
+        """Whether its worlds are those without the evaluated agents."""
+        return self.contestant == NONE
+
+    def world(self, seed: int) -> World:
+        """Draw the world of a seed."""
+        drawn = build(self.scenario, self.split, seed)
+        return undisturbed_world(drawn) if self.undisturbed else drawn
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -85,6 +102,8 @@ class Job:
         """The reason why it is n/a; "" if it can run."""
         if self.contestant.missing_extra:
             return self.contestant.missing_extra
+        if self.undisturbed:
+            return ""
         if self.track not in self.scenario.granted_tracks:
             return f"the scenario has no track {self.track!r}"
         led = self.contestant.leader
@@ -128,6 +147,14 @@ class Job:
             share = counts.setdefault(team.name, [0.0])
             share[0] += most if team.role == "leader" else 0.0
         return sum(max(share[0], 1.0) for share in counts.values())
+
+
+def undisturbed_job(scenario: Scenario, split: str) -> Job:
+    """Return the cell of a scenario's worlds without evaluated agents.
+
+    It is of the track known, on which background navigators always are.
+    """
+    return Job(scenario, split, "known", NONE)
 
 
 def _full(spec: Spec) -> dict[str, Any]:

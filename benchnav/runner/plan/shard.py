@@ -34,22 +34,33 @@ class Shard:
     def seeds(self, jobs: Iterable[Job], seeds: Sequence[int]) -> dict[str, set[int]]:
         """Return the seeds of this share for each cell, by key.
 
-        Whole tasks are assigned, the longest first, to the share with the least work. Cells that
-        are n/a are left out.
+        Whole tasks are assigned, the longest first, to the share with the least work. Cells of a
+        scenario with undisturbed episodes stay together, seed by seed, so that each share has the
+        undisturbed episodes that it compares with. Cells that are n/a are left out.
         """
         tasks = [
-            (job.effort * (stop - first), job.key, first, stop)
-            for job in jobs
-            if not job.reason
-            for first, stop in chunks(seeds, job.effort)
+            (sum(efforts) * (stop - first), keys, first, stop)
+            for keys, efforts in _groups(jobs)
+            for first, stop in chunks(seeds, max(efforts))
         ]
         tasks.sort(key=lambda task: (-task[0], *task[1:]))
         loads = [(0.0, index) for index in range(1, self.count + 1)]
         heapify(loads)
         mine: dict[str, set[int]] = {}
-        for effort, key, first, stop in tasks:
+        for effort, keys, first, stop in tasks:
             load, index = loads[0]
             heapreplace(loads, (load + effort, index))
-            if index == self.index:
+            for key in keys if index == self.index else ():
                 mine.setdefault(key, set()).update(range(first, stop))
         return mine
+
+
+def _groups(jobs: Iterable[Job]) -> list[tuple[tuple[str, ...], tuple[float, ...]]]:
+    """Return keys and efforts of the cells that stay together."""
+    every = [job for job in jobs if not job.reason]
+    shared = {job.scenario.identity for job in every if job.undisturbed}
+    groups = dict[str, list[tuple[str, float]]]()
+    for job in every:
+        name = job.scenario.identity if job.scenario.identity in shared else job.key
+        groups.setdefault(name, []).append((job.key, job.effort))
+    return [tuple(zip(*sorted(group), strict=True)) for group in groups.values()]  # type: ignore[misc]

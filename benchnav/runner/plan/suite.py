@@ -17,7 +17,7 @@ from benchnav.generation.build import sensing_of
 from benchnav.navigation.plugin.background_navigators import check_drivers
 from benchnav.navigation.plugin.configure import Spec
 from benchnav.runner.plan.contestant import Contestant, ContestantFactory, label_of, resolved
-from benchnav.runner.plan.job import Job
+from benchnav.runner.plan.job import Job, undisturbed_job
 from benchnav.runner.plan.labels import labelled
 from benchnav.runner.plan.limits import patience
 from benchnav.runner.plan.suite_file import SuiteFile, is_scenario, parse_seeds, suite_path
@@ -82,11 +82,13 @@ class Suite:
     salt: str = ""  # of navigators' randomness; empty: each new run draws its own
     blocks: tuple[Block, ...] = ()  # the parts of the product to run; empty: all of it
     perceptions: tuple[str, ...] = (EXACT,)
+    undisturbed: bool = False  # whether worlds with background navigators also run without robots
 
     def jobs(self) -> Iterator[Job]:
         """Yield all cells, also n/a ones, by scenario, track, perception and navigator.
 
         A navigator that uses no map runs once for all tracks, in the last track of a scenario.
+        The cells of undisturbed worlds come last: one for each scenario with background navigators.
         """
         whole = [
             job
@@ -104,6 +106,11 @@ class Suite:
             tracks = shared[job.contest] if job.once else [job.track]
             if job.track == tracks[-1]:
                 yield replace(job, also=tuple(tracks[:-1]))
+        if self.undisturbed:
+            identities = {job.scenario.identity for job in whole}
+            for scenario in self.scenarios:
+                if scenario.drivers and scenario.identity in identities:
+                    yield undisturbed_job(scenario, self.split)
 
     def __contains__(self, job: Job) -> bool:
         return not self.blocks or any(job in block for block in self.blocks)
@@ -128,6 +135,7 @@ class Suite:
             **_unless_exact(self.perceptions),
             "navigators": [resolved(contestant) for contestant in self.contestants],
             **({"blocks": [block.fields() for block in self.blocks]} if self.blocks else {}),
+            **({"undisturbed": True} if self.undisturbed else {}),
         }
 
 
@@ -137,7 +145,8 @@ def load_suite(
     """Return the suite of this name, file or content, with the selection applied.
 
     The name or file of a scenario gives a suite of that scenario: its navigators, conditions and
-    seeds are those of the suite `FIRST_LOOK` unless others are selected. Navigators report their
+    seeds are those of the suite `FIRST_LOOK` unless others are selected, and undisturbed worlds
+    run if there are background navigators. Navigators report their
     properties in separate processes, in which a call may last ``timeout`` [s].
 
     Raises:
@@ -192,7 +201,7 @@ def _selected(
     salt = _salt(selection.salt)
     suite = Suite(
         file.name, file.version, file.split, seeds, scenarios, tracks, contestants, salt,
-        perceptions=perceptions,
+        perceptions=perceptions, undisturbed=file.undisturbed and _have_drivers(scenarios),
     )  # fmt: skip
     return replace(suite, blocks=_blocks(file, suite, document, folder)) if file.blocks else suite
 
@@ -203,7 +212,14 @@ def _suite_of_one(name: str, selection: Selection, timeout: float | None) -> Sui
     suite = load_suite(FIRST_LOOK, chosen, timeout=timeout)
     scenario = suite.scenarios[0]
     called = re.sub(r"[^a-z0-9]+", "-", scenario.name.lower()).strip("-")[:60]
-    return replace(suite, name=called or "scenario", version=scenario.version, blocks=())
+    return replace(
+        suite, name=called or "scenario", version=scenario.version, blocks=(),
+        undisturbed=_have_drivers(suite.scenarios),
+    )  # fmt: skip
+
+
+def _have_drivers(scenarios: Sequence[Scenario]) -> bool:
+    return any(scenario.drivers for scenario in scenarios)
 
 
 def _blocks(file: SuiteFile, suite: Suite, document: Document, folder: Path) -> tuple[Block, ...]:

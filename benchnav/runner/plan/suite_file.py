@@ -73,6 +73,11 @@ class SuiteFile(BaseModel):
     split: Literal["train", "validation", "test"] = Field(
         "test", description="The random stream of the worlds."
     )
+    undisturbed: bool = Field(
+        False,
+        description="Whether worlds with background navigators also run once without the"
+        " evaluated agents, to measure the disturbance of people.",
+    )
 
     @field_validator("seeds")
     @classmethod

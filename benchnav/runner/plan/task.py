@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import pyarrow as pa
 
-from benchnav.arena.world import World
 from benchnav.episode.episode import Episode
 from benchnav.errors import MissingExtraError
-from benchnav.generation.build import build
 from benchnav.isolation import sandbox
 from benchnav.metrics.measure import all_metrics
 from benchnav.navigation.command_check import kind_of, one_of_each_kind
@@ -21,9 +20,10 @@ from benchnav.runner.plan.job import Job
 from benchnav.runner.rollouts.latency import latency, peak_memory
 from benchnav.runner.rollouts.rehearsal import Performance, perform
 from benchnav.runner.rollouts.rollout import Assignment, Seeded
-from benchnav.store.parts.part import Part
+from benchnav.store.parts.part import Part, parts_of
 from benchnav.store.parts.part_writer import EpisodeFiles, seal
 from benchnav.store.parts.staged import check_rehearsals, staged_episodes
+from benchnav.store.parts.undisturbed import UndisturbedEpisodes
 
 Tick = Callable[[int], None]
 CHUNK = 64  # seeds of a task: many for a fast lockstep, few because an interruption loses them
@@ -43,6 +43,7 @@ class Task:
     forced_failure: str = ""  # a reason for which every episode fails without running
     salt: str = ""  # of the run
     probe: int = -1  # the seed of the world in which latency is measured; one for each cell
+    undisturbed: Path | None = None  # the cell with the undisturbed episodes of its worlds
     new_process: bool = False  # whether it needs a new process
     exclusive: bool = False  # whether no other task may run at the same time
 
@@ -175,7 +176,10 @@ def _play(task: Task) -> Played:
     job = task.job
     if task.assignment.isolated:
         sandbox.hide_memory()  # before the memory holds salt and seeds
-    worlds = [(seed, _drawn(job, number, seed)) for number, seed in enumerate(task.seeds, 1)]
+    worlds = []
+    for number, seed in enumerate(task.seeds, 1):
+        note_drawing(number)
+        worlds.append((seed, job.world(seed)))
     note_drawing(0)
     unled: list[tuple[int, str]] = []
     with EpisodeFiles(Part(task.folder, task.first, task.stop)) as files:
@@ -186,11 +190,6 @@ def _play(task: Task) -> Played:
             unled += [(p.episode.identity.seed, team) for p in batch for team in p.unled]
         files.finish()
     return Played(tuple(sorted(unled)))
-
-
-def _drawn(job: Job, number: int, seed: int) -> World:
-    note_drawing(number)
-    return build(job.scenario, job.split, seed)
 
 
 def measure_part(
@@ -204,7 +203,8 @@ def measure_part(
     part = Part(task.folder, task.first, task.stop)
     expected = [task.assignment.identity(seed) for seed in task.seeds]
     seen: list[Seen] = []
-    results = measure(_seen(staged_episodes(part, expected), seen))
+    episodes = _compared(staged_episodes(part, expected), task.undisturbed)
+    results = measure(_seen(episodes, seen))
     check_rehearsals(part, expected, task.assignment.rehearsals)
     seal(part, results, len(expected))
     return Outcome(
@@ -216,6 +216,14 @@ def measure_part(
         tracebacks={kind_of(one.failure): one.traceback for one in seen if one.traceback}
         | tracebacks_of(results),
     )  # fmt: skip
+
+
+def _compared(episodes: Iterator[Episode], folder: Path | None) -> Iterator[Episode]:
+    """Yield the episodes, each with the undisturbed one of its seed, if there is one."""
+    if folder is None:
+        return episodes
+    stored = UndisturbedEpisodes(parts_of(folder))
+    return (replace(e, undisturbed=partial(stored, e.identity.seed)) for e in episodes)
 
 
 @dataclass(frozen=True)
@@ -245,7 +253,7 @@ def _timed(task: Task, batch: list[Performance]) -> list[Episode]:
     for performance in batch:
         episode, grant = performance.episode, tuple(performance.rehearsed.grant)
         seeded: Seeded = (episode.identity.seed, episode.world)
-        wanted = seeded[0] == task.probe and not episode.failure
+        wanted = seeded[0] == task.probe and not (episode.failure or task.job.undisturbed)
         seconds = latency(task.assignment, seeded, grant) if wanted else None
         timings = replace(episode.timings, latency=seconds, memory=peak_memory())
         timed.append(replace(episode, timings=timings))

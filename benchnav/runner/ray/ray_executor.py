@@ -21,7 +21,7 @@ from benchnav.runner.execute.progress import Progress
 from benchnav.runner.plan.limits import Limits
 from benchnav.runner.plan.task import Task
 from benchnav.runner.ray.ray_worker import Delivery, RayWorker, Refusal
-from benchnav.store.parts.part import Part
+from benchnav.store.parts.part import FILES, SEAL, Part, parts_of
 from benchnav.store.parts.part_writer import receive
 from benchnav.store.runs.manifest import versions
 from benchnav.threads import core_count
@@ -127,7 +127,7 @@ class _RayJobs:
     def _assign(self, actor: Any) -> None:
         task = self.pending.popleft()
         self.progress.start(id(actor), task.load)
-        result = actor.work.remote(task, self._files(task))
+        result = actor.work.remote(task, self._files(task), undisturbed_files(task))
         self.waiting[result] = actor, task
 
     def _store(self, delivery: Delivery) -> Finished:
@@ -162,6 +162,16 @@ class _RayJobs:
             found = {name: path.read_bytes() for name, path in scenario.named_files().items()}
             self.files[scenario.hash] = self.ray.put(found)
         return self.files[scenario.hash]
+
+
+def undisturbed_files(task: Task) -> dict[str, bytes]:
+    """Return the files of the undisturbed episodes of a task's worlds, by name."""
+    if task.undisturbed is None:
+        return {}
+    seeds = set(task.seeds)
+    parts = [part for part in parts_of(task.undisturbed) if seeds & set(part.seeds)]
+    paths = [part.path(suffix) for part in parts for suffix in (*FILES, SEAL)]
+    return {path.name: path.read_bytes() for path in paths if path.exists()}
 
 
 def _refuse_other_versions(there: Mapping[str, str]) -> None:

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
+from shutil import rmtree
 from tempfile import mkdtemp
 
 from benchnav.errors import BenchnavError
@@ -57,10 +58,17 @@ class RayWorker:
         """Return the versions of the packages that affect results, on this machine."""
         return versions()
 
-    def work(self, task: Task, files: Mapping[str, bytes]) -> list[Delivery] | Refusal:
-        """Run a task. ``files`` are those of its scenario, for machines that do not have them."""
+    def work(
+        self, task: Task, files: Mapping[str, bytes], undisturbed: Mapping[str, bytes] = {}
+    ) -> list[Delivery] | Refusal:
+        """Run a task on a machine that may have none of its files.
+
+        ``files`` are those of its scenario, ``undisturbed`` those of the undisturbed episodes of
+        its worlds, by name.
+        """
         try:
-            here = replace(task, folder=self._home.path / "parts" / task.job.key)
+            folder = self._home.path / "parts" / task.job.key
+            here = replace(task, folder=folder, undisturbed=self._received(undisturbed))
             finished = self._pool.run([self._staged(here, files)])
             return [self._delivery(task, piece, outcome) for piece, outcome in finished]
         except BenchnavError as error:
@@ -71,13 +79,26 @@ class RayWorker:
         self._pool.close()
         self._home.remove()
 
+    def _received(self, undisturbed: Mapping[str, bytes]) -> Path | None:
+        """Return the folder of the undisturbed episodes of a task; those of others are removed."""
+        folder = self._home.path / "undisturbed"
+        rmtree(folder, ignore_errors=True)
+        if not undisturbed:
+            return None
+        folder.mkdir()
+        for name, content in undisturbed.items():
+            (folder / name).write_bytes(content)
+        return folder
+
     def _delivery(self, original: Task, piece: Task, outcome: Outcome) -> Delivery:
         part, files = Part(piece.folder, piece.first, piece.stop), {}
         for path in [part.path(suffix) for suffix in (*FILES, SEAL)]:
             if path.exists():
                 files[path.name.removeprefix(part.stem)] = path.read_bytes()
                 path.unlink()
-        done = replace(piece, folder=original.folder, job=original.job)
+        done = replace(
+            piece, folder=original.folder, job=original.job, undisturbed=original.undisturbed
+        )
         return Delivery(done, outcome, files)
 
     def _staged(self, task: Task, files: Mapping[str, bytes]) -> Task:

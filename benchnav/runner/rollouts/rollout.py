@@ -53,6 +53,8 @@ class Assignment:
     # of the senses of the navigator, and of its leaders in rehearsals; None: perception `exact`
     noise: Noise | None = None
     isolated: bool = False  # whether the evaluated navigator runs in its own process
+    # of the undisturbed world: ``navigator`` is the first background navigator
+    undisturbed: bool = False
 
     @property
     def perception(self) -> str:
@@ -245,8 +247,10 @@ def _reset(assignment: Assignment, drivers: list[Driver], seeds: Sequence[int]) 
     which = assignment.rehearsal
     noisy = assignment.noise is not None
     keys = np.array([noise_key(*about, seed, which) for seed in seeds]) if noisy else None
+    shift = int(assignment.undisturbed)  # people draw the same numbers as beside the robot
     seconds = [
-        d.reset([generator(*about, seed, d.which, which) for seed in seeds], keys) for d in drivers
+        d.reset([generator(*about, seed, d.which + shift, which) for seed in seeds], keys)
+        for d in drivers
     ]
     return seconds[0]
 

@@ -233,6 +233,7 @@ def _episode(batch: _Columns, row: int) -> Episode:
         remarks=tuple(scalar("remarks") or ()),
         traceback=scalar("traceback") or "",
         twist=held,
+        undisturbed=None,
         **arrays,
     )
 

@@ -17,6 +17,7 @@ from benchnav.store.runs.navigator_hash import hash_of_entry
 _HASHED = 3  # first schema in which every row holds the hash of its navigator
 _NUMBERS = ("seed", "rehearsal", "rehearsals")
 _SHOWN = 80  # characters of a value in a message
+_NO_ENTRY: Mapping[str, Any] = {"config": {}, "source": ""}  # of undisturbed episodes
 
 
 @dataclass(frozen=True)
@@ -53,7 +54,10 @@ def membership(manifest: Manifest, cell: Mapping[str, Any], seals: Mapping[str, 
     """
     label, identity = str(cell.get("navigator")), str(cell.get("scenario"))
     suite = manifest.suite
-    entry = _one(suite.get("navigators", ()), "label", label)
+    if manifest.is_undisturbed(cell):
+        entry = _NO_ENTRY
+    else:
+        entry = _one(suite.get("navigators", ()), "label", label)
     scenario = _one(suite.get("scenarios", ()), "scenario", identity)
     own = hash_of_entry(entry)
     values: dict[str, Container[Any]] = {

@@ -7,8 +7,9 @@ killed run left other files.
 
 import hashlib
 import re
-from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 
 import pyarrow as pa
@@ -57,6 +58,10 @@ class Part:
     first: int
     stop: int
     membership: Membership | None = field(default=None, compare=False, repr=False)
+    # returns the undisturbed episode of a seed, see `UndisturbedEpisodes`; None: there are none
+    undisturbed: Callable[[int], Episode | None] | None = field(
+        default=None, compare=False, repr=False
+    )
 
     @property
     def stem(self) -> str:
@@ -93,7 +98,11 @@ class Part:
 
     def episodes(self) -> Iterator[Episode]:
         """Yield its scored episodes, by seed. Raises CorruptPartError."""
-        yield from self._episodes(EPISODES_FILE, len(self.seeds))
+        for episode in self._episodes(EPISODES_FILE, len(self.seeds)):
+            if self.undisturbed is not None:
+                other = partial(self.undisturbed, episode.identity.seed)
+                episode = replace(episode, undisturbed=other)
+            yield episode
 
     def steps(self) -> dict[int, int]:
         """Return the number of decisions of each scored episode, by seed. Raises CorruptPartError.

@@ -20,11 +20,14 @@ from benchnav.store.runs.config_key import RENAMED_IN, new_form, old_form
 from benchnav.store.runs.manifest_schema import ManifestSchema
 from benchnav.store.runs.run_path import RunPath, run_path
 
-SCHEMA = 8  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source;
-#            5: provenance; 6: key `config`; 7: coded states; 8: perceptions
+SCHEMA = 9  # of a run folder; 2: rehearsals; 3: all that verifying needs; 4: navigators' source;
+#            5: provenance; 6: key `config`; 7: coded states; 8: perceptions;
+#            9: undisturbed episodes
+_PERCEPTION_SCHEMA = 8  # of runs without undisturbed episodes
 _EXACT_SCHEMA = 7  # of runs with exact perception only: older versions can read them
 MANIFEST = "manifest.json"
 MAX_BYTES = 64 << 20  # of a manifest
+UNDISTURBED = "undisturbed"  # label of the cells without evaluated agents; no navigator has it
 _RECORDED = ("benchnav", "numpy", "numba", "scipy", "shapely", "pyarrow", "pedpy", "ompl")
 
 Mode = Literal["in-process", "isolated"]  # how a navigator runs
@@ -85,6 +88,10 @@ class Manifest:
         )
         return [str(e.get("fingerprint", "")) for e in (entry, entry.get("leader", {}))]
 
+    def is_undisturbed(self, cell: Mapping[str, Any]) -> bool:
+        """Whether a cell holds undisturbed episodes, and none of a navigator."""
+        return "undisturbed" in self.suite and cell.get("navigator") == UNDISTURBED
+
     def with_sources_of(self, other: "Manifest", labels: Collection[str]) -> "Manifest":
         """Return this manifest with the sources of ``labels`` from ``other``."""
         others = {e["label"]: e for e in other.suite.get("navigators", ())}
@@ -106,7 +113,9 @@ class Manifest:
 
 def schema_for(suite: Mapping[str, Any]) -> int:
     """Return the schema of a new run of a resolved suite."""
-    return SCHEMA if "perception" in suite else _EXACT_SCHEMA
+    if "undisturbed" in suite:
+        return SCHEMA
+    return _PERCEPTION_SCHEMA if "perception" in suite else _EXACT_SCHEMA
 
 
 def versions() -> dict[str, str]:

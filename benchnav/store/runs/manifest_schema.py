@@ -87,6 +87,7 @@ class _Suite(_Part):
     perception: Perceptions = ("exact",)
     navigators: Annotated[tuple[_Navigator, ...], Field(max_length=10_000)]
     blocks: Annotated[tuple[_Block, ...], Field(max_length=100)] = ()
+    undisturbed: bool = False
 
     @model_validator(mode="after")
     def _check(self) -> "_Suite":
@@ -100,7 +101,8 @@ class _Suite(_Part):
         if product > MOST_CELLS:
             raise FieldError((), f"must have at most {MOST_CELLS} cells; it has {product}")
         _require_once(("scenarios",), [s.scenario for s in self.scenarios])
-        _require_once(("navigators",), [n.label for n in self.navigators])
+        labels = [n.label for n in self.navigators]
+        _require_once(("navigators",), [*labels, *(["undisturbed"] if self.undisturbed else [])])
         return self
 
 

@@ -1,6 +1,6 @@
 """Read episodes and measured values of whole runs."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -20,7 +20,7 @@ _OF_A_CELL = ["scenario", "track", "perception", "navigator"]
 
 
 def read_episodes(run: RunPath) -> Iterator[Episode]:
-    """Yield every scored episode of a run: cell by cell, by seed.
+    """Yield every scored episode of a run: cell by cell, by seed; not the undisturbed ones.
 
     Raises UsageError if ``run`` is not a path, StoreError if the folder is not a run,
     CorruptPartError for a damaged part, or one that holds rows of another cell.
@@ -30,7 +30,7 @@ def read_episodes(run: RunPath) -> Iterator[Episode]:
 
 def episodes_of(run: RunFolder) -> Iterator[Episode]:
     """Yield the same, for an open run."""
-    return (episode for part in run.parts() for episode in part.episodes())
+    return (episode for part in _scored_parts(run) for episode in part.episodes())
 
 
 def read_episodes_in_every_track(run: RunPath) -> Iterator[Episode]:
@@ -74,14 +74,17 @@ def read_results(run: RunPath) -> pa.Table:
     return results_of(RunFolder.open(run))
 
 
-def results_of(run: RunFolder) -> pa.Table:
-    """Return the same, for an open run."""
-    return in_every_track(_joined(run, Part.results, RESULTS.empty_table()), run.manifest)
+def results_of(run: RunFolder, *, undisturbed: bool = False) -> pa.Table:
+    """Return the same, for an open run; with ``undisturbed``, also of undisturbed episodes."""
+    parts = run.parts() if undisturbed else _scored_parts(run)
+    joined = _joined(run, parts, Part.results, RESULTS.empty_table())
+    return in_every_track(joined, run.manifest)
 
 
 def encoded_results_of(run: RunFolder) -> pa.Table:
     """Return the same with texts as references to distinct texts: a third of the memory."""
-    joined = _joined(run, Part.encoded_results, encoded(RESULTS.empty_table()))
+    none = encoded(RESULTS.empty_table())
+    joined = _joined(run, _scored_parts(run), Part.encoded_results, none)
     every = in_every_track(joined, run.manifest)
     return every.unify_dictionaries()  # else pyarrow cannot group by them
 
@@ -95,11 +98,20 @@ def encoded(results: pa.Table) -> pa.Table:
     return results
 
 
-def _joined(run: RunFolder, read: Callable[[Part], pa.Table], none: pa.Table) -> pa.Table:
-    """Return the tables of all parts together, ``none`` if there are none."""
+def _scored_parts(run: RunFolder) -> Iterator[Part]:
+    """Yield the parts of navigators."""
+    for cell in run.manifest.cells:
+        if not cell["reason"] and not run.manifest.is_undisturbed(cell):
+            yield from run.parts_in(cell)
+
+
+def _joined(
+    run: RunFolder, parts: Iterable[Part], read: Callable[[Part], pa.Table], none: pa.Table
+) -> pa.Table:
+    """Return the tables of ``parts`` together, ``none`` if there are none."""
     tables = [none]
     decoded = stored = 0
-    for part in run.parts():
+    for part in parts:
         tables.append(read(part))
         decoded += tables[-1].nbytes
         stored += part.path(RESULTS_FILE).stat().st_size

@@ -15,6 +15,7 @@ from benchnav.errors import CorruptPartError, RunConflictError, StoreError
 from benchnav.store.parts.membership import membership
 from benchnav.store.parts.part import FILES, SEAL, Part, named_parts, parts_of
 from benchnav.store.parts.part_writer import TEMPORARY
+from benchnav.store.parts.undisturbed import UndisturbedEpisodes
 from benchnav.store.runs.lock import LOCKS, locked
 from benchnav.store.runs.manifest import MANIFEST, Manifest, load_manifest
 from benchnav.store.runs.run_path import RunPath, run_path
@@ -175,7 +176,19 @@ class RunFolder:
             raise CorruptPartError(
                 f"{self.shown / MANIFEST} must identify the rows of a cell. It does not: {error}."
             ) from error
-        return [replace(part, membership=of) for part in parts]
+        other = self._undisturbed(cell)
+        return [replace(part, membership=of, undisturbed=other) for part in parts]
+
+    def undisturbed_key(self, scenario: str) -> str:
+        """Return the key of the cell with a scenario's undisturbed episodes; "" without one."""
+        cells = (c for c in self.manifest.cells if c["scenario"] == scenario)
+        return next((c["key"] for c in cells if self.manifest.is_undisturbed(c)), "")
+
+    def _undisturbed(self, cell: Mapping[str, Any]) -> UndisturbedEpisodes | None:
+        """Return the undisturbed episodes that belong to those of a cell."""
+        key = self.undisturbed_key(cell["scenario"])
+        own = [c for c in self.manifest.cells if c["key"] == key != cell["key"]]
+        return UndisturbedEpisodes([p for c in own for p in self.parts_in(c)]) if own else None
 
     def done(self, key: str) -> set[int]:
         """Return the stored seeds of a cell. Raises CorruptPartError if a part is damaged."""
