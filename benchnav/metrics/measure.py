@@ -69,7 +69,6 @@ class Cell(NamedTuple):
     traceback: str | None = None
 
 
-
 def _inapplicable(metric: Metric, episode: Episode) -> str:
     """Return what a metric needs that an episode does not have; "" if it has all."""
     if metric.people and not episode.world.has_people:

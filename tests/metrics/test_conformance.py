@@ -54,6 +54,8 @@ SHIPPED = [
     "personal_space_approach",
     "collisions_people",
     "collisions_at_fault",
+    "people_delay",
+    "people_detour",
     "decision_time_p50",
     "decision_time_p95",
     "decision_time_p99",
@@ -212,6 +214,7 @@ def test_nothing_that_ranks_is_best_in_a_crash():
     """The reviewer's case: what ends early adds up to less, and is no achievement."""
     unranked = [name for name in SHIPPED if name.startswith(("collisions_", "personal_space_"))]
     unranked += ["jam", "timeout", "stuck", "failed", "intrusion", "avoidance"]
+    unranked += ["people_delay", "people_detour"]
     assert {name for name in unranked if load_metric(name).better is not None} == set()
     crash = zoo()["crashing"]
     for name in SHIPPED:

@@ -9,7 +9,6 @@ import shapely
 
 from benchnav.metrics import congestion, groups, safety, smoothness
 from benchnav.metrics.measure import (
-    NO_PEOPLE,
     Cell,
     all_metrics,
     measure_alone,
@@ -105,8 +104,8 @@ def test_means_taken_together_are_those_taken_alone(episode):
         assert common == alone
         for metric, cell in zip(metrics, cells, strict=True):
             same(cell[:2], measure_alone(metric, episode, members)[:2])
-            without = metric.people and not episode.world.has_people
-            assert cell[2:] == (NO_PEOPLE if without else Cell())[2:]
+            without = metric.undisturbed or (metric.people and not episode.world.has_people)
+            assert cell.missing.startswith("n/a: needs ") if without else cell[2:] == Cell()[2:]
 
 
 def _cells(rng, count):

@@ -1,15 +1,19 @@
 """Simulate one episode in memory, without a run folder."""
 
 from dataclasses import replace
+from functools import cache, partial
 
 from benchnav.api.execution.navigators import NavigatorLike, navigator_spec
 from benchnav.api.records.episode import Episode
 from benchnav.api.records.world import World
+from benchnav.episode.episode import Episode as Record
 from benchnav.errors import UsageError
+from benchnav.generation.undisturbed_world import undisturbed_world
 from benchnav.processes.main_module import stop_import_of_main
 from benchnav.runner.plan.contestant import ContestantFactory
-from benchnav.runner.plan.job import Job
+from benchnav.runner.plan.job import Job, undisturbed_job
 from benchnav.runner.rollouts.rehearsal import perform
+from benchnav.runner.rollouts.rollout import rollout
 from benchnav.runner.rollouts.seeding import check_salt, draw_salt
 from benchnav.scenario.condition import EXACT, require_perception, require_track
 from benchnav.verify.own_map import Production
@@ -26,7 +30,8 @@ def simulate(
     """Run a navigator in a world, in this process, and return the episode.
 
     Nothing is stored. Where the navigator raises an exception, the episode says so in
-    `Episode.failure`, and its agents count as failed.
+    `Episode.failure`, and its agents count as failed. Where people react, the undisturbed world
+    runs when it is first needed, by `Episode.undisturbed` or a metric of disturbance.
 
     Args:
         world: from `Scenario.world`.
@@ -50,7 +55,18 @@ def simulate(
     assignment = replace(job.assignment, salt=_salt(salt))
     (batch,) = perform(assignment, [(world.seed, world.record)])
     made = Production(assignment, tuple(batch[0].rehearsed.grant))
-    return Episode(batch[0].episode, lambda: made)
+    record = batch[0].episode
+    if scenario.drivers:
+        record = replace(record, undisturbed=cache(partial(_undisturbed, world, assignment.salt)))
+    return Episode(record, lambda: made)
+
+
+def _undisturbed(world: World, salt: str) -> Record:
+    """Run the world without its evaluated agents, with the random numbers of the same salt."""
+    job = undisturbed_job(world.scenario.record, world.split)
+    people = undisturbed_world(world.record)
+    ((episode,),) = rollout(replace(job.assignment, salt=salt), [(world.seed, people)])
+    return episode
 
 
 def _salt(text: str | None) -> str:

@@ -70,6 +70,15 @@ class Episode:
         return self.record.failure
 
     @property
+    def undisturbed(self) -> "Episode | None":
+        """The episode in the same world without the evaluated agents; None where there is none.
+
+        There is one where background navigators drive people, if the suite runs undisturbed worlds.
+        """
+        other = self.record.undisturbed() if self.record.undisturbed is not None else None
+        return None if other is None else Episode(other)
+
+    @property
     def roles(self) -> tuple[str, ...]:
         """The roles that are scored: leader, follower."""
         agents = self.record.world.agents
