@@ -10,7 +10,7 @@ DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50
 PROFILES: Mapping[str, tuple[str, ...]] = {
     "people": (
         "success", "collisions_people", "collisions_at_fault", "personal_space_approach",
-        "intrusion", "avoidance",
+        "intrusion", "avoidance", "people_delay", "people_detour",
     ),
 }  # fmt: skip
 """Names that stand for several metrics."""

@@ -6,9 +6,9 @@ the suite has the key `undisturbed`, or if a scenario is run by its name. Its ep
 under the label `undisturbed`, and verified like all others.
 
 People who react are the agents that the evaluated navigator does not drive, also those that do not
-see it: somebody else may step out of its way into theirs. Recorded people without a driver keep to
-their recording, whatever a robot does. Without people who react, or without the undisturbed world,
-these metrics are not applicable.
+see it: others may step out of its way into theirs. Recorded people without a driver keep to their
+recording, whatever a robot does. Without people who react, or without the undisturbed world, these
+metrics are not applicable.
 
 A person is compared at the end of the record, when the evaluated agents are done. A person that
 has not arrived then, with or without the robot, counts as arriving after its remaining way: the

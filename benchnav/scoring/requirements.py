@@ -21,6 +21,7 @@ NAMES = {
     "discs": "bodies that are discs",
     "heading": "headings",
     "people": "people",
+    "undisturbed": "the same people without the evaluated agents",
 }
 """Unknown quantity → its name in the reason."""
 CURES = {
@@ -82,6 +83,8 @@ _NEEDS: dict[str, tuple[str, ...]] = {
     "personal_space_approach": (*_PEOPLE, "preferred_speed"),
     "collisions_people": ("people", *_CONTACTS),
     "collisions_at_fault": ("people", *_CONTACTS),
+    "people_delay": ("undisturbed",),
+    "people_detour": ("undisturbed",),
 }
 
 

@@ -227,7 +227,7 @@ def test_other_ways_of_undisturbed_people_do_not_fit_the_values(forger, findings
         return resimulate([(episode.world, waits)])[0].episode
 
     forger.episode(stem, change)
-    kinds, report = findings(forger.run)
+    _, report = findings(forger.run)
     wrong = {f.where for f in report.findings if f.kind == "metric"}
     assert any("orca" in where for where in wrong)
     assert any("straight-line" in where for where in wrong)
@@ -250,7 +250,6 @@ def test_an_undisturbed_world_with_the_robot_is_found(forger, findings):
 
 
 def test_missing_undisturbed_episodes_are_found(forger, findings):
-    (stem,) = forger.stems("undisturbed")
     for path in forger.run.glob("parts/*undisturbed*/*"):
         path.unlink()
     kinds, report = findings(forger.run)
