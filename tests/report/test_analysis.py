@@ -20,6 +20,7 @@ from benchnav.report.analysis.outcome import Outcome
 from benchnav.report.analysis.parameter import ParameterCurves
 from benchnav.report.analysis.price import price_sentence, prices_of
 from benchnav.report.analysis.profile import profile
+from benchnav.report.analysis.scenario_facts import scenario_facts
 from benchnav.report.analysis.view import View, title_of, views_of
 from benchnav.report.figures.price import price_figure
 from benchnav.report.line_style import LineStyle
@@ -173,3 +174,15 @@ def test_a_price_is_a_filled_mark_only_if_its_interval_excludes_0():
     assert trace["y"] == ["all scenarios", "a/one@1", "a/two@1", "a/zero@1"]
     assert trace["x"] == pytest.approx([0.5, 1.0, 0.5, 0.0])
     assert trace["marker"]["symbol"] == ["circle"] * 3 + ["circle-open"]
+
+
+def test_the_default_of_a_parameter_may_be_a_name():
+    declared = {
+        "robot": {"default": "pioneer-3dx", "description": "its file"},
+        "agents": {"default": 8.0, "description": ""},
+        "walls": {"default": True, "description": ""},
+    }
+    facts = dict(scenario_facts({"parameters": declared}, [], "00"))
+    assert facts["parameter robot"] == "pioneer-3dx by default (its file)"
+    assert facts["parameter agents"] == "8 by default"
+    assert facts["parameter walls"] == "True by default"

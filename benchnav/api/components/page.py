@@ -105,6 +105,7 @@ def _suite(name: str) -> Iterator[str]:
         ("perception", ", ".join(suite.perceptions)),
         ("navigators", ", ".join(each.label for each in suite.contestants)),
         ("seeds", f"{suite.seeds.start} … {suite.seeds.stop - 1} of split {suite.split}"),
+        *([("undisturbed", "each world also without the robots")] if suite.undisturbed else []),
     ]
     yield f"{suite.name}@{suite.version}\n" + columns([("  " + k, v) for k, v in facts])
 

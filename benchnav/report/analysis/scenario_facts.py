@@ -69,7 +69,9 @@ def _count(world: World, team: int, role: Role) -> int:
 def _parameters(config: Mapping[str, Any]) -> Iterator[Fact]:
     for name, declared in config.get("parameters", {}).items():
         about = f" ({declared['description']})" if declared.get("description") else ""
-        yield f"parameter {name}", f"{declared['default']:g} by default{about}"
+        default = declared["default"]
+        shown = f"{default:g}" if type(default) in (int, float) else str(default)
+        yield f"parameter {name}", f"{shown} by default{about}"
 
 
 def _spread(counts: Iterable[int]) -> str:
