@@ -40,6 +40,7 @@ _HIROSE = (
     better=None,
     reference=_HIROSE,
     scope="group",
+    people=True,
     undisturbed=True,
 )
 def people_delay(episode: Episode, members: BoolArray) -> float:
@@ -57,6 +58,7 @@ def people_delay(episode: Episode, members: BoolArray) -> float:
     better=None,
     reference=_HIROSE,
     scope="group",
+    people=True,
     undisturbed=True,
 )
 def people_detour(episode: Episode, members: BoolArray) -> float:

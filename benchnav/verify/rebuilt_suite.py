@@ -75,6 +75,10 @@ def restore(run: RunFolder, root: Path, report: Report) -> RebuiltSuite | None:
     except _MALFORMED as error:
         report.find("manifest", where, f"the suite cannot be read: {type(error).__name__}: {error}")
         return None
+    if "undisturbed" in suite and not any(job.undisturbed for job in jobs):
+        report.find(
+            "manifest", where, "undisturbed must be left out: the suite has no undisturbed worlds"
+        )
     _compare_cells(run, jobs, where, report)
     _check_claims(run, where, report)
     return RebuiltSuite(whole_suite.seeds, tuple(jobs))

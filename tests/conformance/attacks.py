@@ -85,7 +85,7 @@ ADDED = {
     "suite.navigators[].mode": "isolated", "suite.navigators[].uses_map": False,
     "suite.navigators[].fingerprint": "0" * 16, "cells[].seeds": [[0, 2]],
     "cells[].also": ["stale"],
-    "suite.navigators[].training": {"decisions": 5, "seconds": 1.0},
+    "suite.navigators[].training": {"decisions": 5, "seconds": 1.0}, "suite.undisturbed": True,
 }  # fmt: skip
 """Keys of a manifest that an honest run need not have, and what an attacker may add."""
 

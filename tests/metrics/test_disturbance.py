@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from benchnav.arena.agents import Agents
+from benchnav.arena.body import Body, Law, LawKind
+from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
 from benchnav.generation.undisturbed_world import undisturbed_world
 from benchnav.metrics.measure import load_metric, measure
@@ -15,6 +17,7 @@ from benchnav.metrics.quantities.disturbance import disturbance
 from benchnav.testing.episodes import RULES, Setting, Walk, box, record, straight, wave
 from benchnav.testing.transform import moved, reordered
 from tests.reference import disturbance as slow
+from tests.worlds import disc
 
 METRICS = ("people_delay", "people_detour")
 SETTING = Setting(horizon=40.0)
@@ -177,7 +180,12 @@ def test_the_reason_why_it_is_not_applicable():
     walk = person()
     episode = pair([walk], [walk])
     assert reason(episode) == ""
-    assert reason(record([robot(3.0)])).startswith("n/a: needs people who react")
+    assert reason(record([robot(3.0)])) == "n/a: needs people"
+    law = Law(LawKind.TRACK, np.array([0.0, 9.0]), np.array([[0.0, 5.0], [9.0, 5.0]]))
+    recorded = Body(disc(Kind.DYNAMIC, 0.0, 0.0, 0.2), law, person=True)
+    paths = {"bodies": (recorded,), "body_paths": (straight((0.0, 5.0), (1.0, 0.0)),)}
+    beside = record([robot(3.0)], replace(SETTING, **paths))
+    assert reason(beside).startswith("n/a: needs people who react: recorded people without")
     expected = "n/a: needs the undisturbed world: key `undisturbed` of the suite"
     assert reason(replace(episode, undisturbed=None)) == expected
     assert reason(replace(episode, undisturbed=lambda: None)) == expected

@@ -1,4 +1,4 @@
-"""What evaluated agents change for people: their ways beside those in the undisturbed world.
+"""The effect of evaluated agents on people: their ways beside those in the undisturbed world.
 
 A record ends when the evaluated agents are done, which many people are not. Each person is
 compared at the end of the record: one on its way counts as arriving later by its remaining way,
@@ -28,7 +28,7 @@ class _Progress(NamedTuple):
 
     arrived: BoolArray  # (N,)
     time: FloatArray  # (N,) [s] of their arrival, or the end of the window
-    way: FloatArray  # (N, ) [m] travelled
+    way: FloatArray  # (N,) [m] travelled
     place: FloatArray  # (N, 2) [m]
 
 

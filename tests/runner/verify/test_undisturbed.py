@@ -261,6 +261,19 @@ def test_a_manifest_that_does_not_say_that_it_has_them_is_found(forger, findings
     assert findings(forger.run)[0]
 
 
+@pytest.mark.parametrize("value", [True, False])
+def test_a_manifest_that_names_none_without_reason_is_found(folder, findings, tmp_path, value):
+    text = (folder / "near.yaml").read_text()
+    end = "clock: {dt: 0.2, substeps: 1, horizon: 1}\n"
+    (tmp_path / "alone.yaml").write_text(text.split("  - name: people")[0] + end)
+    suite = load_suite(str(tmp_path / "alone.yaml"), Selection(navigators=("orca",), seeds="1"))
+    run_suite(suite, tmp_path / "run", workers=0)
+    assert findings(tmp_path / "run")[1].findings == []
+    forger = Forger(tmp_path / "run")
+    forger.manifest(lambda manifest: manifest["suite"].update(undisturbed=value))
+    assert findings(forger.run)[0] == {"manifest"}
+
+
 def test_a_suite_says_so_and_only_where_people_react(folder, scenario_file, tmp_path):
     text = "name: mine\nscenarios: [{0}]\nnavigators: [orca]\nseeds: 1\n"
     path = tmp_path / "suite.yaml"
