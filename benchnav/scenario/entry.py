@@ -29,7 +29,7 @@ def _tag(value: Any) -> str | None:
         return "several times"
     if isinstance(value, Stream) or (isinstance(value, dict) and {"every", "begin"} & set(value)):
         return "a stream"
-    return "a time" if is_scalar(value) else None
+    return "a time" if not isinstance(value, str) and is_scalar(value) else None
 
 
 Entry = Annotated[

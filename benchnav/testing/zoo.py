@@ -143,7 +143,7 @@ def with_company(speed: float) -> Episode:
 def late() -> Episode:
     """Return an episode in which one background agent enters later, and another not at all."""
     walks = (
-        Walk(wave((-8.0, 0.0), 1.0, 0.4, 6.0), (2.0, 0.0)),
+        Walk(wave((-8.0, 0.0), 1.0, 0.4, 6.0), (1.0, 0.0)),
         Walk(lambda t: np.array([1.0, 5.0]) + np.outer(t - 4.0, [-0.6, -0.9]), (-1.4, 1.4),
              driver=1, enters=4.0),
         Walk(straight((-6.0, 0.0), (0.0, 0.0)), (9.0, 0.0), driver=1, enters=15.0),
