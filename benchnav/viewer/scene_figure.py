@@ -38,9 +38,7 @@ def world_figure(world: World) -> Figure:
     figure = blank(_SINGLE, _SINGLE / aspect(world) + _FOOT)
     axes = figure.subplots()
     frame = draw_arena(axes, world, _first_places(world))
-    draw_agents(
-        axes, world, world.agents.start, world.agents.heading, world.agents.enters <= 0.0
-    )
+    draw_agents(axes, world, world.agents.start, world.agents.heading, world.agents.enters <= 0.0)
     draw_goals(axes, world)
     _tidy(axes, frame)
     _draw_scale(axes, world)

@@ -17,7 +17,8 @@ WIDTH = 480  # of the picture [pixels]
 def world_svg(world: World, marks: Iterable[str] = ()) -> str:
     """Return a picture of a world: walls, obstacles, agents at their starts, rings at goals.
 
-    Starts of agents that enter later are not filled. ``marks`` are SVG elements to draw above, in metres with y upwards.
+    Starts of agents that enter later are not filled. ``marks`` are SVG elements to draw above, in
+    metres with y upwards.
     """
     bodies = Simulation([world]).body_position[0]
     late = world.agents.enters > 0.0

@@ -15,7 +15,7 @@ def cut(episode):
     dt, states = episode.world.clock.dt, len(episode.position)
     over = ~np.isin(episode.status, (int(Status.ACTIVE), int(Status.WAITING)))
     last = np.where(over.any(axis=0), over.argmax(axis=0), states - 1)
-    waits = episode.status.T == int(Status.WAITING)
+    waits = (episode.status == int(Status.WAITING)).T
     until = np.minimum(np.arange(states), last[:, None])
     position = np.take_along_axis(episode.position.transpose(1, 0, 2), until[..., None], axis=1)
     before = np.maximum(last - 1, 0) * dt

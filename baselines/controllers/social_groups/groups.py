@@ -17,7 +17,8 @@ def form_groups(briefing: Briefing, shares: Sequence[float], reach: float) -> li
 
     A group forms around an agent, in random order, from the agents of its team that are in no
     group yet, that enter at most `TOGETHER` before or after it, and whose starts and goals are
-    both within ``reach`` [m] of its own: those with the smallest sum of both distances. Where too few are within reach, the group is smaller.
+    both within ``reach`` [m] of its own: those with the smallest sum of both distances. Where too
+    few are within reach, the group is smaller.
     The groups do not depend on how the agents are numbered.
 
     Args:
