@@ -289,4 +289,4 @@ def test_an_agent_is_no_object_before_it_enters():
     wall = 8.0 - np.abs(late.position[:, 0, 1]) - 0.3
     later = np.arange(len(gap)) >= entered[1]
     assert np.allclose(gap[~later], np.minimum(wall, 12.0 + late.position[:, 0, 0] - 0.3)[~later])
-    assert (gap <= apart + 1e-9)[later].all()
+    assert (gap <= apart + 1e-9)[late.status[:, 1] == int(Status.ACTIVE)].all()
