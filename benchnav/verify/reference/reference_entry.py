@@ -36,5 +36,5 @@ def _room(twin: "Twin", i: int) -> float:
         apart = np.hypot(*(place - nearest(place, c[:, :2], c[:, 2:4])).T) - c[:, 4] - radius[i]
         gaps += apart.tolist()
         if not body.solid.is_disc and inside(place - twin.bodies[m], body.solid.loops):
-            return -radius[i]
-    return min(gaps)
+            return -float(radius[i])
+    return float(min(gaps))
