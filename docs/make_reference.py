@@ -66,7 +66,7 @@ GROUPS = {  # heading → picture in images/keys and its text, and types; any ot
     "Obstacles": ("obstacles", "gaps and moved obstacles", "StaticGroup DynamicGroup"),
     "Motion laws": ("laws", "motion laws", "BackAndForth WaypointLoop CircleLaw RecordedTrack"),
     "Recordings": ("", "", "Recording"),
-    "Teams": ("", "", "Team RobotChoice NavigatorChoice"),
+    "Teams": ("", "", "Team Stream RobotChoice NavigatorChoice"),
     "Dynamics": ("", "", "Holonomic Unicycle DifferentialDrive Ackermann"),
     "Footprints": ("footprints", "footprints", "DiscFootprint Capsule RoundedBox"),
     "Starts": (

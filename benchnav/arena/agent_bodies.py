@@ -1,4 +1,4 @@
-"""The bodies of agents beyond radius, speed and turn rate: shapes, and limits of their motion."""
+"""The bodies of agents beyond radius, speed and turn rate: shapes, limits, and when they enter."""
 
 import math
 from dataclasses import dataclass
@@ -14,14 +14,15 @@ NO_LIMITS: dict[str, Any] = {
     "max_steering_angle": math.inf, "max_steering_rate": math.inf, "reverse": False,
 }  # fmt: skip
 DISC: dict[str, Any] = {"half_length": 0.0, "half_width": 0.0, "rounding": 0.0}
-PLAIN_BODY = NO_LIMITS | DISC
-"""The columns of `AgentBodies`, each with its value for a disc without further limits."""
+AT_START: dict[str, Any] = {"enters": 0.0}
+PLAIN_BODY = NO_LIMITS | DISC | AT_START
+"""The columns of `AgentBodies`, each with its value for a disc without limits, there from t = 0."""
 _UNSET: Any = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class AgentBodies:
-    """Columns (A,) of limits and shapes; a column that is not given is that of `PLAIN_BODY`.
+    """Columns (A,) of limits, shapes and times; one that is not given is that of `PLAIN_BODY`.
 
     A column with only such values is neither hashed nor stored.
     """
@@ -39,6 +40,7 @@ class AgentBodies:
     half_length: FloatArray = _UNSET  # (A,) [m] half the extent along the heading
     half_width: FloatArray = _UNSET  # (A,) [m] half the extent across the heading
     rounding: FloatArray = _UNSET  # (A,) [m] radius of the corners; of a capsule, the half width
+    enters: FloatArray = _UNSET  # (A,) [s] it enters the arena then, or once its start is free
 
     def __len__(self) -> int:
         raise NotImplementedError

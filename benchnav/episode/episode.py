@@ -17,6 +17,7 @@ class Status(IntEnum):
     ARRIVED = 1  # it touched its goal disc
     ENDED = 2  # its attempt ended (contact rule END)
     FAILED = 3  # its navigator failed: it does not move, and its episode counts as a failure
+    WAITING = 4  # it has not entered the arena yet: it has no body
 
 
 @dataclass(frozen=True)

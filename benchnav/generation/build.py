@@ -7,7 +7,7 @@ from zlib import crc32
 
 import numpy as np
 
-from benchnav.arena.agent_bodies import PLAIN_BODY
+from benchnav.arena.agent_bodies import NO_LIMITS, PLAIN_BODY
 from benchnav.arena.agents import Agents, Dynamics, Role
 from benchnav.arena.body import Body
 from benchnav.arena.noise import EdgeNoise, NeighbourNoise, Noise, OdometryNoise, RayNoise
@@ -17,6 +17,7 @@ from benchnav.arrays import AnyArray, BoolArray
 from benchnav.errors import UnsolvableError, UsageError, did_you_mean
 from benchnav.generation.clearance import Barrier, barrier, joined
 from benchnav.generation.dynamic_obstacles import check_clear, fixed_bodies, is_fixed, placed_bodies
+from benchnav.generation.entry import draw_entries
 from benchnav.generation.footprints import draw_bodies
 from benchnav.generation.motion_law import place_at_start
 from benchnav.generation.placement import Fault, NoPlaceError, Part
@@ -38,7 +39,8 @@ from benchnav.scenario.terms import SPLITS, Rays
 from benchnav.text.plural import counted
 
 MAX_ATTEMPTS = 100
-_LAYOUT, _STATIC, _ELSEWHERE, _DYNAMIC, _TEAM, _BODY, _RECORDING = range(7)  # streams of one draw
+# streams of one draw
+_LAYOUT, _STATIC, _ELSEWHERE, _DYNAMIC, _TEAM, _BODY, _RECORDING, _ENTRY = range(8)
 
 
 def build(scenario: Scenario, split: str, seed: int) -> World:
@@ -202,7 +204,8 @@ class _Draw:
                 continue
             rng = self.stream(_BODY, i)
             count = int(sample(team.count, rng))
-            columns.append(_numbers(team, count, rng))
+            enters = draw_entries(team.enters, count, self.stream(_ENTRY, i))
+            columns.append({**_numbers(team, count, rng), "enters": enters})
             reach = team.outer_radius[1]
             spaces = [self.prepared.space(structure, now, reach)]
             if later is not None:
@@ -210,8 +213,9 @@ class _Draw:
             radii = columns[i]["radius"]
             try:
                 place_team(
-                    team, radii, crowd, scenario.bounds, spaces, there, self.stream(_TEAM, i)
-                )
+                    team, radii, enters, crowd, scenario.bounds, spaces, there,
+                    self.stream(_TEAM, i),
+                )  # fmt: skip
             except NoPlaceError as reason:
                 reason.team = i
                 raise
@@ -242,7 +246,7 @@ def _numbers(team: Team, count: int, rng: np.random.Generator) -> dict[str, AnyA
 def _limits(team: Team, count: int, rng: np.random.Generator) -> dict[str, AnyArray]:
     """Draw the columns (count,) of `AgentBodies` that the team gives."""
     drawn: dict[str, AnyArray] = {}
-    for name in PLAIN_BODY:
+    for name in NO_LIMITS:
         limit = getattr(team, name, getattr(team.dynamics, name, None))
         if isinstance(limit, bool):
             drawn[name] = np.full(count, limit)

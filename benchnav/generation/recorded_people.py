@@ -33,7 +33,11 @@ class People:
     tracks: tuple[Track, ...]  # of those who are present within the horizon; places in metres
     begin: float  # [s] in the recording at t = 0
     replaced: Track | None  # of the person that the robot replaces
-    reacting: tuple[Track, ...]  # those of `tracks` who are agents
+    reacting: tuple[Track, ...]  # those of `tracks` who are agents: all or none
+
+    def enters(self, track: Track) -> float:
+        """Return when [s] a person appears; 0 for those that are present at the begin."""
+        return max(float(track.time[0]) - self.begin, 0.0)
 
 
 def read_people(scenario: Scenario) -> tuple[Track, ...]:
@@ -99,8 +103,7 @@ def draw_people(
             f"{scenario.folder / recording.file}:1: at most {MAX_OBSTACLES} people may be present"
             f" within the horizon of {scenario.clock.horizon:g} s; there are {len(others)}."
         )
-    here = others if recording.driver is not None else ()
-    return People(others, begin, replaced, tuple(t for t in here if t.time[0] <= begin))
+    return People(others, begin, replaced, others if recording.driver is not None else ())
 
 
 def people_bodies(scenario: Scenario, people: People) -> list[Body]:
@@ -123,7 +126,7 @@ def with_people(scenario: Scenario, people: People | None) -> Scenario:
     teams = [_placed(team, people.replaced) for team in scenario.teams]
     recording = scenario.recording
     if people.reacting and recording is not None and recording.driver is not None:
-        points = tuple(_point(place_at(track, people.begin)) for track in people.reacting)
+        points = tuple(_point(start_of(track, people.begin)) for track in people.reacting)
         goals = tuple(_point(track.place[-1]) for track in people.reacting)
         teams.append(
             Team(
@@ -142,26 +145,27 @@ def add_reacting(people: People, team: Team, crowd: Crowd) -> dict[str, FloatArr
     Their desired speed is the mean of their track, and their largest is 1.3 times as high
     (Helbing and Molnár 1995).
 
-    Raises NoPlaceError if one of them touches an agent at the start.
+    Raises NoPlaceError if one of them touches an agent at t = 0.
     """
     radius: float = team.radius  # type: ignore[assignment] # it is a plain number
-    given, reach = crowd.start.copy(), crowd.radius + radius
+    given, _, others = crowd.entering(0.0)
     for track in people.reacting:
-        start = place_at(track, people.begin)
-        if (np.sqrt(np.sum((given - start) ** 2, axis=1)) <= reach).any():
+        start, enters = start_of(track, people.begin), people.enters(track)
+        apart = np.sqrt(np.sum((given - start) ** 2, axis=1))
+        if enters == 0.0 and (apart <= others + radius).any():
             raise NoPlaceError(f"id {track.number} of the recording touches an agent at the start")
-        crowd.add(start, track.place[-1], radius)
+        crowd.add(start, track.place[-1], radius, enters)
     speed = np.array([max(mean_speed(track), _SLOWEST) for track in people.reacting])
     return {
         "radius": np.full(len(speed), radius), "max_speed": _TOP * speed,
         "preferred_speed": speed, "max_turn_rate": np.full(len(speed), 2.5),
-        "heading": np.zeros(len(speed)),
+        "heading": np.zeros(len(speed)), "enters": crowd.enters[len(crowd.enters) - len(speed) :],
     }  # fmt: skip
 
 
-def place_at(track: Track, time: float) -> FloatArray:
-    """Return the place (2,) [m] of a person at ``time`` [s] within its track."""
-    return np.array([np.interp(time, track.time, track.place[:, k]) for k in (0, 1)])
+def start_of(track: Track, begin: float) -> FloatArray:
+    """Return the place (2,) [m] of a person at ``begin`` [s], or where it appears later."""
+    return np.array([np.interp(begin, track.time, track.place[:, k]) for k in (0, 1)])
 
 
 def mean_speed(track: Track) -> float:

@@ -36,12 +36,21 @@ class Crowd:
     start: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
     goal: FloatArray = field(default_factory=lambda: np.zeros((0, 2)))
     radius: FloatArray = field(default_factory=lambda: np.zeros(0))
+    enters: FloatArray = field(default_factory=lambda: np.zeros(0))
 
-    def add(self, start: FloatArray, goal: FloatArray, radius: float) -> None:
+    def add(self, start: FloatArray, goal: FloatArray, radius: float, enters: float = 0.0) -> None:
         """Add one agent."""
         self.start = np.concatenate((self.start, start[None]))
         self.goal = np.concatenate((self.goal, goal[None]))
         self.radius = np.concatenate((self.radius, (radius,)))
+        self.enters = np.concatenate((self.enters, (enters,)))
+
+    def entering(self, time: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return starts, goals (N, 2) and radii (N,) [m] of the agents that enter at ``time``."""
+        chosen = self.enters == time
+        if chosen.all():
+            return self.start, self.goal, self.radius
+        return self.start[chosen], self.goal[chosen], self.radius[chosen]
 
 
 def draw_numbers(scalar: Scalar, count: int, rng: np.random.Generator) -> FloatArray:
@@ -54,6 +63,7 @@ def draw_numbers(scalar: Scalar, count: int, rng: np.random.Generator) -> FloatA
 def place_team(
     team: Team,
     radii: FloatArray,
+    enters: FloatArray,
     crowd: Crowd,
     bounds: Extent,
     spaces: Sequence[Space],
@@ -62,9 +72,13 @@ def place_team(
 ) -> None:
     """Add the agents of a team to the crowd.
 
+    Starts and random goals are apart from those of agents that enter at the same time; starts at
+    t = 0 are also clear of dynamic obstacles.
+
     Args:
         team: as in the scenario.
         radii: (N,) of its agents [m].
+        enters: (N,) [s] when they enter.
         crowd: the agents placed before.
         bounds: of the arena [m].
         spaces: free space of this team, one for each arrangement of the static obstacles.
@@ -78,9 +92,10 @@ def place_team(
     for k, radius in enumerate(radii):
         subject = f"of teams[{team.name}] agent {k + 1} of {len(radii)}"
         place = _Placing(
-            team, k, len(radii), float(radius), crowd, bounds, spaces, bodies, rng, stands
-        )
-        crowd.add(*place.find(subject), float(radius))
+            team, k, len(radii), float(radius), float(enters[k]), crowd, bounds, spaces, bodies,
+            rng, stands,
+        )  # fmt: skip
+        crowd.add(*place.find(subject), float(radius), float(enters[k]))
 
 
 @dataclass
@@ -129,6 +144,7 @@ class _Placing:
     number: int
     count: int
     radius: float
+    enters: float
     crowd: Crowd
     bounds: Extent
     spaces: Sequence[Space]
@@ -184,10 +200,10 @@ class _Placing:
 
     def first_start(self, points: FloatArray) -> int:
         """Return the index of the first of the points (N, 2) that can be the start; -1: none."""
-        crowd, gap = self.crowd, self.radius + self.team.start.separation
-        k = -1
+        gap, k = self.radius + self.team.start.separation, -1
+        starts, _, radius = self.crowd.entering(self.enters)
         while True:
-            k = next_apart(k + 1, points, points[0], 0.0, crowd.start, crowd.radius, gap)
+            k = next_apart(k + 1, points, points[0], 0.0, starts, radius, gap)
             if k < 0 or self._start_is_free(points[k : k + 1], gap):
                 return k
 
@@ -197,7 +213,7 @@ class _Placing:
         beside = isinstance(team.start, CircleStart) and team.start.clear_of_goals
         if beside and next_apart(0, point, point[0], 0.0, crowd.goal, crowd.radius, gap) < 0:
             return False
-        if first_clear(POINT, point, self.bodies, gap) < 0:
+        if self.enters == 0.0 and first_clear(POINT, point, self.bodies, gap) < 0:
             return False
         home = self._labels(point)
         free = min(home) >= 0
@@ -210,7 +226,7 @@ class _Placing:
         return self.ends.count(home, self._labels(goal))
 
     def goal(self, start: FloatArray, subject: str) -> FloatArray:
-        goal, crowd = self.team.goal, self.crowd
+        goal = self.team.goal
         if isinstance(goal, AntipodalGoal | ShiftedGoal):
             return _bound_goals(goal, start)
         if isinstance(goal, RecordedGoal):
@@ -222,12 +238,12 @@ class _Placing:
                 lambda n: point, lambda points: self._reaches(home, points) - 1, subject, (1,)
             )
 
+        _, goals, radius = self.crowd.entering(self.enters)
+
         def first(points: FloatArray) -> int:
             least, k = goal.min_distance, -1
             while True:
-                k = next_apart(
-                    k + 1, points, start, least, crowd.goal, crowd.radius, self.radius
-                )  # fmt: skip
+                k = next_apart(k + 1, points, start, least, goals, radius, self.radius)
                 if k < 0 or self._reaches(home, points[k : k + 1]):
                     return k
 
@@ -281,7 +297,7 @@ def fixed_places(team: Team, bounds: Extent) -> FloatArray:
         empty = Barrier(np.zeros((0, 5)), np.zeros(1, np.int64), np.zeros(0, np.bool_))
         for k in range(most):
             search = _Placing(
-                team, k, most, 0.0, empty_crowd, bounds, (), empty, unused, places[:0]
+                team, k, most, 0.0, 0.0, empty_crowd, bounds, (), empty, unused, places[:0]
             )
             places = np.vstack([places, search.starts(1)])
     if isinstance(team.goal, AntipodalGoal | ShiftedGoal):

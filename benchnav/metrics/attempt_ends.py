@@ -6,7 +6,7 @@ import numpy as np
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import BoolArray, FloatArray
-from benchnav.episode.episode import Episode
+from benchnav.episode.episode import Episode, Status
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.metrics.success import stuck
 
@@ -87,6 +87,8 @@ def _final_states(episode: Episode) -> list[str]:
         elif found.active_at_end[agent]:
             ending = "stuck" if still[agent] else "moving"
             words.append(f"timed out at {end:.1f} s, {ending}")
+        elif episode.status[-1, agent] == int(Status.WAITING):
+            words.append("did not enter")
         else:
             words.append("")
     return words

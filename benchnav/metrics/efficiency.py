@@ -15,8 +15,8 @@ _YOKOYAMA = "Yokoyama et al. 2021, Success weighted by completion time"
 
 @metric(title="Time until first arrival", unit="s", better="lower", low=0.0, conditional=True)
 def time_to_goal(episode: Episode) -> FloatArray:
-    """(A,) [s] time of the first arrival; NaN for agents that never arrive."""
-    return analyse(episode).arrival.copy()
+    """(A,) [s] time from the entry to the first arrival; NaN for agents that never arrive."""
+    return _time_to_goal(episode)
 
 
 @metric(title="Way travelled", unit="m", better=None, low=0.0)
@@ -82,7 +82,7 @@ def sct(episode: Episode) -> FloatArray:
     """
     found = analyse(episode)
     best = found.geodesic / episode.world.agents.preferred_speed
-    time = np.where(found.success, found.arrival, best)
+    time = np.where(found.success, _time_to_goal(episode), best)
     return found.success * _share(best, time)
 
 
@@ -98,6 +98,12 @@ def makespan(episode: Episode, members: BoolArray) -> float:
     """[s] arrival time of the last of the members (A,); NaN unless all arrive."""
     times = analyse(episode).arrival[members]
     return float(times.max()) if len(times) else math.nan
+
+
+def _time_to_goal(episode: Episode) -> FloatArray:
+    """Return times (A,) [s] from the entry, at 0 for all evaluated agents, to the arrival."""
+    found = analyse(episode)
+    return found.arrival - found.trajectories.begin
 
 
 def _share(best: FloatArray, taken: FloatArray) -> FloatArray:

@@ -184,5 +184,6 @@ def _each(episode: Episode, measure: Callable[[FloatArray, float], float]) -> Fl
     found = analyse(episode)
     values = np.full(len(found.arrival), math.nan)
     for agent, velocity in found.smooth_velocities.items():
-        values[agent] = measure(velocity, float(found.trajectories.end[agent]))
+        t = found.trajectories
+        values[agent] = measure(velocity, float(t.end[agent] - t.begin[agent]))
     return values

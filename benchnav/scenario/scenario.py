@@ -14,6 +14,7 @@ from benchnav.config.validation import FieldError
 from benchnav.errors import did_you_mean
 from benchnav.scenario.base import MAX_NAME, NAME_PATTERN, Bounds, Spec, inside
 from benchnav.scenario.canonical import added_field, canonical
+from benchnav.scenario.entry import enter_together, first_entry
 from benchnav.scenario.law import RecordedTrack
 from benchnav.scenario.noise import NoiseSpec
 from benchnav.scenario.obstacle import DynamicGroup, StaticGroup
@@ -290,8 +291,11 @@ def _recording_problems(scenario: Scenario) -> Iterator[Problem]:
 
 
 def _team_problems(scenario: Scenario) -> Iterator[Problem]:
-    names = [team.name for team in scenario.teams]
+    names, horizon = [team.name for team in scenario.teams], scenario.clock.horizon
     for i, team in enumerate(scenario.teams):
+        if first_entry(team.enters) >= horizon:
+            text = f"must be before the horizon of {horizon:g} s; the first agent enters at"
+            yield ("teams", i, "enters"), f"{text} {first_entry(team.enters):g} s"
         yield from _namesake_problems(scenario.teams[:i], team, i)
         for j, other in enumerate(team.ignores):
             if other not in names:
@@ -332,6 +336,8 @@ def _room_problems(scenario: Scenario) -> Iterator[Problem]:
                     f"the region holds at most {room} agents of radius {radius:.3g} m{apart},"
                     " in the densest packing"
                 )
+                if room > 0 and not enter_together(team.enters):
+                    continue
                 if room == 0:
                     text = f"no circle of radius {radius:.3g} m fits into the region and the bounds"
             else:

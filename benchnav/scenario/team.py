@@ -9,6 +9,7 @@ from benchnav.config.validation import FieldError
 from benchnav.scenario.base import Distance, Length, Name, Point, Spec
 from benchnav.scenario.canonical import added_field, label_field
 from benchnav.scenario.dynamics import Ackermann, DifferentialDrive, DynamicsSpec, Holonomic
+from benchnav.scenario.entry import Entry
 from benchnav.scenario.footprint import DiscFootprint, Footprint, Range
 from benchnav.scenario.sampling.region import Region
 from benchnav.scenario.sampling.sampler import Count, PositiveScalar, Scalar, support
@@ -225,6 +226,13 @@ class Team(Spec):
     heading: Literal["goal"] | Scalar = Field(
         "goal", description="heading [rad] at the start; `goal`: towards the goal"
     )
+    enters: Entry = added_field(
+        0.0,
+        "0.3.0",
+        description="time [s] at which background agents enter the arena: one for all, or a"
+        " distribution, a list with a time for each agent, or a stream. An agent whose start is"
+        " occupied waits until it is free",
+    )
     driver: Annotated[
         NavigatorChoice, BeforeValidator(named, json_schema_input_type=str | NavigatorChoice)
     ] = Field(
@@ -282,9 +290,23 @@ class Team(Spec):
                     ("preferred_speed",), f"must be ≤ max_speed ({top[1]:g}); got {preferred[1]:g}"
                 )
         self._check_dynamics()
+        self._check_entry(most)
         if self.evaluated and self.driver.params:
             raise FieldError(("driver",), "takes no parameters if it is `evaluated`")
         return self
+
+    def _check_entry(self, most: float) -> None:
+        if self.evaluated and self.enters != 0.0:
+            raise FieldError(
+                ("enters",),
+                "must be 0, or left out, for agents of the evaluated navigator: only agents with a"
+                " `driver` can enter later",
+            )
+        if isinstance(self.enters, tuple) and len(self.enters) < most:
+            raise FieldError(
+                ("enters",),
+                f"must have a time for each of up to {most:g} agents; got {len(self.enters)}",
+            )
 
     def _check_dynamics(self) -> None:
         drive, fastest = self.dynamics, support(self.max_speed)[1]

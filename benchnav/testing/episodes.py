@@ -46,6 +46,7 @@ class Walk:
     hits: tuple[Hit, ...] = ()
     ends: float | None = None  # [s] from which it is ENDED, at a decision time
     fails: float | None = None  # [s] from which it is FAILED, at a decision time
+    enters: float = 0.0  # [s] from which it is in the arena, at a decision time
 
 
 @dataclass(frozen=True)
@@ -141,7 +142,7 @@ def record(walks: Sequence[Walk], setting: Setting | None = None) -> Episode:
     steps = min(world.clock.steps, max(1, int(np.ceil(last / s.dt - 1e-9))))
     times: FloatArray = np.arange(steps + 1, dtype=np.float64) * s.dt
     position = np.stack(
-        [w.path(np.minimum(times, at)) for w, at in zip(walks, stop, strict=True)], axis=1
+        [w.path(np.clip(times, w.enters, at)) for w, at in zip(walks, stop, strict=True)], axis=1
     )
     status = np.stack([_status(w, at, times) for w, at in zip(walks, arrival, strict=True)], axis=1)
     arrival[status[-1] != int(Status.ARRIVED)] = np.nan
@@ -163,7 +164,7 @@ def resampled(walks: Sequence[Walk], setting: Setting, factor: int) -> Episode:
 
 
 def _world(walks: Sequence[Walk], s: Setting) -> World:
-    start = np.vstack([w.path(np.zeros(1)) for w in walks])
+    start = np.vstack([w.path(np.array([w.enters])) for w in walks])
     ones = np.ones(len(walks))
     speed = np.array([w.preferred_speed for w in walks])
     agents = Agents(
@@ -171,7 +172,7 @@ def _world(walks: Sequence[Walk], s: Setting) -> World:
         radius=np.array([w.radius for w in walks]), max_speed=2.0 * speed, preferred_speed=speed,
         max_turn_rate=ones, dynamics=np.full(len(walks), int(Dynamics.HOLONOMIC), np.int8),
         role=np.array([w.role for w in walks], np.int8), team=np.array([w.team for w in walks]),
-        driver=np.array([w.driver for w in walks]),
+        driver=np.array([w.driver for w in walks]), enters=np.array([w.enters for w in walks]),
     )  # fmt: skip
     teams = 1 + max(w.team for w in walks)
     return World(
@@ -186,7 +187,7 @@ def _arrival(walk: Walk, s: Setting) -> float:
     """Return when [s] the walk first is within goal tolerance, to a microsecond; NaN if never."""
     times = np.linspace(0.0, s.horizon, 20001)
     away = np.hypot(*(walk.path(times) - np.array(walk.goal)).T)
-    inside = np.flatnonzero(away <= s.rules.goal_tolerance)
+    inside = np.flatnonzero((away <= s.rules.goal_tolerance) & (times >= walk.enters))
     if len(inside) == 0:
         return float("nan")
     high, low = times[inside[0]], times[max(0, inside[0] - 1)]
@@ -210,6 +211,7 @@ def _status(walk: Walk, arrival: float, times: FloatArray) -> np.ndarray:
     if known:
         when, kind = min(known)
         status[times >= when - 1e-9] = int(kind)
+    status[times < walk.enters - 1e-9] = int(Status.WAITING)
     return status
 
 

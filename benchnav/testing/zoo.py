@@ -140,13 +140,24 @@ def with_company(speed: float) -> Episode:
     return record(walks, setting)
 
 
+def late() -> Episode:
+    """Return an episode in which one background agent enters later, and another not at all."""
+    walks = (
+        Walk(wave((-8.0, 0.0), 1.0, 0.4, 6.0), (1.0, 0.0)),
+        Walk(lambda t: np.array([1.0, 5.0]) + np.outer(t - 4.0, [-0.6, -0.9]), (-1.4, 1.4),
+             driver=1, enters=4.0),
+        Walk(straight((-6.0, 0.0), (0.0, 0.0)), (9.0, 0.0), driver=1, enters=15.0),
+    )  # fmt: skip
+    return record(walks, Setting(bounds=ROOM, solids=(room(ROOM),)))
+
+
 @cache
 def zoo() -> dict[str, Episode]:
     """Return the episodes by name. They are built once and read-only."""
     episodes = {
         "smooth": smooth().episode(), "crowd": crowd().episode(), "idle": idle(),
         "failing": failing(), "crashing": crashing(), "company": with_company(0.5),
-        "errand": errand(crashes=False), "broken off": errand(crashes=True),
+        "errand": errand(crashes=False), "broken off": errand(crashes=True), "late": late(),
     }  # fmt: skip
     for episode in episodes.values():
         for name in ("position", "heading", "status", "requested", "executed", "body_position",

@@ -114,21 +114,23 @@ class EpisodeFilm:
         cut, dt = self._trajectories, self._episode.world.clock.dt
         first, last = round(self._drawn / dt), round(until / dt)
         marks = np.arange(math.floor(self._drawn / MARK) + 1, until / MARK + 1e-9) * MARK
-        places = positions_at(cut, marks)
+        places, begin = positions_at(cut, marks), cut.begin
         for a, color in enumerate(self._colors):
-            piece = cut.position[a, first : min(last, int(cut.last[a])) + 1]
+            entered = max(first, round(begin[a] / dt))
+            piece = cut.position[a, entered : min(last, int(cut.last[a])) + 1]
             if len(piece) > 1:
                 strength = 0.4 + 0.6 * min(1.0, until / max(float(cut.end[a]), dt))
                 self._trails.line(piece, shade(color, strength), 1.6)
             for place, mark in zip(places[a], marks, strict=True):
-                if mark <= cut.end[a]:
+                if begin[a] <= mark <= cut.end[a]:
                     self._trails.disc(place, 0.0, fill=color, least=2.0)
         self._drawn = until
 
     def _draw_ends(self, picture: Canvas, time: float) -> None:
         """Draw a cross where an attempt ended without arrival."""
         cut = self._trajectories
-        lost = (self._episode.status[-1] != int(Status.ARRIVED)) & (cut.end <= time + 1e-9)
+        lost = ~np.isin(self._episode.status[-1], (int(Status.ARRIVED), int(Status.WAITING)))
+        lost &= cut.end <= time + 1e-9
         for a in np.flatnonzero(lost):
             picture.cross(cut.position[a, -1], self._colors[a], arm=5.0, width=2.5)
 

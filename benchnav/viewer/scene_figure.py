@@ -16,7 +16,7 @@ from benchnav.drawing.palette import FILL, INK, agent_color
 from benchnav.episode.episode import Episode, Status
 from benchnav.errors import UsageError
 from benchnav.metrics.quantities.episode_analysis import analyse
-from benchnav.metrics.quantities.trajectory import positions_at, present_at
+from benchnav.metrics.quantities.trajectory import entered_at, positions_at, present_at
 from benchnav.viewer.picture import blank
 
 if TYPE_CHECKING:
@@ -34,11 +34,11 @@ _LENGTHS = (1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0)  # [m] of scale bars
 
 
 def world_figure(world: World) -> Figure:
-    """Return a world before it starts: agents at their starts, rings at their goals."""
+    """Return a world at t = 0: agents at their starts, rings at the goals of all."""
     figure = blank(_SINGLE, _SINGLE / aspect(world) + _FOOT)
     axes = figure.subplots()
     frame = draw_arena(axes, world, _first_places(world))
-    draw_agents(axes, world, world.agents.start, world.agents.heading)
+    draw_agents(axes, world, world.agents.start, world.agents.heading, world.agents.enters <= 0.0)
     draw_goals(axes, world)
     _tidy(axes, frame)
     _draw_scale(axes, world)
@@ -149,16 +149,16 @@ def draw_trails(axes: Axes, episode: Episode, until: float) -> None:
     from matplotlib.colors import to_rgba
 
     trajectories, dt = analyse(episode).trajectories, episode.world.clock.dt
-    arrived = episode.status[-1] == int(Status.ARRIVED)
-    for a in range(len(trajectories)):
+    arrived, begin = episode.status[-1] == int(Status.ARRIVED), trajectories.begin
+    for a in np.flatnonzero(entered_at(trajectories, np.array([until]))[:, 0]):
         last = min(int(trajectories.last[a]), round(until / dt))
-        points = trajectories.position[a, : last + 1]
+        points = trajectories.position[a, round(begin[a] / dt) : last + 1]
         pieces = list(np.stack([points[:-1], points[1:]], axis=1))
         color = agent_color(episode.world, a)
         shades = [to_rgba(color, alpha) for alpha in np.linspace(0.3, 1.0, max(len(pieces), 1))]
         axes.add_collection(LineCollection(pieces, colors=shades, linewidths=1.3, zorder=3.5))
         times = np.arange(MARK, min(trajectories.end[a], until) + 1e-9, MARK)
-        marks = positions_at(trajectories, times)[a]
+        marks = positions_at(trajectories, times[times >= begin[a]])[a]
         axes.plot(*marks.T, ".", color=color, markersize=4, zorder=3.6)
         if not arrived[a] and until >= trajectories.end[a]:
             axes.plot(*points[-1], "x", color=color, markersize=7, markeredgewidth=2, zorder=6)

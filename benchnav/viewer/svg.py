@@ -17,15 +17,20 @@ WIDTH = 480  # of the picture [pixels]
 def world_svg(world: World, marks: Iterable[str] = ()) -> str:
     """Return a picture of a world: walls, obstacles, agents at their starts, rings at goals.
 
-    ``marks`` are SVG elements to draw above, in metres with y upwards.
+    Starts of agents that enter later are not filled. ``marks`` are SVG elements to draw above, in
+    metres with y upwards.
     """
     bodies = Simulation([world]).body_position[0]
-    starts = _agents(world, world.agents.start, world.agents.heading)
+    late = world.agents.enters > 0.0
+    starts = _agents(world, world.agents.start, world.agents.heading, late)
     return _svg(world, [*_scene(world, bodies), *_goals(world), *starts, *marks])
 
 
 def episode_svg(episode: Episode) -> str:
-    """Return a picture of an episode: the path of every agent, and the agent at its last place."""
+    """Return a picture of an episode: the path of every agent, and the agent at its last place.
+
+    Agents that did not enter are left out.
+    """
     world = episode.world
     paths = [
         f'<polyline points="{_points(_thinned(episode.position[:, a]))}" fill="none"'
@@ -33,7 +38,8 @@ def episode_svg(episode: Episode) -> str:
         for a in range(len(world.agents))
     ]
     failed = episode.status[-1] != int(Status.ARRIVED)
-    ends = _agents(world, episode.position[-1], episode.heading[-1], failed)
+    entered = episode.status[-1] != int(Status.WAITING)
+    ends = _agents(world, episode.position[-1], episode.heading[-1], failed, entered)
     scene = _scene(world, episode.body_position[-1])
     return _svg(world, [*scene, *_goals(world), *paths, *ends])
 
@@ -83,11 +89,17 @@ def _goals(world: World) -> Iterator[str]:
 
 
 def _agents(
-    world: World, position: FloatArray, heading: FloatArray, hollow: BoolArray | None = None
-) -> Iterator[str]:
-    """Yield agents at ``position`` (A, 2) [m]; agents in ``hollow`` (A,) are not filled."""
+    world: World, position: FloatArray, heading: FloatArray, hollow: BoolArray,
+    drawn: BoolArray | None = None,
+) -> Iterator[str]:  # fmt: skip
+    """Yield agents at ``position`` (A, 2) [m], those in ``hollow`` (A,) not filled.
+
+    ``drawn`` (A,) are the agents to draw; None: all.
+    """
     for a, (x, y) in enumerate(position):
-        fill = "#fff" if hollow is not None and hollow[a] else agent_color(world, a)
+        if drawn is not None and not drawn[a]:
+            continue
+        fill = "#fff" if hollow[a] else agent_color(world, a)
         shape = outline(world.agents, a)
         body = f'<circle cx="{x:.3f}" cy="{y:.3f}" r="{world.agents.radius[a]:.3f}"'
         if shape is not None:

@@ -27,13 +27,15 @@ WORLD = _record(
     origin_x="f8", origin_y="f8", side="f8",
     substeps="i8", steps="i8", steps_done="i8", revision="i8", contact="i8", nx="i8", ny="i8",
     grid="i8", first="i8", last="i8", agents="i8", bodies="i8", closed="i8",
+    waiting="i8",
     vanish_on_arrival="?", vanish_on_end="?", charge_both="?", running="?", limited="?",
     shaped="?",
 )  # fmt: skip
 
 # core_length, core_width: half the core's extent along and across the axis (the heading); a disc
 # is not `shaped`, its core is a point, and its axis is not used
-# (B, A), padding has present = False; fields that others read come first, in one cache line
+# (B, A), padding has present = False; fields that others read come first, in one cache line;
+# `queued` of record n is the agent that is the n-th to enter
 AGENT = _record(
     x="f8", y="f8", vx="f8", vy="f8", radius="f8", ci="i4", cj="i4", team="i4",
     spot="i4", status="i1", present="?", nonholonomic="?", evaluated="?", turning="?", halted="?",
@@ -41,6 +43,7 @@ AGENT = _record(
     heading="f8", goal_x="f8", goal_y="f8", arrival="f8", max_speed="f8", max_turn_rate="f8",
     preferred_speed="f8", drive_0="f8", drive_1="f8", tau="f8", code="i8", home="i8", hits="i8",
     core_length="f8", core_width="f8", rounding="f8", inner_radius="f8", axis_x="f8", axis_y="f8",
+    enters="f8", queued="i8",
 )  # fmt: skip
 
 # (B, A), read in worlds that are `limited`: limits of motion, and the steering angle [rad]

@@ -13,6 +13,7 @@ from benchnav.geometry.hash_grid import hash_table
 from benchnav.threads import run_rows
 from benchnav.world.bodies import stack_bodies, start_bodies, top_speeds
 from benchnav.world.contacts import RELEASE
+from benchnav.world.entry import SOON, queue
 from benchnav.world.fixed import stack_fixed
 from benchnav.world.motion_limits import limit_records
 from benchnav.world.records import AGENT as AGENT_RECORD
@@ -69,7 +70,7 @@ class Simulation:
         self.heading: FloatArray = field(agents, "heading")  # (B, A) [rad] in [-pi, pi)
         self.goal: FloatArray = field(agents, "goal_x", 2)  # (B, A, 2) [m]
         self.status: ByteArray = field(agents, "status")  # (B, A) of Status
-        self.present: BoolArray = field(agents, "present")  # (B, A) False: padding or vanished
+        self.present: BoolArray = field(agents, "present")  # (B, A) False: padding, or no body
         self.arrival: FloatArray = field(agents, "arrival")  # (B, A) [s], NaN: not arrived
         self.body_position: FloatArray = field(bodies, "x", 2)  # (B, M, 2) [m]
         self.body_velocity: FloatArray = field(bodies, "vx", 2)  # (B, M, 2) [m/s]
@@ -199,7 +200,9 @@ def _agent_records(worlds: Sequence[World]) -> AnyArray:
         for name in plain:
             row[name] = getattr(agents, name)
         row["nonholonomic"] = agents.dynamics != int(Dynamics.HOLONOMIC)
-        row["evaluated"], row["present"] = agents.evaluated, True
+        row["enters"], row["queued"] = agents.enters, queue(agents.enters)
+        row["evaluated"], row["present"] = agents.evaluated, agents.enters <= SOON
+        row["status"] = np.where(row["present"], int(Status.ACTIVE), int(Status.WAITING))
         _write_footprints(agents, row)
     return records
 
@@ -240,6 +243,7 @@ def _world_records(
         row["running"] = bool(world.agents.evaluated.any())
         row["limited"] = world.agents.limited
     records["shaped"] = agents["shaped"].any(axis=1)
+    records["waiting"] = (agents["status"] == int(Status.WAITING)).sum(axis=1)
     speed, widest = agents["max_speed"].max(axis=1), agents["radius"].max(axis=1)
     top_speeds(bodies, records["bodies"], knots, speed)
     records["widest"] = widest

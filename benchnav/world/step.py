@@ -20,6 +20,7 @@ from benchnav.world.bodies import body_at, is_away
 from benchnav.world.contacts import MAX_HITS, follow_up, touch
 from benchnav.world.crowd import ROWS, advance_crowd, find_all_in_crowd, sort_spots
 from benchnav.world.dynamics import limited, planar_velocity
+from benchnav.world.entry import admit
 from benchnav.world.fixed import cell_at
 from benchnav.world.footprint import set_axes
 from benchnav.world.motion_limits import within_limits
@@ -110,6 +111,8 @@ def step_world(
             )  # fmt: skip
         follow_up(end, world, agents, bodies, shapes, capsules, start, item, opened, closed)
     world.steps_done += 1
+    if world.waiting > 0:
+        admit(world, agents, bodies, shapes)
     world.running = goes_on(world, agents)
 
 

@@ -1,5 +1,6 @@
 """Worlds that start again in a row, and the decision process of their agents."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -363,3 +364,21 @@ def test_every_array_with_a_row_for_each_world_of_the_pool_has_one_for_each_row(
     by_world = {name for name in few if (few[name], all_[name]) == (5, 7)}
     assert {"agents", "hashed", "spots", "near", "position"} <= by_world
     assert {rows[name] for name in by_world} == {11}
+
+
+def test_agents_that_enter_later_are_driven_from_then_on():
+    drawn_world = drawn("crowd/circle-crossing", 1)[0]
+    enters = np.array([0.0, 0.0, 0.5, 0.5, 1.0, 99.0])
+    late = replace(drawn_world, agents=replace(drawn_world.agents, enters=enters))
+    batch = batch_of([late], 1, drivers=find("crowd/circle-crossing").driver_specs)
+    batch.reset(np.array([0]))
+    start, dt = batch.simulation.position[0].copy(), late.clock.dt
+    for k in range(8):
+        here = enters <= k * dt + 1e-9
+        assert batch.simulation.present[0].tolist() == here.tolist()
+        batch.step(np.full((1, 6, 2), -1.0))
+    moved = np.linalg.norm(batch.simulation.position[0] - start, axis=-1)
+    assert (moved[1:5] > 0.3).all()
+    assert moved[5] == 0.0
+    batch.reset(np.array([0]))
+    assert batch.simulation.present[0].tolist() == [True, True, False, False, False, False]

@@ -13,14 +13,16 @@ from benchnav.metrics.quantities.lowpass import LEAD, RATE, TAPS
 def cut(episode):
     """(last, end, position, duration, velocity, length) of `cut_paths`."""
     dt, states = episode.world.clock.dt, len(episode.position)
-    over = episode.status != int(Status.ACTIVE)
+    over = ~np.isin(episode.status, (int(Status.ACTIVE), int(Status.WAITING)))
     last = np.where(over.any(axis=0), over.argmax(axis=0), states - 1)
+    waits = (episode.status == int(Status.WAITING)).T
     until = np.minimum(np.arange(states), last[:, None])
     position = np.take_along_axis(episode.position.transpose(1, 0, 2), until[..., None], axis=1)
     before = np.maximum(last - 1, 0) * dt
     within = (episode.status[-1] == int(Status.ARRIVED)) & (episode.arrival >= before - 1e-9)
     end = np.where(within, np.fmin(episode.arrival, last * dt), last * dt)
     duration = np.diff(np.minimum(np.arange(states) * dt, end[:, None]), axis=1)
+    duration[waits[:, :-1]] = 0.0
     segment = np.diff(np.ascontiguousarray(position), axis=1)
     slow = duration < 1e-9
     velocity = np.where(slow[..., None], 0.0, segment / np.where(slow, 1.0, duration)[..., None])
@@ -85,12 +87,13 @@ def turning(episode):
 
 
 def smooth_velocity(t, agent):
-    last, end = int(t.last[agent]), float(t.end[agent])
-    middle = np.arange(last) * t.dt + 0.5 * t.duration[agent, :last]
-    times = np.arange(int(end * RATE + 1e-9) + 1) / RATE
+    first, last = 0 if t.enters is None else int(t.enters[agent]), int(t.last[agent])
+    begin, end = first * t.dt, float(t.end[agent])
+    middle = np.arange(first, last) * t.dt + 0.5 * t.duration[agent, first:last]
+    times = np.arange(int((end - begin) * RATE + 1e-9) + 1) / RATE + begin
     samples = np.zeros((2, len(times) + 3 * LEAD))
     for axis in range(2):
-        raw = np.interp(times, middle, t.velocity[agent, :last, axis])
+        raw = np.interp(times, middle, t.velocity[agent, first:last, axis])
         samples[axis, 2 * LEAD : 2 * LEAD + len(times)] = raw
         samples[axis, 2 * LEAD + len(times) :] = raw[-1]
     return np.stack([np.convolve(axis, TAPS, mode="valid") for axis in samples], axis=1)

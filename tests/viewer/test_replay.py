@@ -20,6 +20,7 @@ from benchnav.episode.episode import Status
 from benchnav.errors import StoreError, UsageError
 from benchnav.metrics.quantities.episode_analysis import analyse
 from benchnav.navigation import Navigator, Need
+from benchnav.testing.zoo import zoo
 from benchnav.viewer.replay.clearance import clearance
 from benchnav.viewer.replay.packing import packed, unpacked
 from benchnav.viewer.replay.page import replay_page
@@ -275,3 +276,17 @@ def test_a_replay_says_whether_its_readings_have_noise():
         exact = scene(played.record, agents, origin)["senses"]
         assert not exact["noisy"]
         assert "places" not in exact
+
+
+def test_an_agent_is_no_object_before_it_enters():
+    late = zoo()["late"]
+    content = scene(late, interesting(late))
+    entered = (late.status != int(Status.WAITING)).argmax(axis=0)
+    assert content["agents"]["enters"] == [0, int(entered[1]), len(late.position)]
+    assert content["agents"]["end"][2] == "did not enter"
+    gap = clearance(late, 0)
+    apart = np.linalg.norm(late.position[:, 1] - late.position[:, 0], axis=-1) - 0.6
+    wall = 8.0 - np.abs(late.position[:, 0, 1]) - 0.3
+    later = np.arange(len(gap)) >= entered[1]
+    assert np.allclose(gap[~later], np.minimum(wall, 12.0 + late.position[:, 0, 0] - 0.3)[~later])
+    assert (gap <= apart + 1e-9)[late.status[:, 1] == int(Status.ACTIVE)].all()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import benchnav
+from benchnav.testing.zoo import zoo
 from benchnav.viewer.replay.page import replay_page
 from benchnav.viewer.replay.scene import interesting, scene
 from tests.viewer.browser import DESKTOP, PHONE, in_browser, needs_chromium
@@ -210,3 +211,30 @@ def test_a_crowd_of_a_thousand_is_small_and_plays(tmp_path):
     """, tmp_path)  # fmt: skip
     print("frames a second:", frames["rate"])
     assert frames["rate"] > 2
+
+
+def test_an_agent_is_drawn_and_clicked_from_its_entry_on(tmp_path):
+    episode = zoo()["late"]
+    page = replay_page([scene(episode, interesting(episode))])
+    result = in_browser(page, READY + """
+      const view = replay.views[0], out = {};
+      const box = view.canvas.getBoundingClientRect(), { scale, x, y } = view.frame();
+      const at = (k) => [x + scale * view.at(1, k)[0], y - scale * view.at(1, k)[1]];
+      const ratio = window.devicePixelRatio || 1;
+      const pixel = ([px, py]) =>
+        [...view.context.getImageData(px * ratio, py * ratio, 1, 1).data].join(",");
+      for (const time of [1.0, 5.0]) {
+        replay.seek(time);
+        const [px, py] = at(time / view.scene.dt);
+        replay.select(view, -1);
+        await wait(0.1);
+        const painted = pixel([px, py]);
+        view.click({ offsetX: px, offsetY: py, clientX: box.left + px, clientY: box.top + py });
+        out[time] = [painted, document.querySelector(".side h2")?.textContent ?? ""];
+      }
+      return out;
+    """, tmp_path)  # fmt: skip
+    (before, none), (after, chosen) = result["1"], result["5"]
+    assert before != after
+    assert none != "Agent 1"
+    assert chosen == "Agent 1"

@@ -7,9 +7,11 @@ import pytest
 from PIL import Image
 
 import benchnav
-from benchnav.drawing.palette import TEAMS
+from benchnav.drawing.palette import TEAMS, agent_color
 from benchnav.errors import MissingExtraError, StoreError, UsageError
+from benchnav.testing.zoo import zoo
 from benchnav.viewer.animation import frame_times
+from benchnav.viewer.episode_film import EpisodeFilm
 from benchnav.viewer.scene_figure import episode_figure, world_figure
 
 pytest.importorskip("matplotlib")
@@ -120,3 +122,22 @@ def test_a_world_is_plotted(tmp_path):
         assert min(picture.size) > 300
     with pytest.raises(UsageError, match="must end in"):
         world.plot(tmp_path / "w.txt")
+
+
+def test_agents_that_enter_later_have_no_trail_mark_or_cross_before():
+    late = zoo()["late"]
+    for time, trails in ((2.0, 1), (6.0, 2), (None, 2)):
+        axes = episode_figure([late], [] if time is None else [time]).axes[0]
+        assert len(axes.collections) == trails
+        assert not [line for line in axes.lines if line.get_marker() == "x"]
+
+
+def test_a_film_shows_an_agent_from_its_entry_on():
+    late = zoo()["late"]
+    film = EpisodeFilm(late, np.array([24.0, 16.0]), 480)
+    color = np.array([int(agent_color(late.world, 1)[k : k + 2], 16) for k in (1, 3, 5)])
+
+    def painted(time):
+        return int((np.abs(film.frame(time).astype(int) - color).max(axis=-1) < 8).sum())
+
+    assert painted(2.0) < painted(5.0) - 20

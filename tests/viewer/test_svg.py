@@ -7,7 +7,8 @@ import numpy as np
 import benchnav
 from benchnav.arena import Kind
 from benchnav.drawing.palette import FILL
-from benchnav.viewer.svg import world_svg
+from benchnav.testing.zoo import zoo
+from benchnav.viewer.svg import episode_svg, world_svg
 from benchnav.world.simulation import Simulation
 
 CIRCLE = "{http://www.w3.org/2000/svg}circle"
@@ -36,3 +37,12 @@ def test_an_episode_has_the_path_of_every_agent():
     first = [path.get("points").split()[0] for path in paths]
     starts = np.round(world.record.agents.start, 3)
     assert first == [f"{x:.3f},{y:.3f}" for x, y in starts]
+
+
+def test_agents_that_enter_later_are_not_filled_and_those_that_did_not_are_left_out():
+    late = zoo()["late"]
+    assert world_svg(late.world).count('fill="#fff"') == 2
+    text = episode_svg(late)
+    assert 'fill="#fff"' not in text
+    x, y = late.world.agents.start[2]
+    assert (x, y) not in circles(text)

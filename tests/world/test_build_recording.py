@@ -83,10 +83,20 @@ def test_those_present_react_from_where_they_are(tmp_path):
     assert not world.bodies
 
 
-def test_people_that_come_later_follow_the_recording_even_if_others_react(tmp_path):
+def test_those_who_come_later_react_from_where_and_when_they_appear(tmp_path):
     world = build(scenario(tmp_path, ", replace: 1, driver: orca"), "test", 0)
-    assert len(world.agents) == 1
-    assert len(world.bodies) == 2
+    assert not world.bodies  # 9 comes after the horizon
+    np.testing.assert_array_equal(world.agents.start, [[0, 0], [5, 3], [2, -4]])
+    np.testing.assert_array_equal(world.agents.goal, [[5, 0], [0, 3], [2, 1]])
+    np.testing.assert_array_equal(world.agents.enters, [0, 1, 2])
+
+
+def test_those_who_come_later_may_appear_where_others_start(tmp_path):
+    """The robot replaces 1; 2 is where the robot starts, but one second later."""
+    close = {1: PEOPLE[1], 2: (2, (0.1, 0.1), (1.0, 0.0)), 3: (4, (0.1, 0.1), (1.0, 0.0))}
+    world = build(scenario(tmp_path, ", replace: 1, driver: orca", rows=close), "test", 0)
+    np.testing.assert_array_equal(world.agents.start, [[0, 0], [0.1, 0.1], [0.1, 0.1]])
+    np.testing.assert_array_equal(world.agents.enters, [0, 1, 2])
 
 
 def test_a_start_that_another_person_is_in_cannot_be_taken(tmp_path):
@@ -117,5 +127,5 @@ def test_recorded_people_are_people_whether_they_react_or_not(tmp_path):
     follows = build(scenario(tmp_path, ", replace: 2"), "test", 0)
     assert [len(part) for part in follows.people] == [0, 2]
     reacts = build(scenario(tmp_path, ", replace: 2, driver: social-force"), "test", 0)
-    assert [len(part) for part in reacts.people] == [1, 1]  # 3 appears later
+    assert [len(part) for part in reacts.people] == [2, 0]
     assert reacts.has_people

@@ -9,14 +9,16 @@ from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.navigation import Briefing, canonical_order
 
 MOST_STOPS = 16  # of a group in an episode
+TOGETHER = 2.0  # [s] within which members of a group enter (not from the paper)
 
 
 def form_groups(briefing: Briefing, shares: Sequence[float], reach: float) -> list[IntArray]:
     """Return groups of agent indices: every agent is in one group.
 
     A group forms around an agent, in random order, from the agents of its team that are in no
-    group yet and whose starts and goals are both within ``reach`` [m] of its own: those with
-    the smallest sum of both distances. Where too few are within reach, the group is smaller.
+    group yet, that enter at most `TOGETHER` before or after it, and whose starts and goals are
+    both within ``reach`` [m] of its own: those with the smallest sum of both distances. Where too
+    few are within reach, the group is smaller.
     The groups do not depend on how the agents are numbered.
 
     Args:
@@ -26,6 +28,7 @@ def form_groups(briefing: Briefing, shares: Sequence[float], reach: float) -> li
     """
     order = canonical_order(briefing)
     start, goal, team = briefing.start[order], briefing.goal[order], briefing.team[order]
+    enters = briefing.enters[order]
     free: BoolArray = np.ones(len(order), np.bool_)
     limits = np.cumsum(shares) / math.fsum(shares)
     groups = []
@@ -35,7 +38,8 @@ def form_groups(briefing: Briefing, shares: Sequence[float], reach: float) -> li
         size = 1 + int(np.searchsorted(limits[:-1], briefing.rng.random(), side="right"))
         apart, ends = _distance(start, start[rank]), _distance(goal, goal[rank])
         free[rank] = False
-        near = np.flatnonzero(free & (team == team[rank]) & (np.maximum(apart, ends) <= reach))
+        beside = (team == team[rank]) & (abs(enters - enters[rank]) <= TOGETHER)
+        near = np.flatnonzero(free & beside & (np.maximum(apart, ends) <= reach))
         nearest = near[np.argsort((apart + ends)[near], kind="stable")[: size - 1]]
         free[nearest] = False
         groups.append(order[np.sort(np.append(nearest, rank))])

@@ -105,7 +105,7 @@ def present(record: Record) -> BoolArray:
     gone = (final == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
     gone |= (final == int(Status.ENDED)) & (rules.on_end == Afterwards.VANISH)
     here: BoolArray = ~gone | (states <= analyse(record).trajectories.last)
-    return here
+    return here & (record.status != int(Status.WAITING))
 
 
 def _write_table(tables: "Iterator[pd.DataFrame]", out: Path, to: str) -> None:

@@ -103,25 +103,24 @@ class Episode:
     def to_pandas(self) -> "pd.DataFrame":
         """Return the trajectories: time, agent, x, y, heading, vx, vy, status.
 
-        One row for each agent and decision time, in metres, seconds and radians. (vx, vy) is
-        the mean velocity until the next row, 0 in the last one. The status is active, arrived,
-        ended or failed.
+        One row for each agent and decision time from its entry on, in metres, seconds and
+        radians. (vx, vy) is the mean velocity until the next row, 0 in the last one. The status
+        is active, arrived, ended or failed.
         """
         import pandas as pd
 
-        states, agents = self.record.status.shape
-        velocity = np.zeros((states, agents, 2))
-        velocity[:-1] = cut(self.record).velocity.transpose(1, 0, 2)
+        record = self.record
+        velocity = np.zeros(record.position.shape)
+        velocity[:-1] = cut(record).velocity.transpose(1, 0, 2)
         names = np.array([status.name.lower() for status in Status], dtype=object)
-        position = self.record.position
+        rows = state, agent = np.nonzero(record.status != int(Status.WAITING))
+        x, y = record.position[rows].T
+        vx, vy = velocity[rows].T
         return pd.DataFrame(
             {
-                "time": np.repeat(self.record.times, agents),
-                "agent": np.tile(np.arange(agents), states),
-                "x": position[..., 0].ravel(), "y": position[..., 1].ravel(),
-                "heading": self.record.heading.ravel(),
-                "vx": velocity[..., 0].ravel(), "vy": velocity[..., 1].ravel(),
-                "status": names[self.record.status.ravel()],
+                "time": record.times[state], "agent": agent, "x": x, "y": y,
+                "heading": record.heading[rows], "vx": vx, "vy": vy,
+                "status": names[record.status[rows]],
             }
         )  # fmt: skip
 

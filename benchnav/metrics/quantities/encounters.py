@@ -80,8 +80,10 @@ def encounters(
         np.zeros(shape, np.bool_),
     )  # fmt: skip
     top = t.speed.max(axis=1, initial=0.0)
-    meet_things(t.position, t.velocity, t.duration, t.last, radius, top, t.dt, *things, *found[:2])
     enters = np.zeros(len(t), np.int64) if t.enters is None else t.enters
+    meet_things(
+        t.position, t.velocity, t.duration, t.last, enters, radius, top, t.dt, *things, *found[:2]
+    )
     meet_agents(
         t.position, t.velocity, t.duration, t.last, enters, t.leaves, radius, top, t.dt, *found
     )
@@ -106,8 +108,8 @@ def _skip(gap: float, clearance: float, ttc: float, top: float, dt: float) -> fl
 @kernel
 def meet_things(
     position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
-    radius: FloatArray, top: FloatArray, dt: float, capsules: FloatArray, body: IntArray,
-    offset: FloatArray, jumps: BoolArray, clearance: FloatArray, ttc: FloatArray,
+    enters: IntArray, radius: FloatArray, top: FloatArray, dt: float, capsules: FloatArray,
+    body: IntArray, offset: FloatArray, jumps: BoolArray, clearance: FloatArray, ttc: FloatArray,
 ) -> None:  # fmt: skip
     """Lower ``clearance`` and ``ttc`` (A,) to their values for solids and bodies.
 
@@ -116,7 +118,7 @@ def meet_things(
     first, circle = _circles(capsules, body)
     body_top = np.zeros(len(offset))
     _meet_groups(
-        position, velocity, duration, last, radius, top, dt, capsules, body, offset, jumps,
+        position, velocity, duration, last, enters, radius, top, dt, capsules, body, offset, jumps,
         first, circle, body_top, clearance, ttc,
     )  # fmt: skip
 
@@ -169,8 +171,8 @@ def _is_short(capsules: FloatArray, c: int) -> bool:
 @kernel_without_allocation
 def _meet_groups(
     position: FloatArray, velocity: FloatArray, duration: FloatArray, last: IntArray,
-    radius: FloatArray, top: FloatArray, dt: float, capsules: FloatArray, body: IntArray,
-    offset: FloatArray, jumps: BoolArray, first: IntArray, circle: FloatArray,
+    enters: IntArray, radius: FloatArray, top: FloatArray, dt: float, capsules: FloatArray,
+    body: IntArray, offset: FloatArray, jumps: BoolArray, first: IntArray, circle: FloatArray,
     body_top: FloatArray, clearance: FloatArray, ttc: FloatArray,
 ) -> None:  # fmt: skip
     _find_body_top(offset, jumps, dt, body_top)
@@ -178,8 +180,8 @@ def _meet_groups(
         for g in range(len(circle)):
             m = body[first[g]]
             fastest = top[a] + (body_top[m] if m >= 0 else 0.0)
-            k = 0
-            while k < max(last[a], 1):
+            k = enters[a]
+            while k < max(last[a], min(enters[a] + 1, position.shape[1])):
                 dx, dy = position[a, k, 0] - circle[g, 0], position[a, k, 1] - circle[g, 1]
                 if m >= 0:
                     dx, dy = dx - offset[m, k, 0], dy - offset[m, k, 1]
@@ -194,7 +196,7 @@ def _meet_groups(
                 for c in range(first[g], first[g + 1]):
                     gap = _thing_step(
                         a, c, k, position, velocity, duration, radius[a], dt, capsules, m, offset,
-                        jumps, last[a] > 0, clearance, ttc,
+                        jumps, last[a] > enters[a], clearance, ttc,
                     )  # fmt: skip
                     least = min(least, gap)
                 if least >= FARTHEST:  # it is absent
@@ -304,7 +306,7 @@ def meet_agents(
                 dy = position[j, k, 1] - position[i, k, 1]
                 apart = math.sqrt(dx * dx + dy * dy)
                 between = apart - (radius[i] + radius[j])
-                _pair_sample(i, j, k, apart, between, last, radius, clearance, gap, near)
+                _pair_sample(i, j, k, apart, between, last, enters, radius, clearance, gap, near)
                 worst, latest = max(clearance[i], clearance[j]), max(ttc[i], ttc[j])
                 if k < end:
                     wx = velocity[j, k, 0] - velocity[i, k, 0]
@@ -326,15 +328,15 @@ def meet_agents(
 
 @kernel_without_allocation
 def _pair_sample(
-    i: int, j: int, k: int, apart: float, between: float, last: IntArray, radius: FloatArray,
-    clearance: FloatArray, gap: FloatArray, near: BoolArray,
+    i: int, j: int, k: int, apart: float, between: float, last: IntArray, enters: IntArray,
+    radius: FloatArray, clearance: FloatArray, gap: FloatArray, near: BoolArray,
 ) -> None:  # fmt: skip
     """Handle one pair of agents in one state, with centres ``apart`` [m]."""
     for a in (i, j):
         if k <= last[a]:
             near[a, k] |= apart <= NEAR * radius[a]
             gap[a, k] = min(gap[a, k], between)
-        if k < last[a] or k == 0:
+        if k < last[a] or k == enters[a]:
             clearance[a] = min(clearance[a], between)
 
 

@@ -32,9 +32,11 @@ def smooth_velocities(trajectories: Trajectories, agents: IntArray) -> list[Floa
     """
     t = trajectories
     first = np.zeros(len(agents) + 1, np.int64)
-    first[1:] = np.cumsum((t.end[agents] * RATE + 1e-9).astype(np.int64) + 1 + 3 * LEAD)
+    lasts = t.end[agents] - t.begin[agents]
+    first[1:] = np.cumsum((lasts * RATE + 1e-9).astype(np.int64) + 1 + 3 * LEAD)
     samples = np.zeros((2, first[-1]))
-    sample_velocities(t.velocity, t.duration, t.dt, t.last, agents, first, samples)
+    enters = np.zeros(len(t), np.int64) if t.enters is None else t.enters
+    sample_velocities(t.velocity, t.duration, t.dt, enters, t.last, agents, first, samples)
     joined = np.convolve(samples.reshape(-1), TAPS, mode="valid")  # one call for all rows
     rows = len(joined) - first[-1]
     both = np.stack([joined[:rows], joined[first[-1] :]], axis=1)
@@ -43,8 +45,8 @@ def smooth_velocities(trajectories: Trajectories, agents: IntArray) -> list[Floa
 
 @kernel
 def sample_velocities(
-    velocity: FloatArray, duration: FloatArray, dt: float, last: IntArray, agents: IntArray,
-    first: IntArray, samples: FloatArray,
+    velocity: FloatArray, duration: FloatArray, dt: float, enters: IntArray, last: IntArray,
+    agents: IntArray, first: IntArray, samples: FloatArray,
 ) -> None:  # fmt: skip
     """Write the velocities of agents (n,) before the filter to columns of ``samples`` (2, S).
 
@@ -54,17 +56,17 @@ def sample_velocities(
     middle = np.empty(duration.shape[1])
     for n in range(len(agents)):
         a, low, high = agents[n], first[n] + 2 * LEAD, first[n + 1]
-        count = last[a]
-        for k in range(count):
+        begin, count = enters[a], last[a]
+        for k in range(begin, count):
             middle[k] = k * dt + 0.5 * duration[a, k]
-        at = -1  # the last middle that is not after the sample
+        at = begin - 1  # the last middle that is not after the sample
         for m in range(low, high):
-            time = (min(m, high - LEAD - 1) - low) / RATE
+            time = (min(m, high - LEAD - 1) - low) / RATE + begin * dt
             while at + 1 < count and middle[at + 1] <= time:
                 at += 1
             for axis in range(2):
-                value = velocity[a, max(at, 0), axis]
-                if 0 <= at < count - 1 and middle[at] != time:
+                value = velocity[a, max(at, begin), axis]
+                if begin <= at < count - 1 and middle[at] != time:
                     rise = velocity[a, at + 1, axis] - value
                     value = rise / (middle[at + 1] - middle[at]) * (time - middle[at]) + value
                 samples[axis, m] = value

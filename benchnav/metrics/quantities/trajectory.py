@@ -1,7 +1,7 @@
 """Trajectories of all agents, cut at the end of each attempt: the input of metrics.
 
-An agent moves from the start until it arrives, ends or fails; the record after that instant
-does not count. An agent that arrives within a step stops at that instant, so its last segment
+An agent moves from its entry until it arrives, ends or fails; the record before and after does
+not count. An agent that arrives within a step stops at that instant, so its last segment
 lasts until its arrival, not until the end of the step.
 """
 
@@ -25,15 +25,15 @@ class Trajectories:
     """The motion of all agents, agents first."""
 
     dt: float  # [s]
-    last: IntArray  # (A,) index of the first state that is not active, T if all are
+    last: IntArray  # (A,) index of the first state after its attempt, T if there is none
     end: FloatArray  # (A,) [s] end of its attempt: arrival, or the time of ``last``
     position: FloatArray  # (A, T+1, 2) [m], constant from ``last`` on
-    duration: FloatArray  # (A, T) [s] travel time of each segment, 0 from ``last`` on
-    velocity: FloatArray  # (A, T, 2) [m/s] mean over each segment, 0 from ``last`` on
+    duration: FloatArray  # (A, T) [s] travel time of each segment, 0 outside of its attempt
+    velocity: FloatArray  # (A, T, 2) [m/s] mean over each segment, 0 outside of its attempt
     leaves: IntArray  # (A,) index of the first state without a body of the agent; T+1: never
     length: FloatArray  # (A,) [m] travelled
     moved: BoolArray  # (A,) it travelled at least its own radius
-    enters: IntArray | None = None  # (A,) index of its first state with a body; None: 0 for all
+    enters: IntArray | None = None  # (A,) first state with a body, T+1: never; None: 0 for all
 
     def __len__(self) -> int:
         return len(self.last)
@@ -50,9 +50,24 @@ class Trajectories:
 
     @property
     def counted(self) -> BoolArray:
-        """(A, T) True for the segments before the end of the agent's attempt."""
-        steps: BoolArray = np.arange(self.duration.shape[1]) < self.last[:, None]
-        return steps
+        """(A, T) True for the segments of the agent's attempt."""
+        segments = np.arange(self.duration.shape[1])
+        steps: BoolArray = segments < self.last[:, None]
+        return steps if self.enters is None else steps & (segments >= self.enters[:, None])
+
+    @cached_property
+    def has_body(self) -> BoolArray:
+        """(A, T+1) True for the states in which the agent is a body in the arena."""
+        states = np.arange(self.position.shape[1])
+        here: BoolArray = states < self.leaves[:, None]
+        return here if self.enters is None else here & (states >= self.enters[:, None])
+
+    @property
+    def begin(self) -> FloatArray:
+        """(A,) [s] when its attempt begins; T·dt for an agent that never enters."""
+        if self.enters is None:
+            return np.zeros(len(self))
+        return np.minimum(self.enters, self.duration.shape[1]) * self.dt
 
 
 def cut(episode: Episode) -> Trajectories:
@@ -63,31 +78,33 @@ def cut(episode: Episode) -> Trajectories:
     agents, steps = len(position), position.shape[1] - 1
     last, end, length = np.empty(agents, np.int64), np.empty(agents), np.empty(agents)
     duration, velocity = np.empty((agents, steps)), np.empty((agents, steps, 2))
+    enters = (status == int(Status.WAITING)).sum(axis=1)
     cut_paths(
-        status, np.array(episode.arrival), world.clock.dt, position, last, end, duration, velocity,
-        length,
+        status, np.array(episode.arrival), world.clock.dt, enters, position, last, end, duration,
+        velocity, length,
     )  # fmt: skip
     return Trajectories(
         world.clock.dt, last, end, position, duration, velocity, _leaves(episode, last), length,
-        length >= world.agents.radius,
+        length >= world.agents.radius, enters if enters.any() else None,
     )  # fmt: skip
 
 
 @kernel
 def cut_paths(
-    status: ByteArray, arrival: FloatArray, dt: float, position: FloatArray, last: IntArray,
-    end: FloatArray, duration: FloatArray, velocity: FloatArray, length: FloatArray,
+    status: ByteArray, arrival: FloatArray, dt: float, enters: IntArray, position: FloatArray,
+    last: IntArray, end: FloatArray, duration: FloatArray, velocity: FloatArray,
+    length: FloatArray,
 ) -> None:  # fmt: skip
     """Cut places (A, T+1, 2) [m] at the end of each attempt, and write the other arrays.
 
-    The arrays are those of `Trajectories`. Inputs are the status (A, T+1) and the arrival (A,)
-    [s]: the attempt ends at the arrival if that is in the segment before ``last``, else at the
-    time of ``last``.
+    The arrays are those of `Trajectories`. Inputs are the status (A, T+1), the arrival (A,) [s]
+    and the state (A,) in which an agent enters: the attempt ends at the arrival if that is in
+    the segment before ``last``, else at the time of ``last``.
     """
     agents, steps = duration.shape
     way = np.empty(steps)
     for a in range(agents):
-        until = 0
+        until = min(enters[a], steps)
         while until < steps and status[a, until] == Status.ACTIVE:
             until += 1
         last[a], end[a] = until, until * dt
@@ -99,7 +116,7 @@ def cut_paths(
         for k in range(steps):
             dx = position[a, k + 1, 0] - position[a, k, 0]
             dy = position[a, k + 1, 1] - position[a, k, 1]
-            time = min((k + 1) * dt, end[a]) - min(k * dt, end[a])
+            time = min((k + 1) * dt, end[a]) - min(k * dt, end[a]) if k >= enters[a] else 0.0
             moves = time >= INSTANT
             duration[a, k] = time
             velocity[a, k, 0] = dx / time if moves else 0.0

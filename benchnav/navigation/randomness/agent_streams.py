@@ -7,8 +7,9 @@ from benchnav.navigation.briefing import Briefing
 
 
 def canonical_order(briefing: Briefing) -> IntArray:
-    """Return (A,) agent indices sorted by start, then goal: independent of the numbering."""
-    keys = (briefing.goal[:, 1], briefing.goal[:, 0], briefing.start[:, 1], briefing.start[:, 0])
+    """Return (A,) agent indices sorted by start, then goal, then entry, whatever the numbering."""
+    goal, start = briefing.goal, briefing.start
+    keys = (briefing.enters, goal[:, 1], goal[:, 0], start[:, 1], start[:, 0])
     return np.lexsort(keys).astype(np.int64)
 
 

@@ -93,6 +93,11 @@ Scalar = Annotated[
 ]
 
 
+def is_scalar(value: Any) -> bool:
+    """Whether a value of a file has the form of a `Scalar`; its numbers may be wrong."""
+    return _union_tag(value) is not None
+
+
 def support(scalar: "Scalar") -> tuple[float, float]:
     """Return the smallest and largest number that can be drawn."""
     match scalar:

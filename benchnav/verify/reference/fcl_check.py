@@ -240,7 +240,8 @@ class _Judgement:
 def _present(episode: Episode, t: int) -> BoolArray:
     """Return the agents (A,) with a body at state t."""
     status, rules = episode.status[t], episode.world.rules
-    gone = (status == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
+    gone = status == int(Status.WAITING)
+    gone |= (status == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
     gone |= (status == int(Status.ENDED)) & (rules.on_end == Afterwards.VANISH)
     here: BoolArray = ~gone
     return here

@@ -19,6 +19,7 @@ from benchnav.arrays import BoolArray, ByteArray, FloatArray
 from benchnav.episode.episode import Status
 from benchnav.verify.reference.reference_contacts import Event, Ledger, Partner
 from benchnav.verify.reference.reference_dynamics import Drive
+from benchnav.verify.reference.reference_entry import SOON, admit
 from benchnav.verify.reference.reference_footprint import Footprints, difference, touch_time
 from benchnav.verify.reference.reference_geometry import first_touch, inside, law_position, nearest
 from benchnav.verify.reference.reference_turning import gap_to, turn
@@ -45,7 +46,8 @@ class Twin:
         members = world.agents
         self.position: FloatArray = members.start.copy()
         self.heading: FloatArray = members.heading.copy()
-        self.status: ByteArray = np.zeros(len(members), np.int8)
+        waits = members.enters > SOON
+        self.status: ByteArray = np.where(waits, int(Status.WAITING), 0).astype(np.int8)
         self.velocity = np.zeros((len(members), 2))
         self.arrival = np.full(len(members), math.nan)
         self.hits = np.zeros(len(members), np.int64)
@@ -96,7 +98,8 @@ class Twin:
     def present(self) -> BoolArray:
         """The agents (A,) with a body in the arena."""
         rules = self.world.rules
-        gone = (self.status == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
+        gone = self.status == int(Status.WAITING)
+        gone |= (self.status == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
         gone |= (self.status == int(Status.ENDED)) & (rules.on_end == Afterwards.VANISH)
         here: BoolArray = ~gone
         return here
@@ -123,6 +126,7 @@ class Twin:
         for s in range(clock.substeps):
             self._substep(drive, (self.steps * clock.substeps + s) * h, h)
         self.steps += 1
+        admit(self)
         return drive
 
     def _relocate(self, time: float) -> None:

@@ -53,7 +53,7 @@ class _Log:
         self._episode = episode
         self._scans = sensed(episode, agents)
         self._shapes = extrude_agents(episode.world)
-        self._leaves = analyse(episode).trajectories.leaves
+        self._has_body = analyse(episode).trajectories.has_body
 
     def messages(self) -> Iterable[tuple[float, str, Any]]:
         """Yield (time [s], topic, message)."""
@@ -104,9 +104,9 @@ class _Log:
         return self._make("SceneEntity", id=name, frame_id=FRAME, triangles=[triangles])
 
     def _discs(self, t: int) -> list[Any]:
-        """Return cylinders or meshes for the agents that are present; they vanish with them."""
+        """Return cylinders or meshes for the agents that are present; they come and go."""
         episode, agents = self._episode, self._episode.world.agents
-        here = np.flatnonzero(t < self._leaves)
+        here = np.flatnonzero(self._has_body[:, t])
         out = []
         for a in here:
             shape = self._shapes[a]
@@ -147,7 +147,7 @@ class _Log:
         if scans is None or scans.distance is None or scans.kind is None:
             return
         for n, agent in enumerate(scans.agents):
-            if t >= self._leaves[agent]:
+            if not self._has_body[agent, t]:
                 continue
             ranges = np.where(scans.kind[t, n] == int(Kind.NOTHING), math.inf, scans.distance[t, n])
             message = self._make(

@@ -73,7 +73,7 @@ def _mesh(rerun: Any, mesh: Any, color: tuple[float, float, float]) -> Any:
 
 
 def _log_motion(rerun: Any, stream: Any, episode: Episode) -> None:
-    agents, leaves = episode.world.agents, analyse(episode).trajectories.leaves
+    agents, has_body = episode.world.agents, analyse(episode).trajectories.has_body
     colors = np.array([rgb(agent_color(episode.world, a)) for a in range(len(agents))])
     meshes = extrude_agents(episode.world)
     for a, mesh in enumerate(meshes):
@@ -87,10 +87,10 @@ def _log_motion(rerun: Any, stream: Any, episode: Episode) -> None:
                 stream.log(f"bodies/{m}", rerun.Transform3D(scale=0.0))
             else:
                 stream.log(f"bodies/{m}", rerun.Transform3D(translation=[*place, 0.0]))
-        here = np.flatnonzero(t < leaves)
+        here = np.flatnonzero(has_body[:, t])
         for a in [a for a, mesh in enumerate(meshes) if mesh is not None]:
-            seen = t < leaves[a]
-            place = [*episode.position[t, a], 0.0 if seen else -1e3]  # below the floor: gone
+            seen = has_body[a, t]
+            place = [*episode.position[t, a], 0.0 if seen else -1e3]  # below the floor: absent
             turn = rerun.RotationAxisAngle([0.0, 0.0, 1.0], radians=float(episode.heading[t, a]))
             stream.log(f"shapes/{a}", rerun.Transform3D(translation=place, rotation=turn))
         trailed, here = here, here[[meshes[a] is None for a in here]]

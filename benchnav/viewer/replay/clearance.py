@@ -3,7 +3,7 @@
 import numpy as np
 
 from benchnav.arena.body import absent
-from benchnav.arrays import FloatArray, IntArray
+from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.episode.episode import Episode
 from benchnav.geometry.rotation import cos_sin
 from benchnav.kernels import kernel
@@ -30,8 +30,8 @@ def clearance(episode: Episode, agent: int) -> FloatArray:
     if len(others):
         apart = np.linalg.norm(episode.position[:, others] - here[:, None], axis=-1)
         apart -= radius[others]
-        gone = analyse(episode).trajectories.leaves[others]
-        gap = np.where(np.arange(len(here))[:, None] >= gone, np.inf, apart).min(axis=1)
+        there = analyse(episode).trajectories.has_body[others].T
+        gap = np.where(there, apart, np.inf).min(axis=1)
     things = things_of(world, episode.body_position)
     chunk = max(1, _ROOM // max(1, len(here)))
     for first in range(0, len(things.capsules), chunk):
@@ -48,9 +48,10 @@ def clearance(episode: Episode, agent: int) -> FloatArray:
 
 def _of_shapes(episode: Episode, agent: int) -> FloatArray:
     world, clear = episode.world, np.full(len(episode.position), np.inf)
-    things, gone = things_of(world, episode.body_position), analyse(episode).trajectories.leaves
+    things = things_of(world, episode.body_position)
+    there = analyse(episode).trajectories.has_body
     lower_to_shapes(
-        agent, episode.position, episode.heading, shapes_of(world.agents), gone, things.capsules,
+        agent, episode.position, episode.heading, shapes_of(world.agents), there, things.capsules,
         things.body, things.offset, clear,
     )  # fmt: skip
     return clear
@@ -58,12 +59,12 @@ def _of_shapes(episode: Episode, agent: int) -> FloatArray:
 
 @kernel
 def lower_to_shapes(
-    a: int, position: FloatArray, heading: FloatArray, shape: FloatArray, gone: IntArray,
+    a: int, position: FloatArray, heading: FloatArray, shape: FloatArray, there: BoolArray,
     capsules: FloatArray, body: IntArray, offset: FloatArray, clear: FloatArray,
 ) -> None:  # fmt: skip
     """Lower ``clear`` (T+1,) to the gaps of agent a, with the shapes (A, 3) of `shapes_of`.
 
-    Positions and headings are (T+1, A); agent j is present before state ``gone[j]``.
+    Positions and headings are (T+1, A); agent j is present in the states of ``there[j]`` (T+1,).
     """
     for k in range(len(clear)):
         x, y, angle = position[k, a, 0], position[k, a, 1], heading[k, a]
@@ -79,7 +80,7 @@ def lower_to_shapes(
             gap = cores_apart(fx, fy, angle, shape[a], half) - shape[a, 2] - r
             clear[k] = min(clear[k], gap)
         for j in range(position.shape[1]):
-            if j == a or k >= gone[j]:
+            if j == a or not there[j, k]:
                 continue
             c0, s0 = cos_sin(heading[k, j])
             half = (shape[j, 0] * c0, shape[j, 0] * s0, -shape[j, 1] * s0, shape[j, 1] * c0)

@@ -170,8 +170,11 @@ class View {
   status(a, k) {
     return this.exact(this.scene.status, a, k);
   }
+  entered(a, k) {
+    return k + 1e-6 >= this.scene.agents.enters[a];
+  }
   present(a, k) {
-    return k < this.scene.agents.leaves[a];
+    return this.entered(a, k) && k < this.scene.agents.leaves[a];
   }
 
   /** Scale [pixels per metre] and origin of the picture. */
@@ -245,6 +248,7 @@ class View {
     let found = -1,
       least = Infinity;
     for (let a = 0; a < this.count; a++) {
+      if (!this.entered(a, k)) continue;
       const [ax, ay] = this.at(a, k);
       const gap = Math.hypot(ax - x, ay - y);
       if (gap < least && gap < this.scene.agents.radius[a] + 10 / this.frame().scale)
@@ -388,7 +392,7 @@ class View {
           [x, y] = goal[a];
         if (isCrowd && this.status(a, k) === ACTIVE)
           c.rect(x - pixel, y - pixel, 2 * pixel, 2 * pixel);
-        if (isCrowd) continue;
+        if (isCrowd || !this.entered(a, k)) continue;
         c.moveTo(x + r, y);
         c.arc(x, y, r, 0, 2 * Math.PI);
       }
@@ -487,7 +491,7 @@ class View {
     this.byColour((colour, members) => {
       c.beginPath();
       for (const a of members) {
-        if (this.present(a, k) || this.status(a, k) === ARRIVED) continue;
+        if (!this.entered(a, k) || this.present(a, k) || this.status(a, k) === ARRIVED) continue;
         const [x, y] = this.at(a, last[a]),
           r = Math.max(0.6 * radius[a], 4 * pixel);
         c.moveTo(x - r, y - r);
@@ -525,6 +529,7 @@ class View {
     for (let a = 0; a < this.count; a++) {
       const size = scale * radius[a];
       if (this.count > NUMBERED && size < 10) continue;
+      if (!this.entered(a, k)) continue;
       if (!this.present(a, k) && this.status(a, k) === ARRIVED) continue;
       write(String(a), this.at(a, k), 0.75 * size + 3, "left");
     }

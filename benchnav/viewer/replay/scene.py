@@ -131,13 +131,16 @@ def _mirrored(contacts: Contacts) -> list[bool]:
 def _agents(episode: Episode) -> dict[str, Any]:
     agents, names = episode.world.agents, episode.world.teams
     found = analyse(episode)
+    motion = found.trajectories
+    enters = np.zeros(len(motion), np.int64) if motion.enters is None else motion.enters
     return {
         "radius": _numbers(agents.radius),
         "outline": [_outline(agents, a) for a in range(len(agents))],
         "team": agents.team.tolist(), "teams": list(names),
         "goal": _numbers(agents.goal), "evaluated": agents.evaluated.tolist(),
         "success": found.success.tolist(), "end": attempt_ends(episode),
-        "last": found.trajectories.last.tolist(), "leaves": found.trajectories.leaves.tolist(),
+        "last": motion.last.tolist(),
+        "enters": enters.tolist(), "leaves": motion.leaves.tolist(),
         "colour": [color_number(episode.world, a) for a in range(len(agents))],
     }  # fmt: skip
 

@@ -27,7 +27,7 @@ from benchnav.verify.part_check import Pair
 from benchnav.verify.reference.fcl_check import judge
 from benchnav.verify.reference.reference_check import check_twin
 from benchnav.verify.resimulation import resimulate
-from benchnav.world import contacts, motion_limits, simulation, step, touch
+from benchnav.world import contacts, entry, motion_limits, simulation, step, touch
 from benchnav.world.simulation import Simulation
 from tests.worlds import agents, back_and_forth, box, limited_world, random_world, walls, world
 
@@ -45,6 +45,10 @@ def scenes():
     start = [[9.0, 10.0], [16.0, 10.0], [17.8, 4.0]]
     crew = agents(start, [[18.0, 10.0], [2.0, 10.0], [25.0, 4.0]])
     yield world(crew, [walls(20.0)], [press, shelf], steps=25)
+    drawn = random_world(7, 6, steps=25)
+    place = drawn.agents.start[[0, 1, 0, 3, 4, 4]]
+    late = replace(drawn.agents, start=place, enters=np.array([0, 0, 0.2, 1.0, 2.1, 2.1]))
+    yield replace(drawn, agents=late)
 
 
 def play(drawn, seed, twists=False):
@@ -123,6 +127,10 @@ FAULTS = {
         lambda genuine: lambda body, knots, time: genuine(body, knots, 0.99 * time),
     ),
     "step: what is re-placed asks nobody": (step, "_within", lambda _: lambda *_: False),
+    "entry: agents do not wait for room": (entry, "_is_free", lambda _: lambda *_: True),
+    "entry: agents come a decision early": (
+        entry, "SOON", 0.2,
+    ),
     "limits: bodies brake and speed up a little faster": (
         motion_limits, "approached",
         lambda genuine: lambda d0, d1, t0, t1, a, d, dt: genuine(
