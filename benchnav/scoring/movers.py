@@ -51,4 +51,5 @@ def mover_contacts(
 def _intervals(here: BoolArray) -> IntArray:
     """Return (first, last) of each interval of successive states (T+1,) that are true."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], here, [False]])))
-    return edges.reshape(-1, 2) - np.array([0, 1])
+    intervals: IntArray = edges.reshape(-1, 2) - np.array([0, 1])
+    return intervals
