@@ -75,11 +75,13 @@ def test_a_person_who_is_gone_touches_nothing():
     states = 16
     position = mover_positions([person], states, DT)
     assert absent(position[:, 0]).tolist() == [k * DT < 1.0 or k * DT >= 2.0 for k in range(states)]
-    still = np.zeros((1, states, 2)) + [1.0, 0.0]
+    still = np.zeros((1, states, 2)) + np.array([1.0, 0.0])
     first, last = np.zeros(1, np.int64), np.full(1, states - 1)
     (row,) = mover_contacts(still, first, last, DT, np.array([0.2]), [person], position)
     assert row[:2].tolist() == [0, -1]
     assert row[2] == pytest.approx(1.25, abs=0.06)
     assert row[5] == pytest.approx(2.0)
-    beside = still + [0.0, 3.0]  # the way of the person who vanishes would cross this place
+    beside = still + np.array(
+        [0.0, 3.0]
+    )  # the way of the person who vanishes would cross this place
     assert len(mover_contacts(beside, first, last, DT, np.array([0.2]), [person], position)) == 0

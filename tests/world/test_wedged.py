@@ -24,7 +24,9 @@ def squeeze(seed, crowd):
         bodies.append(Body(disc(Kind.DYNAMIC, 0.0, 0.0, RADIUS), law))
     others = [[2.0 + 0.7 * k, 2.0] for k in range(30 if crowd else 0)]
     start = np.array([[10.0, 10.0], *others])
-    return world(agents(start, start + [0.0, 8.0], radius=RADIUS), [], bodies, steps=STEPS)
+    return world(
+        agents(start, start + np.array([0.0, 8.0]), radius=RADIUS), [], bodies, steps=STEPS
+    )
 
 
 @pytest.mark.parametrize("crowd", [False, True])
