@@ -81,7 +81,5 @@ def test_a_person_who_is_gone_touches_nothing():
     assert row[:2].tolist() == [0, -1]
     assert row[2] == pytest.approx(1.25, abs=0.06)
     assert row[5] == pytest.approx(2.0)
-    beside = still + np.array(
-        [0.0, 3.0]
-    )  # the way of the person who vanishes would cross this place
+    beside = still + np.array([0.0, 3.0])  # on the way of the person who vanishes
     assert len(mover_contacts(beside, first, last, DT, np.array([0.2]), [person], position)) == 0
