@@ -85,7 +85,7 @@ def _require(results: pa.Table, first: str, second: str) -> None:
             raise UsageError(
                 f"A comparison is between two navigators, in the same worlds. {name!r} is a"
                 " scenario: the values of one of its parameters side by side are a curve"
-                " (leaderboard --curve KEY; in Python, run.curve)."
+                " (of a leaderboard, by the option 'curve')."
             )
         raise UsageError(
             f"A navigator to compare must be in the run. Got {name!r} instead."
