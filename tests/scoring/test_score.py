@@ -354,7 +354,12 @@ MOVERS = [
         "law": {"type": "back-and-forth", "length": 6, "speed": 1},
     }
 ]  # fmt: skip
-RELOCATED = [{"shape": {"type": "disc", "radius": 0.4}, "count": 1, "relocate_at": 5}]
+RELOCATED = [
+    {
+        "shape": {"type": "disc", "radius": 0.4}, "count": 1, "relocate_at": 5,
+        "region": {"type": "anywhere"},
+    }
+]  # fmt: skip
 
 
 def moving(tmp_path, **keys):
