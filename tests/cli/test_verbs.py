@@ -155,7 +155,7 @@ def test_an_option_is_named_as_the_command_names_it(call, tmp_path):
     file = tmp_path / "people.txt"
     file.write_text("# framerate: 10\n1 0 0 0 0\n1 1 0.1 0 0\n")
     code, _, stderr = call("import", "recording", file, "--out", tmp_path / "x.yaml")
-    assert code == 1
+    assert code == 2
     assert "does not say its unit; set --unit to m or cm" in stderr
     with pytest.raises(ScenarioError, match="set the option 'unit' to m or cm"):
         benchnav.import_recording(file, tmp_path / "x.yaml")
