@@ -52,7 +52,11 @@ html_theme_options = {
 html_sidebars: dict[str, list[str]] = {"index": [], "gallery": []}
 copyright = "The benchnav authors, Apache-2.0"
 
-LISTS = ("components/README", "decisions/README")  # pages that list the other pages of their folder
+LISTS = (
+    "components/README",
+    "decisions/README",
+    "formats/README",
+)  # pages that list the other pages of their folder
 CARDS = "baselines/learned/recurrent_ppo/weights"
 SHOWN = {  # page of the site: file of the project that it shows
     "changelog": "CHANGELOG.md",

@@ -7,8 +7,10 @@ from typing import Annotated, Any
 import typer
 
 import benchnav
+from benchnav.api.output.messages import options_as_flags
+from benchnav.cli.authoring.import_map import movingai, ros_map
 from benchnav.cli.authoring.import_recording import recording
-from benchnav.cli.authoring.import_world import import_app
+from benchnav.cli.authoring.import_world import image, mesh, sdf, wkt
 from benchnav.cli.authoring.new import new_app
 from benchnav.cli.authoring.schema import schema
 from benchnav.cli.authoring.validate import validate
@@ -76,7 +78,11 @@ app.command("list")(stoppable(list_))
 app.command("show")(stoppable(show))
 app.command("validate")(stoppable(validate))
 app.command("schema")(stoppable(schema))
-import_app.command("recording")(recording)
+import_app = typer.Typer(
+    help="Convert a map, a world or a recording of people into a scenario.", no_args_is_help=True
+)
+for command in (movingai, ros_map, sdf, mesh, wkt, image, recording):
+    import_app.command(command.__name__.replace("_", "-"))(stoppable(command))
 app.add_typer(import_app, name="import")
 app.add_typer(new_app, name="new")
 app.command("doctor")(stoppable(doctor))
@@ -111,6 +117,11 @@ def _options(
 
 def status(arguments: Sequence[str]) -> int:
     """Run the command with ``arguments``, and return the exit status."""
+    with options_as_flags():
+        return _status(arguments)
+
+
+def _status(arguments: Sequence[str]) -> int:
     try:
         if [*arguments[:1]] == ["run"] and not {*arguments} & HELP:
             from benchnav.processes.fork_server import fork_server

@@ -5,6 +5,7 @@ from collections import Counter
 import numpy as np
 
 from benchnav.arena.solid import Kind
+from benchnav.arena.world import World
 from benchnav.arrays import BoolArray, FloatArray
 from benchnav.episode.episode import Episode, Status
 from benchnav.metrics.quantities.episode_analysis import analyse
@@ -23,7 +24,8 @@ def attempt_ends(episode: Episode) -> list[str]:
         row = hit.get(agent)
         parts = [end] if end else []
         if row is not None:
-            partner = partner_text(int(contacts.kind[row]), int(contacts.partner[row]))
+            kind, other = int(contacts.kind[row]), int(contacts.partner[row])
+            partner = partner_text(episode.world, kind, other)
             parts.insert(0, f"hit {partner} at {contacts.start[row]:.1f} s")
         words.append(", ".join(parts) or "ended by a contact without a charge")
     return words
@@ -55,12 +57,13 @@ def end_counts(episode: Episode) -> str:
     )
 
 
-def partner_text(kind: int, partner: int) -> str:
+def partner_text(world: World, kind: int, partner: int) -> str:
     """Return what an agent touched; moving obstacles have numbers from 1, agents from 0."""
     if kind == Kind.AGENT:
         return f"agent {partner}"
     if kind == Kind.DYNAMIC:
-        return f"moving obstacle {-partner}"
+        person = world.bodies[-1 - partner].person
+        return f"{'recorded person' if person else 'moving obstacle'} {-partner}"
     return "a wall" if kind == Kind.WALL else "a static obstacle"
 
 

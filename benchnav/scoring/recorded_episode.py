@@ -16,6 +16,7 @@ from benchnav.episode.episode import Contacts, Episode, Identity, Status, Timing
 from benchnav.kernels import kernel
 from benchnav.metrics.quantities.encounters import Encounters
 from benchnav.metrics.quantities.episode_analysis import Analysis, analyse, keep
+from benchnav.scoring.movers import mover_contacts, mover_positions
 from benchnav.scoring.setting import Setting
 from benchnav.scoring.touches import TOUCH, touches
 from benchnav.scoring.tracks import Tracks
@@ -39,7 +40,8 @@ def recorded_episode(tracks: Tracks, setting: Setting, identity: Identity) -> Re
             world.rules.goal_tolerance + TOUCH, arrival,
         )  # fmt: skip
     timed_out = "horizon" in setting.known and tracks.place.shape[1] > world.clock.steps
-    whole = _episode(tracks, world, arrival, identity, timed_out)
+    movers = mover_positions(world.bodies, tracks.place.shape[1], tracks.dt)
+    whole = _episode(tracks, world, arrival, identity, timed_out, movers)
     presence = replace(
         analyse(whole).trajectories, enters=tracks.first, leaves=_leaves(tracks, whole)
     )
@@ -52,9 +54,12 @@ def recorded_episode(tracks: Tracks, setting: Setting, identity: Identity) -> Re
         if world.rules.on_arrival == Afterwards.STAY:
             gone = tracks.end
         until = np.minimum(np.ceil(gone / tracks.dt - 1e-9), tracks.last).astype(np.int64)
+        radius = world.agents.radius
         contacts = touches(
-            tracks.place, tracks.first, until, tracks.dt, gone, world.agents.radius, world.solids,
-            stop,
+            tracks.place, tracks.first, until, tracks.dt, gone, radius, world.solids, stop,
+            mover_contacts(
+                tracks.place, tracks.first, until, tracks.dt, radius, world.bodies, movers
+            ),
         )  # fmt: skip
     whole = replace(whole, contacts=contacts)
     keep(whole, replace(together, contacts=contacts))
@@ -64,15 +69,17 @@ def recorded_episode(tracks: Tracks, setting: Setting, identity: Identity) -> Re
         end=contacts.end - begin[contacts.agent],
     )  # fmt: skip
     each = replace(
-        _episode(tracks.aligned(), world, arrival - begin, identity, timed_out), contacts=own
-    )
+        _episode(tracks.aligned(), world, arrival - begin, identity, timed_out, movers),
+        contacts=own,
+    )  # with movers, all tracks begin at time 0
     _keep_encounters(each, together, tracks)
     return RecordedEpisode(each, whole)
 
 
 def _episode(
-    tracks: Tracks, world: World, arrival: FloatArray, identity: Identity, timed_out: bool
-) -> Episode:
+    tracks: Tracks, world: World, arrival: FloatArray, identity: Identity, timed_out: bool,
+    movers: FloatArray,
+) -> Episode:  # fmt: skip
     """Return an episode; a track that lasts to the end is active there if it ``timed_out``."""
     states = tracks.place.shape[1]
     times = np.arange(states) * tracks.dt
@@ -89,7 +96,7 @@ def _episode(
     heading = (heading + math.pi) % (2.0 * math.pi) - math.pi
     return Episode(
         identity=identity, world=world, position=place, heading=heading, status=status,
-        requested=step, executed=step, body_position=np.zeros((states, 0, 2)), arrival=arrival,
+        requested=step, executed=step, body_position=movers, arrival=arrival,
         contacts=_no_contacts(), timings=Timings(np.zeros(0), 0.0, 1),
     )  # fmt: skip
 

@@ -11,6 +11,7 @@ NAMES = {
     "preferred_speed": "preferred speed",
     "walls": "walls",
     "movers": "moving obstacles",
+    "obstacles": "moving obstacles",  # those of the scenario, if there is one
     "horizon": "horizon",
     "area": "measurement area",
     "teams": "teams",
@@ -33,12 +34,11 @@ CURES = {
     "area": "measurement area: the option 'area', or a scenario with one",
     "teams": "teams: a column team, or a scenario",
     "heading": "headings: a column heading",
-    "people": "people: a scenario with background agents, which the table holds",
+    "people": "people: a scenario with people; the ids start where its agents do",
 }
 """Unknown quantity → how a user adds it."""
 
-_CONTACTS = ("radius", "discs")  # contacts are found between discs
-_GAPS = ("radius", "heading")
+_CONTACTS = ("radius", "discs", "obstacles")  # contacts are found between discs
 _PEOPLE = ("people", "radius")
 _RUN = ("goals", *_CONTACTS)
 _NEEDS: dict[str, tuple[str, ...]] = {
@@ -50,13 +50,13 @@ _NEEDS: dict[str, tuple[str, ...]] = {
     "collided": _CONTACTS,
     "collisions_wall": ("walls", *_CONTACTS),
     "collisions_static": ("walls", *_CONTACTS),
-    "collisions_dynamic": ("movers", *_CONTACTS),
-    "collisions_agent": _CONTACTS,
+    "collisions_dynamic": ("movers", "radius", "discs"),
+    "collisions_agent": ("radius", "discs"),
     "contact_time": _CONTACTS,
-    "min_clearance": _GAPS,
+    "min_clearance": ("radius", "heading", "obstacles"),
     "min_time_to_collision": _CONTACTS,
-    "personal_space_intimate": _GAPS,
-    "personal_space_personal": _GAPS,
+    "personal_space_intimate": ("radius", "heading"),
+    "personal_space_personal": ("radius", "heading"),
     "time_to_goal": ("goals",),
     "path_length": (),
     "geodesic_length": ("goals", "radius"),

@@ -56,13 +56,15 @@ def setting_of(table: Table, tracks: Tracks, options: Options, drawn: World | No
         tolerance = 0.0
     if drawn is None:
         world = _open(tracks, agents, names, GOAL_TOLERANCE if tolerance is None else tolerance)
+        known.add("obstacles")
         remarks = ["No walls are known: only contacts and distances between ids count."]
     else:
-        world = _of_scenario(drawn, tracks, agents, names, tolerance)
-        known |= {"walls", "horizon"} if drawn.bodies else {"walls", "horizon", "movers"}
-        if theirs is not None and world.has_people and not len(drawn.people[1]):
-            known.add("people")  # the table holds no bodies
-        remarks = _remarks(drawn, theirs)
+        placed = not drawn.bodies or (theirs is not None and not drawn.relocates)
+        world = _of_scenario(drawn, tracks, agents, names, tolerance, placed)
+        known |= {"walls", "horizon"} | ({"movers", "obstacles"} if placed else set())
+        if theirs is not None and placed and world.has_people:
+            known.add("people")
+        remarks = _remarks(drawn, theirs, placed)
     if options.area is not None:
         world = replace(world, measurement_area=options.area)
     if world.measurement_area is not None:
@@ -82,15 +84,23 @@ class _Theirs:
         return self.world.agents
 
 
-def _remarks(drawn: World, theirs: _Theirs | None) -> list[str]:
+def _remarks(drawn: World, theirs: _Theirs | None, placed: bool) -> list[str]:
     found = []
     if theirs is None:
         found.append(
             "The ids do not start where the scenario's agents do: its walls, rules and horizon"
             " are used, and nothing of its agents."
         )
-    if drawn.bodies:
-        found.append("The table holds no moving obstacles: contacts with them are unknown.")
+    if not placed:
+        found.append(
+            "The places of the scenario's moving obstacles are unknown, and metrics of contacts"
+            " and distances are n/a: "
+            + (
+                "static obstacles are relocated when agents leave their new places."
+                if drawn.relocates
+                else "the ids would have to start where its agents do."
+            )
+        )
     return found
 
 
@@ -216,12 +226,13 @@ def _open(tracks: Tracks, agents: Agents, names: tuple[str, ...], tolerance: flo
 
 
 def _of_scenario(
-    drawn: World, tracks: Tracks, agents: Agents, names: tuple[str, ...], tolerance: float | None
-) -> World:
+    drawn: World, tracks: Tracks, agents: Agents, names: tuple[str, ...], tolerance: float | None,
+    placed: bool,
+) -> World:  # fmt: skip
     steps = max(1, round(drawn.clock.horizon / tracks.dt))
     rules = drawn.rules if tolerance is None else replace(drawn.rules, goal_tolerance=tolerance)
     return replace(
-        drawn, agents=agents, teams=names, bodies=(), rules=rules,
+        drawn, agents=agents, teams=names, bodies=drawn.bodies if placed else (), rules=rules,
         sees=np.ones((len(names), len(names)), np.bool_),
         clock=replace(drawn.clock, dt=tracks.dt, substeps=1, steps=steps),
     )  # fmt: skip

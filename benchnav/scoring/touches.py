@@ -23,18 +23,21 @@ MAX_EVENTS = 1_000_000
 
 def touches(
     place: FloatArray, first: IntArray, last: IntArray, dt: float, gone: FloatArray,
-    radius: FloatArray, solids: tuple[Solid, ...], stop: FloatArray,
+    radius: FloatArray, solids: tuple[Solid, ...], stop: FloatArray, movers: FloatArray,
 ) -> Contacts:  # fmt: skip
     """Return the contacts of agents at ``place`` (A, T+1, 2) [m] from state ``first`` to ``last``.
 
     An agent reaches its last place at the time ``gone`` (A,) [s]. Contacts that begin before
-    ``stop`` (A,) [s] are charged.
+    ``stop`` (A,) [s] are charged. ``movers`` (N, 6) are those of `movers.mover_contacts`.
 
     Raises TrajectoryError for more than `MAX_EVENTS` contacts of a kind.
     """
     pairs = np.empty((MAX_EVENTS, 6))
     count = meet_pairs(place, first, last, dt, gone, radius, pairs)
-    events = [(pairs[:count, [1, 0, 2, 3, 4, 5]], Kind.AGENT), (pairs[:count], Kind.AGENT)]
+    events = [
+        (pairs[:count, [1, 0, 2, 3, 4, 5]], Kind.AGENT), (pairs[:count], Kind.AGENT),
+        (movers, Kind.DYNAMIC),
+    ]  # fmt: skip
     for kind in (Kind.WALL, Kind.STATIC):
         own = [n for n, solid in enumerate(solids) if solid.kind == kind]
         if own:

@@ -14,6 +14,7 @@ from benchnav.world.touch import (
     FIXED,
     GOAL,
     body_gap,
+    body_time,
     from_agent,
     from_body,
     from_fixed,
@@ -104,6 +105,31 @@ def touch_in_turn(
 
 
 @kernel_without_allocation
+def record_wedged(
+    i: int, now: float, left: float, world: Any, agents: AnyArray, bodies: AnyArray,
+    shapes: AnyArray, opened: AnyArray, closed: AnyArray,
+) -> None:  # fmt: skip
+    """Record the bodies that touch agent i, which is wedged, within the ``left`` [s] of a substep.
+
+    It stands still until then, and bodies never yield: nothing but the record changes. A full
+    table stays as it is.
+    """
+    a = agents[i]
+    for m in range(world.bodies):
+        body = bodies[m]
+        t = body_time(a, body, shapes, left)
+        if t > left or not _has_room(opened[i]):
+            continue
+        x, y = body.x, body.y
+        body.x, body.y = x + body.vx * t, y + body.vy * t
+        dx, dy, _ = from_body(a, body, shapes)
+        body.x, body.y = x, y
+        nx, ny = _unit(dx, dy)
+        closing = body.vx * nx + body.vy * ny
+        _record(i, 4 * m + BODY, now + t, closing, True, world, a, opened[i], closed)
+
+
+@kernel_without_allocation
 def _unit(dx: float, dy: float) -> tuple[float, float]:
     length = math.sqrt(dx * dx + dy * dy)
     return (dx / length, dy / length) if length > 0.0 else (1.0, 0.0)
@@ -162,6 +188,14 @@ def _record(
     event.penetration, event.charged = 0.0, charged
     event.x, event.y = a.x, a.y
     a.open = True
+
+
+@kernel_without_allocation
+def _has_room(opened: AnyArray) -> bool:
+    room = False
+    for slot in range(len(opened)):
+        room |= opened[slot].code < 0
+    return room
 
 
 @kernel_without_allocation

@@ -12,7 +12,7 @@ from benchnav.episode.episode import Status
 from benchnav.geometry.capsule import disc_time
 from benchnav.geometry.hash_grid import bucket, fill, follow
 from benchnav.kernels import kernel_without_allocation
-from benchnav.world.contacts import MAX_HITS, touch
+from benchnav.world.contacts import MAX_HITS, record_wedged, touch
 from benchnav.world.fixed import cell_at
 from benchnav.world.footprint import agents_time
 from benchnav.world.touch import AGENT, WIDER, find_next
@@ -188,9 +188,14 @@ def advance_crowd(
             own = near[k]
             a = agents[spots[own].index]
             motion[TAU, own] = math.inf
-            # a wedged agent is left alone until the next substep
-            if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
-                _take_motion(a, own, motion)
+            if a.status != _ACTIVE or not a.present:
+                continue
+            _take_motion(a, own, motion)
+            if a.hits >= MAX_HITS:  # it stands still until the next substep
+                record_wedged(
+                    spots[own].index, now, left, world, agents, bodies, shapes, opened, closed
+                )
+            else:
                 way = (math.sqrt(a.vx * a.vx + a.vy * a.vy) + fastest) * left
                 way += fastest * (world.h - left)  # since the spots were sorted
                 meeting, partner = next_agent(

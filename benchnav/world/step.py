@@ -17,7 +17,7 @@ from benchnav.episode.episode import Status
 from benchnav.geometry.rotation import angle_of, wrap
 from benchnav.kernels import inlined, kernel, kernel_without_allocation
 from benchnav.world.bodies import body_at, is_away
-from benchnav.world.contacts import MAX_HITS, follow_up, touch
+from benchnav.world.contacts import MAX_HITS, follow_up, record_wedged, touch
 from benchnav.world.crowd import ROWS, advance_crowd, find_all_in_crowd, sort_spots
 from benchnav.world.dynamics import limited, planar_velocity
 from benchnav.world.entry import admit
@@ -254,8 +254,11 @@ def advance(
             a = agents[k]
             if k in (i, j) or _affected(a, i, j, world.reach, agents):
                 a.tau = math.inf
-                # a wedged agent is left alone until the next substep
-                if a.status == _ACTIVE and a.present and a.hits < MAX_HITS:
+                if a.status != _ACTIVE or not a.present:
+                    continue
+                if a.hits >= MAX_HITS:  # it stands still until the next substep
+                    record_wedged(k, now, left, world, agents, bodies, shapes, opened, closed)
+                else:
                     meeting, partner = next_agent(k, left, agents)
                     find_next(
                         k, meeting, partner, left, world.tolerance, agents, bodies, shapes,

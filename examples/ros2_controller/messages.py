@@ -63,23 +63,18 @@ def transforms(seconds: float, position: np.ndarray, heading: float) -> Message:
     return {
         "transforms": [
             {
-                "header": _header(seconds, parent),
-                "child_frame_id": child,
+                "header": _header(seconds, parent), "child_frame_id": child,
                 "transform": {"translation": _vector(shift), "rotation": _quaternion(turn)},
             }
             for parent, child, shift, turn in steps
         ]
-    }
+    }  # fmt: skip
 
 
 def scan(
-    seconds: float,
-    angle: np.ndarray,
-    distance: np.ndarray,
-    kind: np.ndarray,
-    range_max: float,
+    seconds: float, angle: np.ndarray, distance: np.ndarray, kind: np.ndarray, range_max: float,
     period: float,
-) -> Message:
+) -> Message:  # fmt: skip
     """Return a sensor_msgs/LaserScan; a ray that hits nothing has the range +inf (REP 117).
 
     Args:
@@ -102,15 +97,10 @@ def scan(
     ranges = np.where(empty, np.inf, distance).astype(np.float32)
     increment = float(angle[-1] - angle[0]) / (len(angle) - 1) if len(angle) > 1 else 0.0
     return {
-        "header": _header(seconds, BASE),
-        "angle_min": float(angle[0]),
-        "angle_max": float(angle[-1]),
-        "angle_increment": increment,
-        "scan_time": period,
-        "range_min": 0.0,
-        "range_max": range_max,
-        "ranges": ranges.astype(np.float64).tolist(),
-    }
+        "header": _header(seconds, BASE), "scan_time": period,
+        "angle_min": float(angle[0]), "angle_max": float(angle[-1]), "angle_increment": increment,
+        "range_min": 0.0, "range_max": range_max, "ranges": ranges.astype(np.float64).tolist(),
+    }  # fmt: skip
 
 
 def goal(seconds: float, position: np.ndarray, heading: float) -> Message:
@@ -126,16 +116,13 @@ def people(
         "header": _header(seconds, MAP),
         "people": [
             {
-                "name": str(k),
-                "position": _vector(position[k]),
-                "velocity": _vector(velocity[k]),
-                "reliability": 1.0,
-                "tagnames": ["kind", "radius"],
+                "name": str(k), "position": _vector(position[k]), "velocity": _vector(velocity[k]),
+                "reliability": 1.0, "tagnames": ["kind", "radius"],
                 "tags": [KINDS[int(kind[k])], repr(float(radius[k]))],
             }
             for k in range(len(position))
         ],
-    }
+    }  # fmt: skip
 
 
 def twist(message: Message) -> tuple[float, float]:

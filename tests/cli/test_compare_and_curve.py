@@ -32,6 +32,7 @@ def test_two_navigators_are_compared_in_words(call, run):
     [
         (("orca", "straightline"), "Did you mean 'straight-line'"),
         (("orca",), "needs a run and two navigators"),
+        (("tiny/open:size=3", "orca"), "'tiny/open:size=3' is a scenario"),
         (("orca", "straight-line", "--scenario", "tiny/opne"), "Did you mean 'tiny/open'"),
         (("orca", "straight-line", "--metric", "sucess"), "Did you mean 'success'"),
         (("orca", "straight-line", "--format", "html"), "markdown, csv, json"),

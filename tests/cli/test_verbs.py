@@ -11,6 +11,7 @@ import pytest
 from jsonschema import Draft202012Validator
 
 import benchnav
+from benchnav.errors import ScenarioError
 from benchnav.plugins import NAVIGATORS, PLANNERS
 from benchnav.threads import core_count
 from tests.installed import install
@@ -41,6 +42,9 @@ from tests.installed import install
         (("leaderboard", ".", "--format", "latx"), "Did you mean 'latex'"),
         (("schema", "scenarios"), "Did you mean 'scenario'"),
         (("validate", "gone.yaml"), "gone.yaml:1: cannot be read"),
+        (("validate", "trap/v"), "Did you mean 'trap/u'"),
+        (("validate", "people/corridor:peopel=3"), "has the parameters robot, agents"),
+        (("import", "sdf", "a.world", "--out", "x.yaml", "--start", "1,a"), "--start must be numb"),
         (("import", "movingai", "gone.map", "--out", "x.yaml"), "gone.map"),
         (("new", "navigator", "Big Name"), "must be small letters"),
         (("new", "navigator", "orca"), "must be free"),
@@ -139,6 +143,22 @@ def test_validate_tells_scenarios_from_suites(call, suite):
     assert code == 0
     assert "is a scenario, tiny/open@1" in stdout
     assert "2 agents" in stdout
+
+
+def test_validate_takes_names_and_parameters(call):
+    assert "people/corridor@1" in call("validate", "people/corridor:reactive=5", "--no-draw")[1]
+    assert "is a suite, quick@" in call("validate", "quick")[1]
+    assert "is a robot, Clearpath Jackal" in call("validate", "jackal")[1]
+
+
+def test_an_option_is_named_as_the_command_names_it(call, tmp_path):
+    file = tmp_path / "people.txt"
+    file.write_text("# framerate: 10\n1 0 0 0 0\n1 1 0.1 0 0\n")
+    code, _, stderr = call("import", "recording", file, "--out", tmp_path / "x.yaml")
+    assert code == 2
+    assert "does not say its unit; set --unit to m or cm" in stderr
+    with pytest.raises(ScenarioError, match="set the option 'unit' to m or cm"):
+        benchnav.import_recording(file, tmp_path / "x.yaml")
 
 
 def test_validate_names_file_line_and_key(call, tmp_path):

@@ -100,11 +100,17 @@ def crowdit(folder):
     return path
 
 
+def pathfinder(folder):
+    lines = ['"t","id","name","x","y","z"', '"s","","","m","m","m"']
+    lines += [f'{0.1 * f:.1f},{n},"{n:05}",{x},{y},0' for f, n, x, y in rows()]
+    return written(folder / "p.csv", lines)
+
+
 WRITERS = {
     "eth": (eth, {"rate": 10}), "text": (text, {"rate": 10}),
     "trajnetpp": (trajnetpp, {"rate": 10}), "juelich": (juelich, {}), "hdf5": (hdf5, {}),
     "jupedsim": (jupedsim, {}), "vadere": (vadere, {"rate": 10}), "viswalk": (viswalk, {}),
-    "crowdit": (crowdit, {}),
+    "crowdit": (crowdit, {}), "pathfinder-csv": (pathfinder, {}),
 }  # fmt: skip
 
 

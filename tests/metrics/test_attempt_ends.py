@@ -32,7 +32,7 @@ def test_the_first_contact_is_named(episode):
     contacts, words = episode.contacts, attempt_ends(episode)
     agent = int(contacts.agent[np.flatnonzero(contacts.charged)[0]])
     row = np.flatnonzero(contacts.charged & (contacts.agent == agent))[0]
-    partner = partner_text(int(contacts.kind[row]), int(contacts.partner[row]))
+    partner = partner_text(episode.world, int(contacts.kind[row]), int(contacts.partner[row]))
     assert words[agent].startswith(f"hit {partner} at {contacts.start[row]:.1f} s")
 
 

@@ -346,3 +346,53 @@ def test_recordings_are_scored_in_every_format_that_is_imported(tmp_path, capsys
         status(command)
         words = "".join(c if c.isalnum() or c == "-" else " " for c in capsys.readouterr().out)
         assert set(FORMATS) <= set(words.replace("- ", "-").split()) | {"pedpy"}, command
+
+
+MOVERS = [
+    {
+        "shape": {"type": "box", "width": 0.8}, "count": 2, "region": {"type": "anywhere"},
+        "law": {"type": "back-and-forth", "length": 6, "speed": 1},
+    }
+]  # fmt: skip
+RELOCATED = [
+    {
+        "shape": {"type": "disc", "radius": 0.4}, "count": 1, "relocate_at": 5,
+        "region": {"type": "anywhere"},
+    }
+]  # fmt: skip
+
+
+def moving(tmp_path, **keys):
+    path = tmp_path / "moving.yaml"
+    path.write_text(yaml.safe_dump(SCENARIO | {"name": "two/moving"} | keys))
+    made = benchnav.run(
+        str(path), navigators=["straight-line"], seeds=3, out=tmp_path / "run", workers=0,
+        tracks=["known"], salt="5a", quiet=True,
+    )  # fmt: skip
+    (file,) = made.export(tmp_path / "run.csv")
+    return path, made, file
+
+
+def test_moving_obstacles_are_those_of_the_scenario(tmp_path):
+    scenario, made, file = moving(tmp_path, dynamic=MOVERS)
+    found = {r.metric: r for r in benchnav.score(file, scenario=scenario, quiet=True).records}
+    own = {r.metric: r.value for r in made.leaderboard(metrics="all").records}
+    assert own["collisions_dynamic"] > 0.1
+    for name in ("min_clearance", "collided", "success", "collisions_dynamic", "contact_time"):
+        assert found[name].value == pytest.approx(own[name], rel=0.1, abs=5e-3), name
+    later = pd.read_csv(file)
+    later.x += 1.0  # no agent of the scenario starts there
+    later.to_csv(file, index=False)
+    found = {r.metric: r for r in benchnav.score(file, scenario=scenario, quiet=True).records}
+    for name in ("min_clearance", "collided", "success", "collisions_dynamic"):
+        assert found[name].fault == "n/a: needs moving obstacles"
+    assert not found["path_length"].fault
+
+
+def test_obstacles_that_agents_can_delay_are_unknown(tmp_path, capsys):
+    scenario, _, file = moving(tmp_path, static=RELOCATED)
+    found = {r.metric: r for r in benchnav.score(file, scenario=scenario).records}
+    assert found["min_clearance"].fault == "n/a: needs moving obstacles"
+    assert "static obstacles are relocated when agents leave their new places" in (
+        capsys.readouterr().err
+    )

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from benchnav.api.components.scenario_page import worlds_text
 from benchnav.api.execution.suite_source import suite_source
+from benchnav.config.yaml_packages import SUFFIXES
 from benchnav.config.yaml_reader import document_of, read_yaml
-from benchnav.errors import BenchnavError
+from benchnav.errors import BenchnavError, UsageError, did_you_mean
 from benchnav.processes.main_module import stop_import_of_main
 from benchnav.text.plural import counted
 
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from benchnav.scenario.scenario import Scenario
 
 Checkable = str | PathLike[str] | Mapping[str, Any]
-"""A YAML file, or its content."""
+"""A YAML file, its content, or the name of an installed scenario, suite or robot."""
 
 
 class Validation:
@@ -56,8 +57,10 @@ def validate(content: Checkable, *, draw: bool = True) -> Validation:
     """Check a scenario, suite or robot, and return its problems.
 
     Args:
-        content: a YAML file, or its content as a dict, as `benchnav.run` takes it. Files that a
-            dict names are relative to the working directory.
+        content: a YAML file, its content as a dict, as `benchnav.run` takes it, or the name of an
+            installed scenario, suite or robot. A scenario may have parameters:
+            ``NAME:key=value``, ``FILE:key=value``. Files that a dict names are relative to the
+            working directory.
         draw: also draw worlds of a scenario: are they solvable, do they differ?
     """
     stop_import_of_main()
@@ -72,21 +75,27 @@ def validate(content: Checkable, *, draw: bool = True) -> Validation:
 
 def _facts(content: Checkable, draw: bool) -> Iterator[str]:
     from benchnav.runner.plan.suite_file import describes_scenario
+    from benchnav.scenario.load import scenario_of
+    from benchnav.scenario.parameters import split_parameters
     from benchnav.scenario.robots.robot import is_robot
 
     if isinstance(content, Mapping):
         if is_robot(content):
             yield _robot(document_of(content, "robot"), "It")
         elif describes_scenario(dict(content)):
-            yield from _scenario(document_of(content, "scenario"), Path(), draw, "It")
+            yield from _scenario(scenario_of(document_of(content, "scenario"), Path()), draw, "It")
         else:
             yield _suite(suite_source(content), "It")
+        return
+    base, parameters = split_parameters(str(content))
+    if parameters or not (base.endswith(SUFFIXES) or Path(base).exists()):
+        yield from _named(str(content), draw)
         return
     document = read_yaml(Path(content))
     if is_robot(document.data):
         yield _robot(document, str(content))
     elif describes_scenario(document.data):
-        yield from _scenario(document, Path(content).parent, draw, str(content))
+        yield from _scenario(scenario_of(document, Path(content).parent), draw, str(content))
     else:
         yield _suite(str(content), str(content))
 
@@ -114,11 +123,29 @@ def _suite(source: "str | Document", name: str) -> str:
     )
 
 
-def _scenario(document: "Document", folder: Path, draw: bool, name: str) -> Iterator[str]:
-    from benchnav.navigation.plugin.background_navigators import check_drivers
-    from benchnav.scenario.load import scenario_of
+def _named(name: str, draw: bool) -> Iterator[str]:
+    """Yield facts of an installed scenario, suite or robot, or of a file with parameters."""
+    from benchnav.runner.plan.suite_file import suite_names
+    from benchnav.scenario import catalogue
+    from benchnav.scenario.robots import registry
 
-    scenario = scenario_of(document, folder)
+    if catalogue.is_named(name):
+        yield from _scenario(catalogue.find(name), draw, name)
+    elif name in suite_names():
+        yield _suite(name, name)
+    elif name in registry.names():
+        yield f"{name} is a robot, {registry.find_robot(name).title}"
+    else:
+        known = [*catalogue.names(), *suite_names(), *registry.names()]
+        raise UsageError(
+            f"{name} must be a file (.yaml), or an installed scenario, suite or robot."
+            f"{did_you_mean(name.partition(':')[0], known)} 'benchnav list' shows all."
+        )
+
+
+def _scenario(scenario: "Scenario", draw: bool, name: str) -> Iterator[str]:
+    from benchnav.navigation.plugin.background_navigators import check_drivers
+
     check_drivers(scenario)
     yield f"{name} is a scenario, {scenario.identity}, hash {scenario.hash}"
     if draw:

@@ -5,15 +5,17 @@ from typing import Annotated
 
 import typer
 
-from benchnav.cli.authoring.import_map import Force, Name
-from benchnav.cli.console import put
-from benchnav.cli.stopping import stoppable
-from benchnav.errors import UsageError
+from benchnav.cli.authoring.import_options import (
+    Force,
+    Name,
+    Numbers,
+    import_file,
+    numbers,
+)
 
 
-@stoppable
 def recording(
-    file: Annotated[Path, typer.Argument(metavar="RECORDING", help="A recording of people.")],
+    recording: Annotated[Path, typer.Argument(metavar="RECORDING", help="A recording of people.")],
     out: Annotated[Path, typer.Option(metavar="FILE", help="Scenario file to write.")],
     format: Annotated[
         str | None,
@@ -70,8 +72,12 @@ def recording(
         float | None, typer.Option(metavar="M", help="Metres per pixel of an image of walls.")
     ] = None,
     wall_origin: Annotated[
-        str | None,
-        typer.Option(metavar="X,Y", help="Lower left corner [m] of an image of walls."),
+        Numbers | None,
+        typer.Option(
+            parser=numbers("--wall-origin"),
+            metavar="X,Y",
+            help="Lower left corner [m] of an image of walls.",
+        ),
     ] = None,
     person_radius: Annotated[
         float, typer.Option(metavar="M", help="Radius [m] of a person.")
@@ -93,23 +99,7 @@ def recording(
     force: Force = False,
 ) -> None:
     """Convert a recording of people; the robot replaces one of them."""
-    from benchnav.api.authoring.import_recording import import_recording
-
-    files = import_recording(
-        file, out, format=format, rate=rate, unit=unit,
-        columns=None if columns is None else columns.split(","), gaps=gaps,  # type: ignore[arg-type] # checked there
-        replace=replace, react=react, walls=walls, wall_cell=wall_cell,
-        wall_origin=_origin(wall_origin), person_radius=person_radius, radius=radius, speed=speed,
-        horizon=horizon, name=name, force=force,
-    )  # fmt: skip
-    put("\n".join(str(file) for file in files))
-
-
-def _origin(text: str | None) -> tuple[float, float] | None:
-    if text is None:
-        return None
-    try:
-        x, y = map(float, text.split(","))
-    except ValueError:
-        raise UsageError(f"--wall-origin must be two numbers, X,Y; got {text!r}.") from None
-    return x, y
+    import_file(
+        "import_recording",
+        {**locals(), "columns": None if columns is None else columns.split(",")},
+    )

@@ -1,6 +1,5 @@
 """`benchnav validate`: check a scenario, suite or robot file."""
 
-from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -9,13 +8,20 @@ from benchnav.cli.console import put
 
 
 def validate(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="A scenario, suite or robot file.")],
+    file: Annotated[
+        str,
+        typer.Argument(
+            metavar="FILE|NAME",
+            help="A scenario, suite or robot: its file or name. A scenario may have parameters:"
+            " NAME:key=value.",
+        ),
+    ],
     draw: Annotated[
         bool,
         typer.Option(help="Also draw worlds of a scenario: are they solvable, do they differ?"),
     ] = True,
 ) -> None:
-    """Check a scenario, suite or robot file.
+    """Check a scenario, suite or robot.
 
     Each problem is reported as file:line: key.
     """

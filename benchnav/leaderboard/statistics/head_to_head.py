@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -76,12 +77,20 @@ def duel(
 
 def _require(results: pa.Table, first: str, second: str) -> None:
     known = sorted(results["navigator"].unique().to_pylist())
+    scenarios = {re.split("[@:]", s)[0] for s in results["scenario"].unique().to_pylist()}
     for name in (first, second):
-        if name not in known:
+        if name in known:
+            continue
+        if re.split("[@:]", name)[0] in scenarios:
             raise UsageError(
-                f"A navigator to compare must be in the run. Got {name!r} instead."
-                f"{did_you_mean(name, known)}"
+                f"A comparison is between two navigators, in the same worlds. {name!r} is a"
+                " scenario: the values of one of its parameters side by side are a curve"
+                " (of a leaderboard, by the option 'curve')."
             )
+        raise UsageError(
+            f"A navigator to compare must be in the run. Got {name!r} instead."
+            f"{did_you_mean(name, known)}"
+        )
     if first == second:
         raise UsageError(f"Two different navigators can be compared. Got {first!r} twice.")
 

@@ -26,7 +26,8 @@ def partner_name(world: World, kind: int, partner: int) -> str:
         return _agent(world, partner)
     if partner < 0:
         index = -1 - partner
-        return f"{_LAWS[world.bodies[index].law.kind]} {index + 1}"
+        body = world.bodies[index]
+        return f"{'recorded person' if body.person else _LAWS[body.law.kind]} {index + 1}"
     solid = world.solids[partner]
     if solid.kind == Kind.STATIC:
         return f"static obstacle {_number(world.solids, partner)}"

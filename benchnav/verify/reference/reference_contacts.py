@@ -3,6 +3,7 @@
 from dataclasses import dataclass, field
 
 RELEASE = 0.01  # [m] a contact ends at a wider gap
+MAX_HITS = 8  # after this many touches within a substep, an agent is wedged
 MAX_OPEN = 8  # contacts of one agent at one time; one more closes the oldest
 
 Partner = tuple[str, int]  # ("agent" | "solid" | "body", index)

@@ -21,6 +21,12 @@ def dot(u: FloatArray, v: FloatArray) -> FloatArray:
     return product
 
 
+def unit(vector: FloatArray) -> FloatArray:
+    """Return the vector (2,) with length 1; (1, 0) for zero."""
+    length = math.hypot(*vector)
+    return vector / length if length > 0.0 else np.array([1.0, 0.0])
+
+
 def nearest(p: FloatArray, a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the point (…, 2) of the segment a–b that is nearest to p."""
     d = b - a

@@ -7,7 +7,6 @@ must do.
 """
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -17,25 +16,23 @@ from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards, Charge, ContactRule, World
 from benchnav.arrays import BoolArray, ByteArray, FloatArray
 from benchnav.episode.episode import Status
-from benchnav.verify.reference.reference_contacts import Event, Ledger, Partner
+from benchnav.verify.reference.reference_contacts import MAX_HITS, Event, Ledger, Partner
 from benchnav.verify.reference.reference_dynamics import Drive
 from benchnav.verify.reference.reference_entry import SOON, admit
 from benchnav.verify.reference.reference_footprint import Footprints, difference, touch_time
-from benchnav.verify.reference.reference_geometry import first_touch, inside, law_position, nearest
+from benchnav.verify.reference.reference_geometry import (
+    first_touch,
+    inside,
+    law_position,
+    nearest,
+    unit,
+)
+from benchnav.verify.reference.reference_touch import Touch, rivals
 from benchnav.verify.reference.reference_turning import gap_to, turn
+from benchnav.verify.reference.reference_wedging import record_wedged
 
-MAX_HITS = 8  # after this many touches within a substep, an agent is wedged
 TIGHT = 1e-6  # [m] wider than any rounding
-CLOSE = 1e-9  # [s] touches closer in time than this may come in either order
 _NO_AGENTS: Partner = ("goal", 0)
-
-
-@dataclass
-class _Touch:
-    time: float
-    agent: int
-    partner: Partner
-    capsule: int = -1  # of the solid
 
 
 class Twin:
@@ -70,7 +67,7 @@ class Twin:
         self._solid = [k for k, s in enumerate(solids) for _ in s.capsules]
         carried = [body.solid.capsules for body in self.world.bodies]
         self._carried = np.vstack([none, *carried])
-        self._owner = np.array([m for m, c in enumerate(carried) for _ in c], np.int64)
+        self.owner = np.array([m for m, c in enumerate(carried) for _ in c], np.int64)
 
     def capsule(self, p: int) -> FloatArray:
         """Return the capsule (5,) number p of the immobile solids."""
@@ -83,7 +80,7 @@ class Twin:
 
     def carried(self, m: int) -> FloatArray:
         """Return the capsules (P, 5) of body m where it is."""
-        moved: FloatArray = self._carried[self._owner == m].copy()
+        moved: FloatArray = self._carried[self.owner == m].copy()
         moved[:, :4] += np.tile(self.bodies[m], 2)
         return moved
 
@@ -158,12 +155,13 @@ class Twin:
         ]
         target = np.array(goals).reshape(-1, 2)
         jumps = absent(target) != absent(self.bodies)
-        self._carry = np.where(jumps[:, None], 0.0, (target - self.bodies) / h)
+        self.carry = np.where(jumps[:, None], 0.0, (target - self.bodies) / h)
         left = h
         while (touch := self._earliest()) is not None and touch.time <= left:
             self._drift(touch.time)
             left -= touch.time
             self._meet(touch, begin + h - left)
+            record_wedged(self, begin + h - left, left)
         self._drift(left)
         self.bodies = target
         self._turn(drive, begin + h, h)
@@ -171,7 +169,7 @@ class Twin:
 
     def _drift(self, time: float) -> None:
         self.position = self.position + self.velocity * time
-        self.bodies = self.bodies + self._carry * time
+        self.bodies = self.bodies + self.carry * time
 
     def _turn(self, drive: FloatArray, time: float, h: float) -> None:
         for i in np.flatnonzero(self.active):
@@ -192,24 +190,24 @@ class Twin:
         if angle != 0.0:
             turn(self, i, angle, time, h)
 
-    def _earliest(self) -> _Touch | None:
+    def _earliest(self) -> Touch | None:
         """Return the next touch; of simultaneous touches that of the first agent."""
         agents = np.flatnonzero(self.active & (self.hits < MAX_HITS))
         if len(agents) == 0:
             return None
         found = self._touches(agents)
         best = min(found, key=lambda touch: (touch.time, touch.agent))
-        if self.hits.max() > MAX_HITS // 2 or _rivals(best, found):
+        if self.hits.max() > MAX_HITS // 2 or rivals(best, found):
             self.doubtful = True
         return best if best.time < math.inf else None
 
-    def _touches(self, agents: np.ndarray) -> list[_Touch]:
-        """Return the first touch of each of ``agents`` (N,), by the order of rules for ties."""
+    def touch_times(self, agents: np.ndarray) -> tuple[FloatArray, ...]:
+        """Return times [s] until ``agents`` (N,) touch the goal, capsules, bodies' ones, agents."""
         world, r = self.world, self.world.agents.radius
         p, v = self.position[agents][:, None], self.velocity[agents][:, None]
         goal, tolerance = world.agents.goal[agents][:, None], world.rules.goal_tolerance
         f, c, zero = self._fixed, self._carried, np.zeros((len(r), 2))
-        at, carry = self.bodies[self._owner], self._carry[self._owner]
+        at, carry = self.bodies[self.owner], self.carry[self.owner]
         # partners are the goal, solids, bodies and agents: one call for all of them is faster
         place, moved = (
             np.concatenate([own, own - np.zeros_like(f[:, :2]), own - bodies, own - others], axis=1)
@@ -229,9 +227,14 @@ class Twin:
         others[np.arange(many), agents] = math.inf
         others[:, ~self.present] = math.inf
         self._refine(agents, fixed, bodies, others)
+        return home, fixed, bodies, others
+
+    def _touches(self, agents: np.ndarray) -> list[Touch]:
+        """Return the first touch of each of ``agents`` (N,), by the order of rules for ties."""
+        home, fixed, bodies, others = self.touch_times(agents)
         found = []
         for row, i in enumerate(agents):
-            touch = _Touch(float(home[row]), int(i), _NO_AGENTS)
+            touch = Touch(float(home[row]), int(i), _NO_AGENTS)
             for name, times in (("solid", fixed), ("body", bodies), ("agent", others)):
                 k = int(np.argmin(times[row])) if times.shape[1] else -1
                 if k >= 0 and times[row, k] < touch.time:
@@ -256,10 +259,10 @@ class Twin:
                     hull = difference(core, c[:4].reshape(2, 2))
                     fixed[row, k] = touch_time(p, v, hull, float(c[4] + shapes.rounding[i]))
                 for q, c in enumerate(self._carried):
-                    m = self._owner[q]
+                    m = self.owner[q]
                     hull = difference(core, c[:4].reshape(2, 2))
                     reach = float(c[4] + shapes.rounding[i])
-                    moved = p - self.bodies[m], v - self._carry[m]
+                    moved = p - self.bodies[m], v - self.carry[m]
                     bodies[row, q] = touch_time(*moved, hull, reach)
             pairs = self.present & (shapes.shaped | shapes.shaped[i])
             for j in np.flatnonzero(pairs):
@@ -273,12 +276,12 @@ class Twin:
                     reach = float(shapes.rounding[i] + shapes.rounding[j])
                     others[row, j] = touch_time(p - self.position[j], w, hull, reach)
 
-    def _named(self, name: str, k: int, time: float, i: int) -> _Touch:
+    def _named(self, name: str, k: int, time: float, i: int) -> Touch:
         if name == "solid":
-            return _Touch(time, i, (name, self._solid[k]), k)
-        return _Touch(time, i, (name, int(self._owner[k]) if name == "body" else k))
+            return Touch(time, i, (name, self._solid[k]), k)
+        return Touch(time, i, (name, int(self.owner[k]) if name == "body" else k))
 
-    def _meet(self, touch: _Touch, time: float) -> None:
+    def _meet(self, touch: Touch, time: float) -> None:
         self.touches += 1
         i, (name, k) = touch.agent, touch.partner
         if name == "goal":
@@ -289,13 +292,13 @@ class Twin:
         if name == "agent":
             self._meet_agent(i, k, time)
             return
-        away, carried = self._away(i, name, k, touch.capsule)
-        normal = _unit(away)
+        away, carried = self.away(i, name, k, touch.capsule)
+        normal = unit(away)
         closing = float((carried - self.velocity[i]) @ normal)
         self.ledger.record(i, touch.partner, time, closing, True)
         self.respond(i, normal, closing, time)
 
-    def _away(self, i: int, name: str, k: int, capsule: int) -> tuple[FloatArray, FloatArray]:
+    def away(self, i: int, name: str, k: int, capsule: int) -> tuple[FloatArray, FloatArray]:
         """Return (vector from the partner's nearest point to agent i, the partner's velocity)."""
         if name == "solid":
             c = self._fixed[capsule]
@@ -303,17 +306,17 @@ class Twin:
                 return gap_to(self, i, (("solid", capsule), capsule))[0], np.zeros(2)
             return self.position[i] - nearest(self.position[i], c[:2], c[2:4]), np.zeros(2)
         if self.shapes.shaped[i]:
-            return gap_to(self, i, (("body", k), -1))[0], self._carry[k]
-        shapes = self._carried[self._owner == k]
+            return gap_to(self, i, (("body", k), -1))[0], self.carry[k]
+        shapes = self._carried[self.owner == k]
         local = self.position[i] - self.bodies[k]
         away = local - nearest(local, shapes[:, :2], shapes[:, 2:4])
         gap = np.hypot(*away.T) - shapes[:, 4]
-        return away[int(np.argmin(gap))], self._carry[k]
+        return away[int(np.argmin(gap))], self.carry[k]
 
     def _meet_agent(self, i: int, j: int, time: float) -> None:
         """Remove each agent's own motion towards the other."""
         self.hits[j] += 1
-        normal = _unit(self.position[i] - self.position[j])
+        normal = unit(self.position[i] - self.position[j])
         if self.shapes.shaped[i] or self.shapes.shaped[j]:
             normal = gap_to(self, i, (("agent", j), -1))[0]
         own, other = float(self.velocity[i] @ normal), float(self.velocity[j] @ normal)
@@ -381,19 +384,3 @@ class Twin:
         core = self.shapes.core(i, float(self.heading[i]))
         extent = (core @ (away / np.where(apart > 0.0, apart, 1.0)[:, None]).T).max(axis=0)
         return -float((apart + extent).min()) - float(self.shapes.rounding[i])
-
-
-def _unit(vector: FloatArray) -> FloatArray:
-    length = math.hypot(*vector)
-    return vector / length if length > 0.0 else np.array([1.0, 0.0])
-
-
-def _rivals(best: _Touch, found: list[_Touch]) -> bool:
-    """Whether another touch, with one of the same two agents, could come first as well."""
-    own = {best.agent, best.partner[1] if best.partner[0] == "agent" else best.agent}
-    for other in found:
-        rivals = {other.agent, other.partner[1] if other.partner[0] == "agent" else other.agent}
-        close = other is not best and other.time - best.time < CLOSE and rivals != own
-        if close and own & rivals:
-            return True
-    return False

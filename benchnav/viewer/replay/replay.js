@@ -524,8 +524,11 @@ class View {
       c.fillStyle = colour("ink");
       c.fillText(text, px, py);
     };
-    for (let m = 0; m < this.bodies.length && scale > 8; m++)
-      write(String(m + 1), this.bodyAt(m, Math.floor(k + 1e-6)), 0, "center");
+    for (let m = 0; m < this.bodies.length && scale > 8; m++) {
+      const radius = this.scene.bodies[m].disc?.[2] ?? Infinity;
+      if (scale * radius >= 8)
+        write(String(m + 1), this.bodyAt(m, Math.floor(k + 1e-6)), 0, "center");
+    }
     for (let a = 0; a < this.count; a++) {
       const size = scale * radius[a];
       if (this.count > NUMBERED && size < 10) continue;

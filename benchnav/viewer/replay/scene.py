@@ -87,7 +87,7 @@ def events(episode: Episode) -> list[dict[str, Any]]:
     for n in range(len(contacts)):
         agent, partner = int(contacts.agent[n]), int(contacts.partner[n])
         kind = Kind(int(contacts.kind[n]))
-        text = partner_text(int(kind), partner)
+        text = partner_text(episode.world, int(kind), partner)
         if mirrored[n]:
             continue
         out.append({

@@ -63,6 +63,8 @@ def _format(path: Path, head: bytes) -> str | None:
     text = head.decode("utf-8", "replace")
     if "pedID" in text and "posX" in text:
         return "crowdit"
+    if text.replace('"', "").lstrip("\ufeff").startswith("t,id,"):
+        return "pathfinder-csv"
     if "framerate" in text.lower():
         return "juelich"
     if path.suffix.lower() not in (".txt", ".csv", ".dat", ".tsv"):
