@@ -154,7 +154,7 @@ def draw_trails(axes: Axes, episode: Episode, until: float) -> None:
         last = min(int(trajectories.last[a]), round(until / dt))
         points = trajectories.position[a, round(begin[a] / dt) : last + 1]
         pieces = list(np.stack([points[:-1], points[1:]], axis=1))
-        color = agent_color(episode.world, a)
+        color = agent_color(episode.world, int(a))
         shades = [to_rgba(color, alpha) for alpha in np.linspace(0.3, 1.0, max(len(pieces), 1))]
         axes.add_collection(LineCollection(pieces, colors=shades, linewidths=1.3, zorder=3.5))
         times = np.arange(MARK, min(trajectories.end[a], until) + 1e-9, MARK)

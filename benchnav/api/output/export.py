@@ -104,8 +104,9 @@ def present(record: Record) -> BoolArray:
     rules, final = record.world.rules, record.status[-1]
     gone = (final == int(Status.ARRIVED)) & (rules.on_arrival == Afterwards.VANISH)
     gone |= (final == int(Status.ENDED)) & (rules.on_end == Afterwards.VANISH)
-    here: BoolArray = ~gone | (states <= analyse(record).trajectories.last)
-    return here & (record.status != int(Status.WAITING))
+    here = ~gone | (states <= analyse(record).trajectories.last)
+    inside: BoolArray = here & (record.status != int(Status.WAITING))
+    return inside
 
 
 def _write_table(tables: "Iterator[pd.DataFrame]", out: Path, to: str) -> None:
