@@ -99,7 +99,7 @@ def training(r: Record) -> Cell:
 
 
 def trainings(r: Record) -> Cell:
-    """Return the range of the means of single trainings, ``0.884–0.893 (3)``; empty for one."""
+    """Return the range of the means of trainings, ``0.884–0.893 (3)``; empty for one training."""
     if r.trainings < 2 or math.isnan(r.training_least):
         return Cell(f"({r.trainings})" if r.trainings > 1 else "")
     size, name = prefixed(r.unit, max(abs(r.training_least), abs(r.training_most)))
@@ -108,7 +108,8 @@ def trainings(r: Record) -> Cell:
         None if r.unit else 1.0,
     )  # fmt: skip
     unit = f" {name}" if name else ""
-    return Cell(f"{least}–{most}{unit} ({r.trainings})")
+    ends = least if least == most else f"{least}–{most}"
+    return Cell(f"{ends}{unit} ({r.trainings})")
 
 
 def rehearsal(r: Record) -> Cell:

@@ -91,9 +91,12 @@ def sentence(c: Comparison, metric: Metric) -> str:
 
 def over_trainings(c: Comparison, metric: Metric) -> str:
     """Return the sentence about the interval over worlds and trainings, which must be known."""
-    value, ends, unit = _figures(metric, c.difference, [c.training_low, c.training_high], plus=True)
-    holds = c.training_low > 0.0 or c.training_high < 0.0
-    verdict = "It also holds for other trainings" if holds else "Other trainings may reverse it"
+    bounds = [c.training_low, c.training_high]
+    value, ends, unit = _figures(metric, c.difference, bounds, plus=True)
+    verdict = "With other trainings"
+    if c.verdict not in ("tie", "too few worlds", "not as equals"):
+        holds = c.training_low > 0.0 or c.training_high < 0.0
+        verdict = "It also holds for other trainings" if holds else "Other trainings may reverse it"
     return f"{verdict}: {value}{unit}{ends}."
 
 
@@ -104,13 +107,23 @@ def training_sentences(c: Comparison, metric: Metric) -> Iterator[str]:
         (c.second, c.second_trainings, c.second_deviation),
     )
     for name, count, deviation in sides:
-        if count > 1 and not math.isnan(deviation):
-            apart, _, unit = _figures(metric, Spread(count, deviation=deviation).of_two, [])
-            spread, _, _ = _figures(metric, deviation, [])
+        if count < 2 or math.isnan(deviation):
+            continue
+        apart = Spread(count, deviation=deviation).of_two
+        spread = f"the standard deviation of {count} trainings is {_size(deviation, metric)}"
+        if apart < metric.high - metric.low:
             yield (
-                f"One training seed: two trainings of {name} differ by up to {apart}{unit} (95 %;"
-                f" the standard deviation of {count} trainings is {spread}{unit})."
+                f"One training seed: two trainings of {name} differ by up to"
+                f" {_size(apart, metric)} (95 %; {spread})."
             )
+        else:
+            yield f"One training seed: {spread} for {name}; more trainings would show its worth."
+
+
+def _size(value: float, metric: Metric) -> str:
+    """Return a difference with two figures and its unit."""
+    size, unit = scaled(metric, value)
+    return f"{value / size:.2g}{f' {unit}' if unit else ''}"
 
 
 def _sentence(c: Comparison, metric: Metric) -> str:

@@ -97,5 +97,6 @@ def _common(s: Stratum, pair: tuple[str, str]) -> Stratum:
 
 def _both(s: Stratum, pair: tuple[str, str]) -> BoolArray:
     """Return the worlds (S,) that both attempted."""
-    both: BoolArray = s.attempted[:, [s.navigators.index(name) for name in pair]].all(axis=1)
+    first, second = (s.attempted[:, s.navigators.index(name)] for name in pair)
+    both: BoolArray = first & second
     return both

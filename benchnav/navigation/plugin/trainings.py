@@ -66,13 +66,15 @@ def each_training(spec: Spec, label: str, where: str) -> tuple[Spec, ...]:
     Raises ConfigError for two lists, and for a list with fewer than two files, with more than
     `MOST`, or with a file twice; ``where`` is the place of the spec.
     """
-    found = [] if isinstance(spec, str) else list(_lists(spec))
+    if isinstance(spec, str):
+        return (spec,)
+    found = list(_lists(spec))
     if not found:
         return (spec,)
     if len(found) > 1:
         named = " and ".join(".".join(path) for path, _ in found)
         raise ConfigError(f"{where}: Only one parameter can list several trainings. Got {named}.")
-    (path, files) = found[0]
+    path, files = found[0]
     if not 2 <= len(files) <= MOST or len(set(files)) < len(files):
         raise ConfigError(
             f"{where}: {'.'.join(path)} must be one file, or a list of 2 to {MOST} different files,"
