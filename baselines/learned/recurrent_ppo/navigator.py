@@ -1,4 +1,4 @@
-"""Navigators with learned weights: the paper's, the same with a correction, and one that sees more."""
+"""Navigators with learned weights: the paper's, alone or corrected, and one that sees more."""
 
 from typing import ClassVar
 

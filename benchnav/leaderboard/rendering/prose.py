@@ -123,7 +123,7 @@ def training_sentences(c: Comparison, metric: Metric) -> Iterator[str]:
 def _size(value: float, metric: Metric) -> str:
     """Return a difference with two figures and its unit."""
     size, unit = scaled(metric, value)
-    return f"{value / size:.2g}{f' {unit}' if unit else ''}"
+    return f"{float(f'{value / size:.2g}'):g}{f' {unit}' if unit else ''}"
 
 
 def _sentence(c: Comparison, metric: Metric) -> str:
