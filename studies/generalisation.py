@@ -17,6 +17,7 @@ from typing import Any
 import yaml
 
 from benchnav.api.execution.train import train
+from benchnav.envs.recipes import recipe_files
 from benchnav.leaderboard.from_runs import stored_values
 from benchnav.leaderboard.record import Record
 from benchnav.navigation.plugin.configure import make
@@ -40,6 +41,7 @@ FAMILIES: Mapping[str, Sequence[str]] = {
 }
 DECISIONS = 1_000_000  # of each training
 TRAININGS = 3  # seeds of each family
+RECIPES = {"q-learning": "q-leaders"}  # of navigators whose weights do not name their recipe
 
 
 def recipe(family: str, decisions: int) -> dict[str, Any]:
@@ -121,8 +123,13 @@ class Evidence:
 def _families(config: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the families in which the weights of a navigator were trained; none without."""
     about = getattr(getattr(make(NAVIGATORS, config), "pilot", None), "about", {})
-    courses = [course["scenario"] for course in about.get("courses", ())]
-    return tuple(dict.fromkeys(name.partition("/")[0] for name in courses))
+    name = about.get("recipe", RECIPES.get(str(config["type"])))
+    shipped = recipe_files()[0].get(str(name))
+    known = about if shipped is None else yaml.safe_load(shipped.path.read_text("utf-8"))
+    courses = [*known.get("courses", ())]
+    courses += [course for stage in known.get("stages", ()) for course in stage.get("courses", ())]
+    scenarios = [*known.get("scenarios", ()), *(course["scenario"] for course in courses)]
+    return tuple(dict.fromkeys(scenario.partition("/")[0] for scenario in scenarios))
 
 
 def page(evidence: Evidence) -> str:
