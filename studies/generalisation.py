@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import yaml
@@ -40,6 +41,11 @@ FAMILIES: Mapping[str, Sequence[str]] = {
     "circle": ("circle/antipodal",),
 }
 DECISIONS = 1_000_000  # of each training
+NOTE = (
+    "Intervals are 95 %, clustered by world, for these trainings; (n: a–b) after a value: the range"
+    " of n trainings with different seeds. `orca` was not trained and is there for comparison."
+)
+WIDTH = 118  # characters of a line
 TRAININGS = 3  # seeds of each family
 RECIPES = {"q-learning": "q-leaders"}  # of navigators whose weights do not name their recipe
 
@@ -87,7 +93,7 @@ def specialists(folder: Path, decisions: int, trainings: int) -> list[dict[str, 
 
 def execute(folder: Path, extra: Sequence[dict[str, Any]], seeds: str) -> RunFolder:
     """Run the suite with the specialists, or continue with it."""
-    own = [navigator.label for navigator in load_suite(SUITE).contestants]
+    own = entries_of(navigator.label for navigator in load_suite(SUITE).contestants)
     wanted = Selection(navigators=(*extra, *own), seeds=seeds, salt=SALT)
     run_suite(load_suite(SUITE, wanted), folder, progress=progress(quiet=False))
     return RunFolder.open(folder)
@@ -137,20 +143,22 @@ def page(evidence: Evidence) -> str:
     manifest = evidence.run.manifest
     first, stop = manifest.suite["seeds"]
     heads = ["policy", "trained in", *(_bare(name) for name in evidence.scenarios), "own", "others"]
-    lines = [
-        "# Generalisation",
-        "",
+    text = (
         f"Success in per cent of policies that nothing corrects, in the test worlds {first} to"
         f" {stop - 1} of each scenario (track `unknown`), by the families in which they were"
         " trained. **Bold**: trained in this family. A policy `FAMILY alone` was trained in one"
         " family with the recipe `generalisation-FAMILY`: the recipes differ only in their"
         f" courses. *Own* and *others* are means over scenarios. Written by"
         f" `python -m studies.generalisation` from a run of {manifest.suite['name']}"
-        f"@{manifest.suite['version']}, begun {manifest.created[:10]}.",
+        f"@{manifest.suite['version']}, begun {manifest.created[:10]}."
+    )
+    lines = [
+        "# Generalisation",
+        "",
+        *wrap(text, WIDTH),
         "",
         *table(heads, [_row(evidence, name) for name in evidence.navigators]),
-        "Intervals are 95 %, clustered by world, for these trainings; (n) after a value: the range"
-        " of n trainings with other seeds. `orca` was not trained and is there for comparison.",
+        *wrap(NOTE, WIDTH),
         "",
     ]
     return "\n".join(lines)

@@ -1,1 +1,1 @@
-"""RecurrentPPO with collision prediction: recipes, training, and the shipped navigators."""
+"""RecurrentPPO, alone and with collision prediction: recipes, training, and the shipped navigators."""
