@@ -45,6 +45,10 @@ NOTE = (
     "Intervals are 95 %, clustered by world, for these trainings; (n: a–b) after a value: the range"
     " of n trainings with different seeds. `orca` was not trained and is there for comparison."
 )
+SPECIALISTS = (
+    " A policy `only FAMILY` was trained in one family with the recipe `generalisation-FAMILY`; the"
+    " recipes differ in their courses."
+)
 WIDTH = 118  # characters of a line
 TRAININGS = 3  # seeds of each family
 RECIPES = {"q-learning": "q-leaders"}  # of navigators whose weights do not name their recipe
@@ -87,8 +91,13 @@ def specialists(folder: Path, decisions: int, trainings: int) -> list[dict[str, 
     for family in FAMILIES:
         files = [str(trained(folder, family, seed, decisions)) for seed in range(trainings)]
         weights = files if len(files) > 1 else files[0]
-        found.append({"type": "recurrent-ppo", "label": f"{family} alone", "weights": weights})
+        label = _specialist(family)
+        found.append({"type": "recurrent-ppo", "label": label, "weights": weights})
     return found
+
+
+def _specialist(family: str) -> str:
+    return f"only {family}"
 
 
 def execute(folder: Path, extra: Sequence[dict[str, Any]], seeds: str) -> RunFolder:
@@ -143,12 +152,12 @@ def page(evidence: Evidence) -> str:
     manifest = evidence.run.manifest
     first, stop = manifest.suite["seeds"]
     heads = ["policy", "trained in", *(_bare(name) for name in evidence.scenarios), "own", "others"]
+    has_own = any(_specialist(family) in evidence.navigators for family in FAMILIES)
+    own = SPECIALISTS if has_own else ""
     text = (
         f"Success in per cent of policies that nothing corrects, in the test worlds {first} to"
         f" {stop - 1} of each scenario (track `unknown`), by the families in which they were"
-        " trained. **Bold**: trained in this family. A policy `FAMILY alone` was trained in one"
-        " family with the recipe `generalisation-FAMILY`: the recipes differ only in their"
-        f" courses. *Own* and *others* are means over scenarios. Written by"
+        f" trained. **Bold**: trained in this family.{own} *Own* and *others* are means over scenarios. Written by"
         f" `python -m studies.generalisation` from a run of {manifest.suite['name']}"
         f"@{manifest.suite['version']}, begun {manifest.created[:10]}."
     )
