@@ -157,7 +157,8 @@ def page(evidence: Evidence) -> str:
     text = (
         f"Success in per cent of policies that nothing corrects, in the test worlds {first} to"
         f" {stop - 1} of each scenario (track `unknown`), by the families in which they were"
-        f" trained. **Bold**: trained in this family.{own} *Own* and *others* are means over scenarios. Written by"
+        f" trained. **Bold**: trained in this family.{own} *Own* and *others* are means over"
+        " scenarios. Written by"
         f" `python -m studies.generalisation` from a run of {manifest.suite['name']}"
         f"@{manifest.suite['version']}, begun {manifest.created[:10]}."
     )
