@@ -1,1 +1,1 @@
-"""RecurrentPPO, alone and with collision prediction: recipes, training, and the shipped navigators."""
+"""RecurrentPPO, alone or corrected: recipes, training, and the shipped navigators."""

@@ -61,11 +61,12 @@ class Block:
         }  # fmt: skip
 
     def __contains__(self, job: Job) -> bool:
+        label = job.contestant.label
         return (
             job.scenario.identity in self.scenarios
             and job.track in self.tracks
             and job.perception in self.perceptions
-            and {job.contestant.label, entry_of(job.contestant.label)} & {*self.navigators}
+            and not {label, entry_of(label)}.isdisjoint(self.navigators)
         )
 
 
