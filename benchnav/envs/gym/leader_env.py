@@ -10,7 +10,7 @@ from benchnav.envs.agent_batch import Autoreset
 from benchnav.envs.background_agents import BackgroundNavigator
 from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.factory import Reward, check_render_mode, drawn_index, make_batch
-from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
+from benchnav.envs.gym.spaces import action_space, observation_space, terms
 from benchnav.envs.rendering import FPS, RENDER_MODES, Display
 from benchnav.envs.seeding import plain_seed
 from benchnav.errors import UsageError
@@ -119,7 +119,9 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
             "is_success": bool(step.arrived[at]),
             "terms": {name: float(term[at]) for name, term in terms(step).items()},
         }
-        return last_seen(step)[at], float(step.reward[at]), terminated, truncated, info
+        ended = np.zeros_like(step.final[at])
+        seen = ended if terminated else step.final[at].copy()
+        return seen, float(step.reward[at]), terminated, truncated, info
 
     def render(self) -> ByteArray | None:
         """Return the world now (H, W, 3), with a ring around the learning agent.
