@@ -169,8 +169,9 @@ class AgentBatch:
             command = self.correct(self._observe(acted), self._bodies, command, tolerance)
             command[~acted] = 0.0
         for other in (*([] if background is None else [background]), *self._driven()):
-            command = np.where(other.mask[..., None], other.command, command)
-            twist = np.where(other.mask, other.twist, twist)
+            np.copyto(command, other.command, where=other.mask[..., None])
+            if not other.twist:
+                twist = twist & ~other.mask
         executed = s.step(command, twist)
         arrived, touched, timed_out, self.active = (np.empty(shape, np.bool_) for _ in range(4))
         judge(

@@ -13,6 +13,11 @@ from benchnav.world.simulation import Simulation, partners
 KINDS = len(Kind)
 
 
+def _bytes(records: AnyArray) -> AnyArray:
+    """Return a view of records (B, …) as bytes (B, …), which NumPy copies much faster."""
+    return records.view(np.uint8).reshape(len(records), records.nbytes // len(records))
+
+
 @kernel_without_allocation
 def _any_begun(worlds: AnyArray, opened: AnyArray, closed: AnyArray) -> bool:
     """Whether any charged event began in the last step."""
@@ -55,7 +60,7 @@ class AutoresetSimulation(Simulation):
         """Start the worlds ``worlds`` (N,) of the pool in ``rows`` (N,)."""
         arrays = (self.agents, self.limits, self.bodies, self.records, self.sees)
         for live, fresh in zip(arrays, self._fresh, strict=True):
-            live[rows] = fresh[worlds]
+            _bytes(live)[rows] = _bytes(fresh)[worlds]
         self._opened["code"][rows] = -1
         held = list(self.worlds)
         for b, w in zip(rows.tolist(), worlds.tolist(), strict=True):

@@ -104,9 +104,12 @@ def _fan(sensor: RaySensor) -> tuple[FloatArray, FloatArray, FloatArray]:
 def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: float) -> Rays:
     angle, fan_x, fan_y = _fan(sensor)
     shape = (*chosen.shape, len(angle))
+    distance, goal = np.empty(shape), np.empty(shape)
+    distance.fill(sensor.range)
+    goal.fill(np.inf)
     out = Rays(
-        angle.copy(), np.full(shape, float(sensor.range)), np.zeros(shape, np.int8), np.zeros(shape),
-        np.full(shape, np.inf), np.zeros(chosen.shape),
+        angle.copy(), distance, np.zeros(shape, np.int8), np.zeros(shape), goal,
+        np.zeros(chosen.shape),
     )  # fmt: skip
     s = simulation
     run_rows(

@@ -112,15 +112,16 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         commands = np.zeros((1, self.batch.width, 2))
         commands[at] = action
         step = self.batch.step(commands, self._others.decide(self.batch.active))
-        terminated, truncated = bool((step.arrived | step.touched)[at]), bool(step.timed_out[at])
+        terminated, truncated = bool(step.arrived[at] or step.touched[at]), bool(step.timed_out[at])
         self._going = not (terminated or truncated)
         self._display.refresh(self.agent)
         info = {
             "is_success": bool(step.arrived[at]),
             "terms": {name: float(term[at]) for name, term in terms(step).items()},
         }
-        ended = np.zeros_like(step.final[at])
-        seen = ended if terminated else step.final[at].copy()
+        seen = step.final[at].copy()
+        if terminated:
+            seen[:] = 0.0
         return seen, float(step.reward[at]), terminated, truncated, info
 
     def render(self) -> ByteArray | None:
