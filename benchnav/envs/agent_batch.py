@@ -129,6 +129,7 @@ class AgentBatch:
         self._slots = np.tile(np.arange(s.A), (s.B, 1))  # (B, A) all agents
         self._senses = NoisySenses(s, self._slots, noise) if noise is not None else None
         self._reverse = reverse
+        self.only: BoolArray | None = None  # (B, A) agents that learn now; None: all
 
     @property
     def rows(self) -> int:
@@ -178,7 +179,7 @@ class AgentBatch:
             acted, away, executed, s.records, s.agents, arrived, touched, timed_out, self.active,
             nearer, turned,
         )  # fmt: skip
-        seen = self._observe(self.active | timed_out)
+        seen = self._observe(self._observing(timed_out))
         terms, reward = reward_of(
             self.weights, acted=acted, arrived=arrived, nearer=nearer, contacts=s.begun(),
             probability=self._probability(seen), turned=turned,
@@ -203,6 +204,11 @@ class AgentBatch:
             return np.zeros(0, np.int64)
         before = self._autoreset is Autoreset.NEXT_STEP
         return np.flatnonzero(~(acted if before else self.active).any(1))
+
+    def _observing(self, timed_out: BoolArray) -> BoolArray:
+        """Return the agents (B, A) whose observation counts after a step."""
+        going = self.active | timed_out
+        return going if self.only is None or self._senses is not None else going & self.only
 
     def _probability(self, seen: Observation) -> FloatArray:
         """Return the probability (B, A) of a collision with a mover."""

@@ -47,7 +47,7 @@ class BackgroundNavigator:
         self._needs = frozenset(map(str, self._navigator.required))
         self._simulation = simulation
         self._mine: IntArray = np.full((simulation.B, at_most), -1)  # agents, -1: padding
-        self._maps = HeldMaps(simulation, "known")
+        self._maps = HeldMaps(simulation, "known" if self._navigator.uses_map else "unknown")
 
     def start(
         self, rows: IntArray, mine: Sequence[IntArray], streams: Sequence[np.random.Generator]

@@ -125,8 +125,7 @@ class Avoidance:
 def _flat(rows: int, arrays: Iterable[AnyArray]) -> Iterator[AnyArray]:
     """Yield each array (B, A, …) as contiguous (rows, …)."""
     for array in arrays:
-        whole = array if array.flags.c_contiguous else np.ascontiguousarray(array)
-        yield whole.reshape(rows, *array.shape[2:])
+        yield array.reshape(rows, *array.shape[2:])
 
 
 def _sensed(observation: Observation) -> Iterator[AnyArray]:

@@ -94,6 +94,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         learners = np.flatnonzero(self.batch.simulation.pool[world].agents.evaluated)
         chosen = drawn_index(self.np_random, "agent", options, np.arange(len(learners)))
         self.agent = int(learners[chosen])
+        self.batch.only = np.arange(self.batch.width)[None, :] == self.agent
         seen = self.batch.reset(np.array([world]))
         self._others.start(np.zeros(1, np.int64), [learners[learners != self.agent]], [others])
         self._begun = self._going = True
