@@ -40,11 +40,12 @@ class RewardWeights(BaseModel):
     )
     scale: float = Field(0.01, gt=0, description="factor of the total reward")
 
-
     @cached_property
     def vector(self) -> FloatArray:
         """(11,) all numbers, in the order of their declaration, for the kernel."""
-        return np.array([getattr(self, name) for name in type(self).model_fields if name != "moving"])
+        return np.array(
+            [getattr(self, name) for name in type(self).model_fields if name != "moving"]
+        )
 
 
 (

@@ -16,7 +16,6 @@ from benchnav.errors import BenchnavError, PluginError, ScenarioError
 from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
 from benchnav.testing.check_navigator import check_navigator
-
 from tests.baselines.policies import answers, driven, learner, observations
 
 ALGORITHMS = ("PPO", "A2C", "TRPO", "SAC", "TQC", "TD3", "DDPG", "RecurrentPPO")

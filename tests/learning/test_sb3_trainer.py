@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import torch
 import yaml
 from sb3_contrib import RecurrentPPO
 from stable_baselines3 import PPO, SAC
@@ -104,19 +105,25 @@ def test_a_replay_buffer_keeps_decisions_only():
     assert np.abs(buffer.observations[:decisions]).sum(-1).min() > 0  # idle slots observe zeros
 
 
-def stock(folder, seconds):
+def stock(folder, decisions):
     """Policies that stock learners of both libraries trained in an environment of benchnav."""
+    torch.set_num_threads(1)
     env = benchnav.make_env("leaders/static", kind="sb3", encoder="surround", worlds=50,
                             num_worlds=4, reward={"moving": "progress"})  # fmt: skip
     small = {"net_arch": [16], "lstm_hidden_size": 16}
     learners = {
-        "ppo": PPO("MlpPolicy", env, n_steps=64, batch_size=128, learning_rate=1e-3, seed=0),
+        "ppo": PPO("MlpPolicy", env, n_steps=16, batch_size=128, n_epochs=4, seed=0),
         "recurrent": RecurrentPPO(
-            "MlpLstmPolicy", VecMonitor(env.unwrapped), n_steps=32, seed=0, policy_kwargs=small
+            "MlpLstmPolicy",
+            VecMonitor(env.unwrapped),
+            n_steps=16,
+            n_epochs=2,
+            seed=0,
+            policy_kwargs=small,
         ),
     }
     for name, learner in learners.items():
-        learner.learn(seconds * 1000)
+        learner.learn(decisions)
         learner.save(folder / name)
     return {name: {"type": "policy", "file": str(folder / f"{name}.zip"), "label": name}
             for name in learners}  # fmt: skip
@@ -128,18 +135,27 @@ def ranked(folder, navigators, seeds):
         "navigators": [*navigators.values(), "random-walk"], "seeds": seeds,
     }  # fmt: skip
     run = benchnav.run(suite, out=folder / "run", quiet=True)
-    assert benchnav.verify(run.path, quiet=True).ok
-    return benchnav.leaderboard(run.path)
+    assert run.verify(quiet=True, twin=1).verified
+    return run.leaderboard()
 
 
 @pytest.mark.slow
 def test_stock_learners_train_and_rank(tmp_path):
-    table = str(ranked(tmp_path, stock(tmp_path, 1), seeds=2))
+    table = str(ranked(tmp_path, stock(tmp_path, 200), seeds=1))
     assert "ppo" in table
     assert "recurrent" in table
 
 
 @pytest.mark.soak
 def test_stock_learners_that_train_for_a_minute_beat_chance(tmp_path):
-    board = ranked(tmp_path, stock(tmp_path, 60), seeds=25)
-    print(board)
+    navigators = stock(tmp_path, 100_000)
+    ranked(tmp_path, navigators, seeds=25)
+    for name in navigators:
+        mine, chance = success(tmp_path / "run", name), success(tmp_path / "run", "random-walk")
+        assert mine > chance + 0.2, (name, mine, chance)
+
+
+def success(run, navigator):
+    """The share of agents that succeeded."""
+    frame = benchnav.open(run).episodes(navigator=navigator).to_pandas()
+    return frame["success"].mean()

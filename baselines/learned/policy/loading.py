@@ -159,8 +159,8 @@ def _encoder(path: Path, name: str, inputs: int) -> Encoder:
         return encoder(fitting[0])
     if not name:
         raise PluginError(
-            f"{path}: the encoder of its training must be given: encoder: NAME, as a parameter or in"
-            f" {path.with_suffix('.yaml')}. {fit}"
+            f"{path}: the encoder of its training must be given: encoder: NAME, as a parameter or"
+            f" in {path.with_suffix('.yaml')}. {fit}"
         )
     try:
         chosen = encoder(name)

@@ -35,7 +35,7 @@ def _leaky_relu(x: Float32Array) -> Float32Array:
 
 
 def _elu(x: Float32Array) -> Float32Array:
-    return np.where(x > 0.0, x, np.expm1(np.minimum(x, np.float32(0.0))))
+    return np.where(x > 0.0, x, np.expm1(np.minimum(x, np.float32(0.0)))).astype(np.float32)
 
 
 def _silu(x: Float32Array) -> Float32Array:

@@ -88,7 +88,9 @@ def _mapping(about: Any, key: str) -> dict[str, Any]:
 
 
 def _numbers(text: Any) -> tuple[float, ...] | None:
-    found = tuple(float(number) for number in _NUMBER.findall(text if isinstance(text, str) else ""))
+    found = tuple(
+        float(number) for number in _NUMBER.findall(text if isinstance(text, str) else "")
+    )
     return found or None
 
 

@@ -180,4 +180,4 @@ def _write_numbers(
 
 @kernel_without_allocation
 def _clipped(value: float, low: FloatArray, high: FloatArray, k: int) -> float:
-    return min(max(value, low[k]), high[k])
+    return float(min(max(value, low[k]), high[k]))
