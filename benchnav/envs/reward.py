@@ -5,7 +5,6 @@ penalty for p > T_c apply to every decision, the others to every event.
 """
 
 from dataclasses import dataclass, fields
-from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -40,12 +39,16 @@ class RewardWeights(BaseModel):
     )
     scale: float = Field(0.01, gt=0, description="factor of the total reward")
 
-    @cached_property
+    @property
     def vector(self) -> FloatArray:
-        """(11,) all numbers, in the order of their declaration, for the kernel."""
-        return np.array(
-            [getattr(self, name) for name in type(self).model_fields if name != "moving"]
-        )
+        """(11,) all numbers, in the order of their declaration, for the kernel.
+
+        It is not cached: a copy of a model with changes copies caches too.
+        """
+        return np.array((
+            self.goal, self.approach, self.static, self.dynamic, self.walls, self.agents, self.time,
+            self.p_dynamic, self.threshold, self.turning, self.scale,
+        ))  # fmt: skip
 
 
 (

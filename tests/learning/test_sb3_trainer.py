@@ -157,5 +157,5 @@ def test_stock_learners_that_train_for_a_minute_beat_chance(tmp_path):
 
 def success(run, navigator):
     """The share of agents that succeeded."""
-    frame = benchnav.open(run).episodes(navigator=navigator).to_pandas()
+    frame = benchnav.open_run(run).episodes(navigator=navigator).to_pandas()
     return frame["success"].mean()
