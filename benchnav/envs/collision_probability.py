@@ -63,7 +63,7 @@ def collision_probability(
     """
     K = seen.position.shape[2]
     out = np.zeros(position.shape[:2])
-    if out.size:
+    if out.size and K:
         _highest(
             position.reshape(-1, 2), velocity.reshape(-1, 2), radius.reshape(-1),
             seen.position.reshape(-1, K, 2), seen.velocity.reshape(-1, K, 2),
