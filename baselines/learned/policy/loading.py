@@ -29,8 +29,8 @@ _ZIP = b"PK\x03\x04"
 class PolicyConfig(PluginConfig):
     """Parameters. Those that are left out are those of the YAML file beside the policy.
 
-    That file has the name of the policy and the ending `.yaml`. What it leaves out, too, is derived
-    from the policy if possible.
+    That file has the name of the policy and the ending `.yaml`. Values that it leaves out, too, are
+    derived from the policy if possible.
     """
 
     file: str = Field(
