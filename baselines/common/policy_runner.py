@@ -39,8 +39,8 @@ class Pilot(ABC):
 
     @property
     @abstractmethod
-    def training(self) -> Training:
-        """The cost of its training."""
+    def training(self) -> Training | None:
+        """The cost of its training; None if it is unknown."""
 
     @property
     @abstractmethod
@@ -81,7 +81,7 @@ class _Piloted:
         return self.pilot.needs
 
     @property
-    def training(self) -> Training:
+    def training(self) -> Training | None:
         return self.pilot.training
 
     @property

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from benchnav.envs.sb3.attempt_monitor import AttemptMonitor
     from benchnav.envs.sb3.attempt_ppo import AttemptPPO
     from benchnav.envs.sb3.live_buffer import LiveBuffer
+    from benchnav.envs.sb3.live_replay_buffer import LiveReplayBuffer
     from benchnav.envs.trainer import Trainer, TrainingReport
 else:
     __getattr__ = lazy_names(
@@ -35,6 +36,7 @@ else:
             "LeaderVectorEnv": "benchnav.envs.gym.leader_vector_env",
             "LeadersEnv": "benchnav.envs.parallel_env",
             "LiveBuffer": "benchnav.envs.sb3.live_buffer",
+            "LiveReplayBuffer": "benchnav.envs.sb3.live_replay_buffer",
             "RewardWeights": "benchnav.envs.reward",
             "Trainer": "benchnav.envs.trainer",
             "TrainingReport": "benchnav.envs.trainer",
@@ -54,6 +56,7 @@ __all__ = [
     "LeaderVectorEnv",
     "LeadersEnv",
     "LiveBuffer",
+    "LiveReplayBuffer",
     "RewardWeights",
     "Trainer",
     "TrainingReport",

@@ -13,13 +13,15 @@ from enum import Enum
 import numpy as np
 
 from benchnav.arena.noise import Noise
+from benchnav.arena.solid import Kind
 from benchnav.arena.world import Afterwards, ContactRule, World
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.envs.autoreset import AutoresetSimulation
 from benchnav.envs.background_agents import BackgroundCommands, BackgroundNavigator
 from benchnav.envs.collision_probability import collision_probability
+from benchnav.envs.decision import judge, scale_actions
 from benchnav.envs.encoders.encoder import Bodies, Encoder, Float32Array
-from benchnav.envs.reward import RewardTerms, RewardWeights, reward_terms
+from benchnav.envs.reward import RewardTerms, RewardWeights, reward_of
 from benchnav.episode.episode import Status
 from benchnav.errors import UsageError
 from benchnav.navigation.navigator import Need
@@ -108,8 +110,12 @@ class AgentBatch:
         self.simulation = AutoresetSimulation([_strict(world) for world in pool], rows)
         self._rng = rng
         self._queue = np.zeros(0, np.int64)
-        self._needs = frozenset(str(need) for need in {*encoder.needs, Need.NEIGHBOURS})
+        self._encoded_needs = frozenset(map(str, encoder.needs))
+        self._needs = self._encoded_needs | {str(Need.NEIGHBOURS)}
         s = self.simulation
+        self._movers = any(
+            body.solid.kind == Kind.DYNAMIC for world in pool for body in world.bodies
+        )
         self._twist = np.ones((s.B, s.A), np.bool_)
         self._drivers = [
             BackgroundNavigator(
@@ -117,11 +123,13 @@ class AgentBatch:
             )
             for k, spec in enumerate(drivers, 1)
         ]
-        self._limits = s.agents  # (B, A) records: max_speed, max_turn_rate, radius
+        limits = (s.agents[name] for name in ("radius", "max_speed", "max_turn_rate"))
+        self._bodies = Bodies(*limits)  # views, which follow the restarts of rows
         self.active = np.zeros((s.B, s.A), np.bool_)
         self._slots = np.tile(np.arange(s.A), (s.B, 1))  # (B, A) all agents
         self._senses = NoisySenses(s, self._slots, noise) if noise is not None else None
         self._reverse = reverse
+        self.only: BoolArray | None = None  # (B, A) agents that learn now; None: all
 
     @property
     def rows(self) -> int:
@@ -149,38 +157,36 @@ class AgentBatch:
         The least speed is 0, or full speed backwards (see ``reverse``). Active slots in
         ``background`` execute its commands instead of their action.
         """
-        s, acted = self.simulation, self.active.copy()
-        before = self._goal_distance()
-        command, twist = self._commands(action), self._twist
+        s, acted = self.simulation, self.active
+        shape = acted.shape
+        command, twist = np.empty((*shape, 2)), self._twist
+        away, nearer, turned = np.empty(shape), np.empty(shape), np.empty(shape)
+        scale_actions(
+            np.ascontiguousarray(action, np.float64), acted, self._reverse, s.agents, s.limits,
+            command, away,
+        )  # fmt: skip
         if self.correct is not None:
             tolerance = np.repeat(s.records["tolerance"][:, None], s.A, axis=1)
             command = self.correct(self._observe(acted), self._bodies, command, tolerance)
-        command[~acted] = 0.0
+            command[~acted] = 0.0
         for other in (*([] if background is None else [background]), *self._driven()):
-            command = np.where(other.mask[..., None], other.command, command)
-            twist = np.where(other.mask, other.twist, twist)
+            np.copyto(command, other.command, where=other.mask[..., None])
+            if not other.twist:
+                twist = twist & ~other.mask
         executed = s.step(command, twist)
-        arrived = acted & (s.status == int(Status.ARRIVED))
-        touched = acted & (s.status == int(Status.ENDED))
-        timed_out = acted & ~arrived & ~touched & ~s.running[:, None]
-        self.active = acted & ~(arrived | touched | timed_out)
-        seen = self._observe(self.active | timed_out)
-        assert seen.neighbours is not None  # noqa: S101 - `_needs` contains them
-        terms = reward_terms(
-            self.weights,
-            arrived=arrived,
-            nearer=(before - self._goal_distance())
-            / np.maximum(self._limits["max_speed"] * s.records["dt"][:, None], 1e-9),
-            contacts=s.begun(),
-            probability=collision_probability(
-                seen.position, seen.velocity, self._limits["radius"], seen.neighbours
-            ),
-            turned=np.abs(executed[..., 1]) / np.maximum(self._limits["max_turn_rate"], 1e-9),
-        )
+        arrived, touched, timed_out, self.active = (np.empty(shape, np.bool_) for _ in range(4))
+        judge(
+            acted, away, executed, s.records, s.agents, arrived, touched, timed_out, self.active,
+            nearer, turned,
+        )  # fmt: skip
+        seen = self._observe(self._observing(timed_out))
+        terms, reward = reward_of(
+            self.weights, acted=acted, arrived=arrived, nearer=nearer, contacts=s.begun(),
+            probability=self._probability(seen), turned=turned,
+        )  # fmt: skip
         final = self._encoded(seen)
-        reward = np.where(acted, self.weights.scale * terms.total, 0.0)
         done = self._to_restart(acted)
-        restarted = np.zeros_like(acted)
+        restarted = np.zeros(shape, np.bool_)
         observation = final.copy()
         if len(done):
             self._start(done, self._next(len(done)))
@@ -199,17 +205,18 @@ class AgentBatch:
         before = self._autoreset is Autoreset.NEXT_STEP
         return np.flatnonzero(~(acted if before else self.active).any(1))
 
-    def _commands(self, action: AnyArray) -> FloatArray:
-        command = np.clip(action.astype(np.float64), -1.0, 1.0)
-        forward = 0.5 * (command[..., 0] + 1.0)
-        backwards = self.simulation.limits["reverse"] if self._reverse else False
-        command[..., 0] = np.where(backwards, command[..., 0], forward) * self._limits["max_speed"]
-        command[..., 1] *= self._limits["max_turn_rate"]
-        return command
+    def _observing(self, timed_out: BoolArray) -> BoolArray:
+        """Return the agents (B, A) whose observation counts after a step."""
+        going = self.active | timed_out
+        return going if self.only is None or self._senses is not None else going & self.only
 
-    def _goal_distance(self) -> FloatArray:
-        away = self.simulation.goal - self.simulation.position
-        return np.hypot(away[..., 0], away[..., 1])
+    def _probability(self, seen: Observation) -> FloatArray:
+        """Return the probability (B, A) of a collision with a mover."""
+        if seen.neighbours is None:  # there are no movers
+            return np.zeros(self.active.shape)
+        return collision_probability(
+            seen.position, seen.velocity, self._bodies.radius, seen.neighbours
+        )
 
     def _start(self, rows: IntArray, worlds: IntArray) -> None:
         self.simulation.restart(rows, worlds)
@@ -223,6 +230,8 @@ class AgentBatch:
             driver.start(rows, mine, self._rng.spawn(len(rows)))
 
     def _driven(self) -> list[BackgroundCommands]:
+        if not self._drivers:
+            return []
         s = self.simulation
         acting = s.present & (s.status == int(Status.ACTIVE)) & ~s.agents["evaluated"]
         return [driver.decide(acting) for driver in self._drivers]
@@ -237,12 +246,12 @@ class AgentBatch:
 
     def _observe(self, active: BoolArray) -> Observation:
         s = self.simulation
-        return observe(s, self._slots, active, self._needs, (None,) * s.B, self._senses)
+        return observe(s, self._slots, active, self._needed, (None,) * s.B, self._senses)
 
     @property
-    def _bodies(self) -> Bodies:
-        limits = self._limits
-        return Bodies(limits["radius"], limits["max_speed"], limits["max_turn_rate"])
+    def _needed(self) -> frozenset[str]:
+        """The sensors that encoder, reward and correction need in these worlds."""
+        return self._needs if self._movers or self.correct is not None else self._encoded_needs
 
     def _encoded(self, seen: Observation) -> Float32Array:
         return self.encoder.encode(seen, self._bodies)

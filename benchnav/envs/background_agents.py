@@ -7,6 +7,7 @@ import numpy as np
 
 from benchnav.arrays import BoolArray, FloatArray, IntArray
 from benchnav.envs.autoreset import AutoresetSimulation
+from benchnav.envs.decision import find_driven, spread
 from benchnav.errors import NavigatorError
 from benchnav.navigation.briefing import brief
 from benchnav.navigation.command_check import CallFailed, checked
@@ -46,7 +47,7 @@ class BackgroundNavigator:
         self._needs = frozenset(map(str, self._navigator.required))
         self._simulation = simulation
         self._mine: IntArray = np.full((simulation.B, at_most), -1)  # agents, -1: padding
-        self._maps = HeldMaps(simulation, "known")
+        self._maps = HeldMaps(simulation, "known" if self._navigator.uses_map else "unknown")
 
     def start(
         self, rows: IntArray, mine: Sequence[IntArray], streams: Sequence[np.random.Generator]
@@ -73,18 +74,15 @@ class BackgroundNavigator:
 
         Raises NavigatorError if the navigator returns no valid command.
         """
-        row = np.arange(len(acting))[:, None]
-        active = (self._mine >= 0) & acting[row, self._mine]
+        active = np.empty(self._mine.shape, np.bool_)
         command = np.zeros((*acting.shape, 2))
-        mask = np.zeros_like(acting)
-        if active.any():
+        mask = np.zeros(acting.shape, np.bool_)
+        if find_driven(self._mine, acting, active):
             try:
                 maps = self._maps.now()
                 seen = observe(self._simulation, self._mine, active, self._needs, maps)
                 answer = checked(self._navigator.act(seen), active)
             except CallFailed as failed:
                 raise NavigatorError(f"{self._blame}: {failed.reason}.") from None
-            world, slot = np.nonzero(active)
-            command[world, self._mine[world, slot]] = answer[world, slot]
-            mask[world, self._mine[world, slot]] = True
+            spread(self._mine, active, answer, command, mask)
         return BackgroundCommands(mask, command, self._navigator.command == "twist")

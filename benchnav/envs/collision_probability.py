@@ -6,15 +6,15 @@ meets the grown disc; outside p = 0. For an overlap p = 1. The line of Eq. 22 is
 ray, so movers behind the agent do not count.
 """
 
-import math
-
 import numpy as np
 
 from benchnav.arena.solid import Kind
-from benchnav.arrays import BoolArray, FloatArray
+from benchnav.arrays import ByteArray, FloatArray, IntArray
 from benchnav.geometry.capsule import disc_time
 from benchnav.kernels import kernel
 from benchnav.sensors.readings import Neighbours
+
+_DYNAMIC = int(Kind.DYNAMIC)
 
 
 @kernel
@@ -32,13 +32,14 @@ def probability(x: float, y: float, vx: float, vy: float, reach: float) -> float
 @kernel
 def _highest(
     position: FloatArray, velocity: FloatArray, radius: FloatArray, other_position: FloatArray,
-    other_velocity: FloatArray, other_radius: FloatArray, counts: BoolArray, out: FloatArray,
+    other_velocity: FloatArray, other_radius: FloatArray, kind: ByteArray, count: IntArray,
+    out: FloatArray,
 ) -> None:  # fmt: skip
-    """Set ``out`` (N,) to the highest probability over the K others in ``counts``."""
+    """Set ``out`` (N,) to the highest probability over the movers among ``count`` (N,) others."""
     for i in range(len(position)):
         out[i] = 0.0
-        for k in range(other_position.shape[1]):
-            if counts[i, k]:
+        for k in range(count[i]):
+            if kind[i, k] == _DYNAMIC:
                 p = probability(
                     other_position[i, k, 0] - position[i, 0],
                     other_position[i, k, 1] - position[i, 1],
@@ -61,12 +62,12 @@ def collision_probability(
         seen: the sensed neighbours; dynamic obstacles have circumscribed radii.
     """
     K = seen.position.shape[2]
-    movers = (seen.kind == int(Kind.DYNAMIC)) & (np.arange(K) < seen.count[..., None])
     out = np.zeros(position.shape[:2])
-    if math.prod(out.shape) and movers.any():
+    if out.size and K:
         _highest(
             position.reshape(-1, 2), velocity.reshape(-1, 2), radius.reshape(-1),
             seen.position.reshape(-1, K, 2), seen.velocity.reshape(-1, K, 2),
-            seen.radius.reshape(-1, K), movers.reshape(-1, K), out.reshape(-1),
+            seen.radius.reshape(-1, K), seen.kind.reshape(-1, K), seen.count.reshape(-1),
+            out.reshape(-1),
         )  # fmt: skip
     return out

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from benchnav.arena.solid import Kind
 from benchnav.arrays import BoolArray, FloatArray, IntArray
+from benchnav.kernels import kernel_without_allocation
 
 
 class RewardWeights(BaseModel):
@@ -38,6 +39,25 @@ class RewardWeights(BaseModel):
     )
     scale: float = Field(0.01, gt=0, description="factor of the total reward")
 
+    @property
+    def vector(self) -> FloatArray:
+        """(11,) all numbers, in the order of their declaration, for the kernel.
+
+        It is not cached: a copy of a model with changes copies caches too.
+        """
+        return np.array((
+            self.goal, self.approach, self.static, self.dynamic, self.walls, self.agents, self.time,
+            self.p_dynamic, self.threshold, self.turning, self.scale,
+        ))  # fmt: skip
+
+
+(
+    _GOAL, _APPROACH, _STATIC, _DYNAMIC, _WALLS, _AGENTS, _TIME, _P_DYNAMIC, _THRESHOLD, _TURNING,
+    _SCALE,
+) = range(11)  # fmt: skip
+_STATIC_KIND, _DYNAMIC_KIND = int(Kind.STATIC), int(Kind.DYNAMIC)
+_WALL_KIND, _AGENT_KIND = int(Kind.WALL), int(Kind.AGENT)
+
 
 @dataclass(frozen=True, eq=False)
 class RewardTerms:
@@ -62,40 +82,61 @@ class RewardTerms:
         return total
 
 
-def reward_terms(
+TERMS = tuple(f.name for f in fields(RewardTerms))
+
+
+def reward_of(
     weights: RewardWeights,
     *,
+    acted: BoolArray,
     arrived: BoolArray,
     nearer: FloatArray,
     contacts: IntArray,
     probability: FloatArray,
     turned: FloatArray,
-) -> RewardTerms:
-    """Return every term of one decision.
+) -> tuple[RewardTerms, FloatArray]:
+    """Return every term of one decision, and the scaled reward (B, A), 0 if there was no decision.
 
     Args:
         weights: magnitudes.
+        acted: (B, A) whether there was a decision.
         arrived: (B, A) touched the goal within this decision.
         nearer: (B, A) decrease of the distance to the goal over that at full speed, ≤ 1.
         contacts: (B, A, kinds) new contacts by Kind.
         probability: (B, A) Eq. 24 after the decision.
         turned: (B, A) |turn rate| over its limit, 0 to 1.
     """
-    w = weights
-    calm = probability <= w.threshold
-    toward = nearer if w.moving == "progress" else (nearer > 0.0).astype(float)
+    terms = np.empty((len(TERMS), *arrived.shape))
+    reward = np.empty(arrived.shape)
+    _write_terms(
+        weights.vector, weights.moving == "progress", acted, arrived, nearer, contacts, probability,
+        turned, terms, reward,
+    )  # fmt: skip
+    return RewardTerms(*terms), reward
 
-    def hits(kind: Kind, weight: float) -> FloatArray:
-        return -weight * contacts[..., int(kind)].astype(float)
 
-    return RewardTerms(
-        goal=w.goal * (arrived & calm).astype(np.float64),
-        approach=np.where(calm, w.approach * toward, np.minimum(w.approach * toward, 0.0)),
-        static=hits(Kind.STATIC, w.static),
-        dynamic=hits(Kind.DYNAMIC, w.dynamic),
-        walls=hits(Kind.WALL, w.walls),
-        agents=hits(Kind.AGENT, w.agents),
-        time=np.full(arrived.shape, -w.time),
-        p_dynamic=-w.p_dynamic * (~calm).astype(float),
-        turning=-w.turning * turned,
-    )
+@kernel_without_allocation
+def _write_terms(
+    weights: FloatArray, progress: bool, acted: BoolArray, arrived: BoolArray, nearer: FloatArray,
+    contacts: IntArray, probability: FloatArray, turned: FloatArray, terms: FloatArray,
+    reward: FloatArray,
+) -> None:  # fmt: skip
+    for b in range(arrived.shape[0]):
+        for i in range(arrived.shape[1]):
+            term, hits = terms[:, b, i], contacts[b, i]
+            calm = probability[b, i] <= weights[_THRESHOLD]
+            toward = nearer[b, i] if progress else 1.0 if nearer[b, i] > 0.0 else 0.0
+            approach = weights[_APPROACH] * toward
+            term[0] = weights[_GOAL] if arrived[b, i] and calm else 0.0
+            term[1] = approach if calm or approach < 0.0 else 0.0
+            term[2] = -weights[_STATIC] * float(hits[_STATIC_KIND])
+            term[3] = -weights[_DYNAMIC] * float(hits[_DYNAMIC_KIND])
+            term[4] = -weights[_WALLS] * float(hits[_WALL_KIND])
+            term[5] = -weights[_AGENTS] * float(hits[_AGENT_KIND])
+            term[6] = -weights[_TIME]
+            term[7] = -weights[_P_DYNAMIC] * (0.0 if calm else 1.0)
+            term[8] = -weights[_TURNING] * turned[b, i]
+            total = 0.0
+            for k in range(len(term)):
+                total += term[k]
+            reward[b, i] = weights[_SCALE] * total if acted[b, i] else 0.0

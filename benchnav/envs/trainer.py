@@ -29,6 +29,7 @@ class Trainer(ABC, Generic[R]):
 
     Recipe: ClassVar[type[BaseModel]]  # the model of its recipe files
     recipes: ClassVar[Path]  # folder of its recipes, NAME.yaml
+    weights: ClassVar[str] = "weights.safetensors"  # name of the file that a navigator reads
 
     @abstractmethod
     def train(
@@ -41,7 +42,7 @@ class Trainer(ABC, Generic[R]):
         device: str,
         report: Callable[[TrainingReport], None],
     ) -> None:
-        """Train, and write weights, curve and checkpoint to the folder ``out``.
+        """Train, and write `weights`, curve and checkpoints to the folder ``out``.
 
         Raises:
             UsageError: the folder has other content, or nothing to resume.

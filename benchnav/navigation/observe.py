@@ -50,22 +50,24 @@ def observe(
 
     `rows` numbers the worlds of the simulation from 0.
     """
+    shape = agents.shape
+    position, velocity, goal = np.empty((*shape, 2)), np.empty((*shape, 2)), np.empty((*shape, 2))
+    heading, steering = np.empty(shape), np.empty(shape)
+    rows, time = np.empty(len(agents), np.int64), np.empty(len(agents))
+    sensing = np.empty(shape, np.int64)
+    copy_own_state(
+        0, simulation.B, np.ascontiguousarray(agents, np.int64), np.ascontiguousarray(active),
+        simulation.records, simulation.agents, simulation.limits, rows, time, sensing, position,
+        heading, velocity, goal, steering,
+    )  # fmt: skip
     if senses is None:
-        rays, neighbours, edges = sense(simulation, np.where(active, agents, -1), needs)
+        rays, neighbours, edges = sense(simulation, sensing, needs)
     else:
         rays, neighbours, edges = senses.sense(active, needs)
-    position, velocity, goal = (np.empty((*agents.shape, 2)) for _ in range(3))
-    heading, steering = (np.empty(agents.shape) for _ in range(2))
-    chosen = np.array(agents, np.int64)
-    copy_own_state(
-        0, simulation.B, chosen, simulation.agents, simulation.limits, position, heading, velocity,
-        goal, steering,
-    )  # fmt: skip
-    if senses is not None:
         senses.localise(position, heading, velocity)
     return Observation(
-        rows=np.arange(simulation.B),
-        time=simulation.steps_done * simulation.records["dt"],
+        rows=rows,
+        time=time,
         active=active.copy(),
         position=position,
         heading=heading,

@@ -9,14 +9,21 @@ _ACTIVE = int(Status.ACTIVE)
 
 @kernel_without_allocation
 def copy_own_state(
-    low: int, high: int, chosen: IntArray, agents: AnyArray, limits: AnyArray,
-    position: FloatArray, heading: FloatArray, velocity: FloatArray, goal: FloatArray,
-    steering: FloatArray,
+    low: int, high: int, chosen: IntArray, active: BoolArray, worlds: AnyArray, agents: AnyArray,
+    limits: AnyArray, row: IntArray, time: FloatArray, sensing: IntArray, position: FloatArray,
+    heading: FloatArray, velocity: FloatArray, goal: FloatArray, steering: FloatArray,
 ) -> None:  # fmt: skip
-    """Copy the states of the chosen agents of worlds low:high; padding (-1) becomes zero."""
+    """Copy the states of the chosen agents of worlds low:high; padding (-1) becomes zero.
+
+    Also writes the number of each ``row``, its ``time`` [s], and the agents that are ``sensing``:
+    the chosen ones that are ``active``, else -1.
+    """
     for b in range(low, high):
+        row[b] = b
+        time[b] = worlds[b].steps_done * worlds[b].dt
         for k in range(chosen.shape[1]):
             a = agents[b, chosen[b, k]]
+            sensing[b, k] = chosen[b, k] if active[b, k] else -1
             if chosen[b, k] >= 0:
                 position[b, k, 0], position[b, k, 1] = a.x, a.y
                 velocity[b, k, 0], velocity[b, k, 1] = a.vx, a.vy

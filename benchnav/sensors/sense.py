@@ -1,6 +1,7 @@
 """All sensors of some agents of a simulation, as arrays of an observation."""
 
 import math
+from functools import lru_cache
 
 import numpy as np
 
@@ -91,15 +92,25 @@ def ray_angles(sensor: RaySensor) -> FloatArray:
     return np.linspace(-0.5 * sensor.fan, 0.5 * sensor.fan, sensor.count, endpoint=not whole)
 
 
-def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: float) -> Rays:
+@lru_cache(maxsize=64)
+def _fan(sensor: RaySensor) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Return the ray angles (R,), and the rays' directions, padded to a multiple of 8."""
     angle = ray_angles(sensor)
-    shape = (*chosen.shape, len(angle))
-    out = Rays(
-        angle, np.full(shape, float(sensor.range)), np.zeros(shape, np.int8), np.zeros(shape),
-        np.full(shape, np.inf), np.zeros(chosen.shape),
-    )  # fmt: skip
     padded = np.concatenate([angle, np.full(-len(angle) % 8, angle[-1])])
     fan_x, fan_y = np.array([cos_sin(a) for a in padded]).T.copy()
+    return angle, fan_x, fan_y
+
+
+def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: float) -> Rays:
+    angle, fan_x, fan_y = _fan(sensor)
+    shape = (*chosen.shape, len(angle))
+    distance, goal = np.empty(shape), np.empty(shape)
+    distance.fill(sensor.range)
+    goal.fill(np.inf)
+    out = Rays(
+        angle.copy(), distance, np.zeros(shape, np.int8), np.zeros(shape), goal,
+        np.zeros(chosen.shape),
+    )  # fmt: skip
     s = simulation
     run_rows(
         cast_rays, chosen.size, chosen, fan_x, fan_y, float(sensor.range), int(sensor.circle),

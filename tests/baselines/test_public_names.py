@@ -17,7 +17,7 @@ EXCEPTIONS = frozenset({
     # inner parts of benchnav that baselines share with it
     "GuidedConfig", "MappingConfig", "PartSpec", "PathKey", "FieldError", "first_problem",
     "capsule_grid", "pop", "push", "probability", "SIMPLIFY", "THIN", "section", "locked",
-    "read_file", "granted",
+    "read_file", "granted", "read_yaml", "validate",
     # what trainers need of a scenario and of the simulator
     "RANGE", "RAYS", "Simulation", "Trainer", "TrainingReport", "build", "find", "noise_of",
     "ray_angles", "sense",

@@ -1,6 +1,7 @@
 """Every registered plugin, by name, passes the checks that are shipped to plugin authors."""
 
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -10,12 +11,14 @@ from benchnav.testing.check_metric import check_metric
 from benchnav.testing.check_navigator import check_navigator
 from benchnav.testing.check_planner import check_planner
 
+POLICY = Path(__file__).parents[1] / "reference" / "policy.zip"
 GIVEN = {  # what cannot be made by its name alone
     "hierarchical": {
         "type": "hierarchical",
         "planner": "grid.astar",
         "controller": "path-following",
     },
+    "policy": {"type": "policy", "file": str(POLICY), "encoder": "ego"},
     "process": {
         "type": "process",
         "command": [sys.executable, "-m", "benchnav.isolation.host", "orca"],

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from pydantic import ValidationError
 
 from benchnav.arena.solid import Kind
-from benchnav.envs.reward import RewardTerms, RewardWeights, reward_terms
+from benchnav.envs.reward import RewardTerms, RewardWeights, reward_of
 from tests.reference import reward as slow
 
 WEIGHTS = RewardWeights(
@@ -24,10 +24,13 @@ def of_one(weights=WEIGHTS, arrived=False, nearer=0.0, contacts=(), p=0.0, turne
     counts = np.zeros((1, 1, len(Kind)), np.int64)
     for kind in contacts:
         counts[0, 0, kind] += 1
-    return reward_terms(
-        weights, arrived=np.array([[arrived]]), nearer=np.array([[nearer]]), contacts=counts,
-        probability=np.array([[p]]), turned=np.array([[turned]]),
+    terms, reward = reward_of(
+        weights, acted=np.array([[True]]), arrived=np.array([[arrived]]),
+        nearer=np.array([[nearer]]), contacts=counts, probability=np.array([[p]]),
+        turned=np.array([[turned]]),
     )  # fmt: skip
+    assert reward == weights.scale * terms.total
+    return terms
 
 
 def paid(**what):
@@ -125,13 +128,22 @@ def test_a_batch_is_its_agents():
     arrived, turned = rng.random((B, A)) < 0.3, rng.random((B, A))
     nearer, p = rng.uniform(-1, 1, (B, A)), rng.random((B, A))
     contacts = rng.integers(0, 3, (B, A, len(Kind)))
-    terms = reward_terms(
-        WEIGHTS, arrived=arrived, nearer=nearer, contacts=contacts, probability=p, turned=turned
+    acted = rng.random((B, A)) < 0.5
+    terms, reward = reward_of(
+        WEIGHTS,
+        acted=acted,
+        arrived=arrived,
+        nearer=nearer,
+        contacts=contacts,
+        probability=p,
+        turned=turned,
     )
     for at in np.ndindex(B, A):
         kinds = [kind for kind in TOUCHED for _ in range(contacts[at][kind])]
         expected = slow.terms(WEIGHTS, arrived[at], nearer[at], kinds, p[at], turned[at])
         assert {name: getattr(terms, name)[at] for name in NAMES} == pytest.approx(expected)
+        paid_now = WEIGHTS.scale * sum(expected.values()) if acted[at] else 0.0
+        assert reward[at] == pytest.approx(paid_now)
 
 
 @pytest.mark.parametrize(

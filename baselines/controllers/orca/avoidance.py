@@ -100,7 +100,8 @@ class Avoidance:
         own, answer = np.empty((rows, OWN)), np.zeros((rows, 2))
         run_rows(prepare, rows, *_flat(rows, whole), own, least=LEAST_BRIEF)
         config = self.config
-        edge_margin = np.full(rows, config.edge_margin)
+        edge_margin = np.empty(rows)
+        edge_margin.fill(config.edge_margin)
         if clearance is not None:
             edge_margin = np.minimum(edge_margin, np.maximum(clearance.ravel(), LEAST_MARGIN))
         sensed = tuple(_sensed(observation))
@@ -124,7 +125,7 @@ class Avoidance:
 def _flat(rows: int, arrays: Iterable[AnyArray]) -> Iterator[AnyArray]:
     """Yield each array (B, A, …) as contiguous (rows, …)."""
     for array in arrays:
-        yield np.ascontiguousarray(array).reshape(rows, *array.shape[2:])
+        yield array.reshape(rows, *array.shape[2:])
 
 
 def _sensed(observation: Observation) -> Iterator[AnyArray]:

@@ -4,7 +4,7 @@ The summation order of a library's matrix product depends on the size of the bat
 here each agent's sums run over the inputs in order. Neither torch nor an extra is needed.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,10 +35,20 @@ class Dense:
 
 
 class Actor:
-    """LSTM layers, tanh layers, and a linear output of 2 numbers."""
+    """LSTM layers, dense layers, and a linear output of 2 numbers."""
 
-    def __init__(self, tensors: Mapping[str, Float32Array]) -> None:
-        """``tensors``: ``lstm{k}.weight``, ``lstm{k}.bias``, ``dense{k}.…``, ``output.…``."""
+    def __init__(
+        self,
+        tensors: Mapping[str, Float32Array],
+        activation: Callable[[Float32Array], Float32Array] = np.tanh,
+    ) -> None:
+        """Take the layers.
+
+        Args:
+            tensors: ``lstm{k}.weight``, ``lstm{k}.bias``, ``dense{k}.…``, ``output.…``.
+            activation: of the dense layers, element by element.
+        """
+        self._activation = activation
         self.lstm = [
             Lstm(tensors[f"lstm{k}.weight"], tensors[f"lstm{k}.bias"])
             for k in range(_count(tensors, "lstm"))
@@ -71,7 +81,7 @@ class Actor:
             h[:] = x
             first += 2 * size
         for dense in self.dense:
-            x = np.tanh(affine(x, dense.weight, dense.bias))
+            x = self._activation(affine(x, dense.weight, dense.bias))
         return affine(x, self.output.weight, self.output.bias)
 
 

@@ -1,6 +1,5 @@
 """The policy as a pilot of many rows."""
 
-import math
 from collections.abc import Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -12,10 +11,10 @@ from pydantic import Field
 from benchnav.arena import Sensing
 from benchnav.arrays import FloatArray, IntArray
 from benchnav.envs import Bodies, encoder
-from benchnav.envs.encoders.paper import RANGE, RAYS
 from benchnav.navigation import Briefing, Need, Observation, PluginConfig, RowTable, Training
 
 from ...common.policy_runner import Pilot
+from ...common.ray_fit import why_rays_do_not_fit
 from .actor import Actor
 from .detour import Detours
 from .foresight import HELD, foresee
@@ -95,17 +94,7 @@ class PolicyPilot(Pilot):
         return str(self.about["sha256"])
 
     def unfit(self, sensing: Sensing) -> str:
-        rays = sensing.rays
-        if Need.RAYS not in self.needs or rays is None:
-            return ""
-        like = (rays.count, round(rays.fan, 6), rays.range, rays.thick)
-        if like == (RAYS, round(math.pi, 6), RANGE, True):
-            return ""
-        return (
-            f"its encoder {self._encoder.name!r} was made for {RAYS} thick rays over 180° and"
-            f" {RANGE:g} m, and agents there have {rays.count}{' thick' if rays.thick else ''}"
-            f" over {math.degrees(rays.fan):.0f}° and {rays.range:g} m"
-        )
+        return why_rays_do_not_fit(self._encoder, sensing)
 
     def reset(self, briefings: Sequence[Briefing], rows: IntArray) -> None:
         for row, briefing in zip(rows, briefings, strict=True):

@@ -34,7 +34,7 @@ def train(
     """Train a navigator from a recipe, and return the folder with the weights.
 
     A training that was interrupted continues with the same call and ``resume=True``, and ends
-    in the same weights.
+    in the same weights, if the trainer can resume.
 
     Args:
         recipe: a name that ``benchnav.available("recipes")`` has, a YAML file, or its content
@@ -66,7 +66,7 @@ def train(
                 f" {folder} as out and with resume."
             )
             raise
-    return Training(name, kind, seed, folder)
+    return Training(name, kind, seed, folder, trainer.weights)
 
 
 def _new_folder(name: str) -> Path:

@@ -5,31 +5,32 @@ flag for no object, and its length. A mover hides the objects behind it, counts 
 and has two numbers of its own.
 """
 
+import math
 from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
 from benchnav.arena.solid import Kind
-from benchnav.arrays import FloatArray
+from benchnav.arrays import ByteArray, FloatArray
 from benchnav.envs.encoders.encoder import (
     Bodies,
     Encoder,
     Float32Array,
     Number,
-    ahead_aside,
     rays_of,
-    within,
 )
+from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.observation import Observation
-from benchnav.sensors.readings import Rays
 
 RAYS = 7
 RANGE = 8.0  # [m] scale of lengths
 SPAN = 10.0  # [m] scale of coordinates: half of the paper's arena
 SPEED = 2.0  # [m/s] scale of speeds
 _ONE_HOT = (Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.GOAL)
+_AGENT, _WALL, _STATIC, _GOAL = (int(kind) for kind in _ONE_HOT)
+_DYNAMIC, _NOTHING = int(Kind.DYNAMIC), int(Kind.NOTHING)
 _WORDS = {Kind.AGENT: "an agent", Kind.WALL: "a wall", Kind.STATIC: "a static obstacle",
           Kind.GOAL: "the own goal"}  # fmt: skip
 
@@ -50,11 +51,20 @@ class PaperEncoder(Encoder):
         return (*rays, *self._own_numbers(), *(movers if self.movers else ()))
 
     def encode(self, seen: Observation, bodies: Bodies) -> Float32Array:
-        rays = rays_of(seen, RAYS, self.name)
-        parts = [_ray_values(rays), self._own_values(seen, bodies)]
-        if self.movers:
-            parts.append(_mover_values(rays))
-        return within(self.numbers, np.concatenate(parts, axis=-1))
+        rays, (low, high) = rays_of(seen, RAYS, self.name), self._ranges
+        out = np.empty((*seen.active.shape, len(low)), np.float32)
+        _write_numbers(
+            rays.kind, rays.distance, rays.approach, rays.goal, self._own_values(seen, bodies), low,
+            high, self.movers, out,
+        )  # fmt: skip
+        return out
+
+    @cached_property
+    def _ranges(self) -> tuple[FloatArray, FloatArray]:
+        return (
+            np.array([n.low for n in self.numbers], float),
+            np.array([n.high for n in self.numbers], float),
+        )
 
     def _own_numbers(self) -> tuple[Number, ...]:
         return (
@@ -92,10 +102,27 @@ class EgoEncoder(PaperEncoder):
 
 def own_frame(seen: Observation) -> FloatArray:
     """Return goal and velocity (B, A, 6) in the agent's own frame, for `EgoEncoder`."""
-    goal = ahead_aside(seen.heading, seen.goal - seen.position)
-    velocity = ahead_aside(seen.heading, seen.velocity)
-    distance = np.hypot(goal[..., 0], goal[..., 1])[..., None]
-    return np.concatenate([goal / SPAN, velocity / SPEED, goal / np.maximum(distance, 1e-9)], -1)
+    out = np.empty((*seen.heading.shape, 6))
+    cos, sin = np.cos(seen.heading), np.sin(seen.heading)
+    _write_own_frame(cos, sin, seen.position, seen.velocity, seen.goal, out)
+    return out
+
+
+@kernel_without_allocation
+def _write_own_frame(
+    cos: FloatArray, sin: FloatArray, position: FloatArray, velocity: FloatArray, goal: FloatArray,
+    out: FloatArray,
+) -> None:  # fmt: skip
+    for b in range(cos.shape[0]):
+        for i in range(cos.shape[1]):
+            c, s, own = cos[b, i], sin[b, i], out[b, i]
+            x, y = goal[b, i, 0] - position[b, i, 0], goal[b, i, 1] - position[b, i, 1]
+            ahead, left = c * x + s * y, c * y - s * x
+            own[0], own[1] = ahead / SPAN, left / SPAN
+            vx, vy = velocity[b, i, 0], velocity[b, i, 1]
+            own[2], own[3] = (c * vx + s * vy) / SPEED, (c * vy - s * vx) / SPEED
+            distance = max(math.hypot(ahead, left), 1e-9)
+            own[4], own[5] = ahead / distance, left / distance
 
 
 def _ray_numbers(ray: int) -> list[Number]:
@@ -120,20 +147,37 @@ def _mover_numbers(ray: int) -> list[Number]:
     ]  # fmt: skip
 
 
-def _ray_values(rays: Rays) -> FloatArray:
-    goal = np.isfinite(rays.goal)
-    kind = np.where(goal, int(Kind.GOAL), rays.kind)
-    mover = kind == int(Kind.DYNAMIC)
-    flags = [(kind == int(k)).astype(float) for k in _ONE_HOT]
-    nothing = (mover | (kind == int(Kind.NOTHING))).astype(float)
-    length = np.where(goal, rays.goal, np.where(mover, RANGE, rays.distance)) / RANGE
-    values = np.stack([*flags, nothing, length], axis=-1)
-    return values.reshape(*values.shape[:2], -1)
+@kernel_without_allocation
+def _write_numbers(
+    kind: ByteArray, distance: FloatArray, approach: FloatArray, goal: FloatArray, own: FloatArray,
+    low: FloatArray, high: FloatArray, movers: bool, out: Float32Array,
+) -> None:  # fmt: skip
+    """Write the numbers of rays (B, A, R) and of the agents themselves (B, A, 6)."""
+    rays = kind.shape[2]
+    for b in range(kind.shape[0]):
+        for i in range(kind.shape[1]):
+            numbers = out[b, i]
+            for r in range(rays):
+                hit, on_goal = kind[b, i, r], goal[b, i, r] < math.inf
+                mover = hit == _DYNAMIC and not on_goal
+                first = 6 * r
+                numbers[first] = 1.0 if hit == _AGENT and not on_goal else 0.0
+                numbers[first + 1] = 1.0 if hit == _WALL and not on_goal else 0.0
+                numbers[first + 2] = 1.0 if hit == _STATIC and not on_goal else 0.0
+                numbers[first + 3] = 1.0 if on_goal or hit == _GOAL else 0.0
+                numbers[first + 4] = 1.0 if mover or (hit == _NOTHING and not on_goal) else 0.0
+                length = goal[b, i, r] if on_goal else RANGE if mover else distance[b, i, r]
+                numbers[first + 5] = _clipped(length / RANGE, low, high, first + 5)
+                if movers:
+                    last = 6 * rays + 6 + 2 * r
+                    speed = approach[b, i, r] if hit == _DYNAMIC else 0.0
+                    numbers[last] = _clipped(speed / SPEED, low, high, last)
+                    length = distance[b, i, r] if hit == _DYNAMIC else RANGE
+                    numbers[last + 1] = _clipped(length / RANGE, low, high, last + 1)
+            for k in range(6):
+                numbers[6 * rays + k] = _clipped(own[b, i, k], low, high, 6 * rays + k)
 
 
-def _mover_values(rays: Rays) -> FloatArray:
-    mover = rays.kind == int(Kind.DYNAMIC)
-    speed = np.where(mover, rays.approach, 0.0) / SPEED
-    distance = np.where(mover, rays.distance, RANGE) / RANGE
-    values = np.stack([speed, distance], axis=-1)
-    return values.reshape(*values.shape[:2], -1)
+@kernel_without_allocation
+def _clipped(value: float, low: FloatArray, high: FloatArray, k: int) -> float:
+    return float(min(max(value, low[k]), high[k]))

@@ -10,7 +10,7 @@ from benchnav.envs.agent_batch import Autoreset
 from benchnav.envs.background_agents import BackgroundNavigator
 from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.factory import Reward, check_render_mode, drawn_index, make_batch
-from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
+from benchnav.envs.gym.spaces import action_space, observation_space, terms
 from benchnav.envs.rendering import FPS, RENDER_MODES, Display
 from benchnav.envs.seeding import plain_seed
 from benchnav.errors import UsageError
@@ -94,6 +94,7 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         learners = np.flatnonzero(self.batch.simulation.pool[world].agents.evaluated)
         chosen = drawn_index(self.np_random, "agent", options, np.arange(len(learners)))
         self.agent = int(learners[chosen])
+        self.batch.only = np.arange(self.batch.width)[None, :] == self.agent
         seen = self.batch.reset(np.array([world]))
         self._others.start(np.zeros(1, np.int64), [learners[learners != self.agent]], [others])
         self._begun = self._going = True
@@ -112,14 +113,17 @@ class LeaderEnv(gymnasium.Env[Float32Array, Float32Array]):
         commands = np.zeros((1, self.batch.width, 2))
         commands[at] = action
         step = self.batch.step(commands, self._others.decide(self.batch.active))
-        terminated, truncated = bool((step.arrived | step.touched)[at]), bool(step.timed_out[at])
+        terminated, truncated = bool(step.arrived[at] or step.touched[at]), bool(step.timed_out[at])
         self._going = not (terminated or truncated)
         self._display.refresh(self.agent)
         info = {
             "is_success": bool(step.arrived[at]),
             "terms": {name: float(term[at]) for name, term in terms(step).items()},
         }
-        return last_seen(step)[at], float(step.reward[at]), terminated, truncated, info
+        seen = step.final[at].copy()
+        if terminated:
+            seen[:] = 0.0
+        return seen, float(step.reward[at]), terminated, truncated, info
 
     def render(self) -> ByteArray | None:
         """Return the world now (H, W, 3), with a ring around the learning agent.

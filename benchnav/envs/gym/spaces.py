@@ -1,6 +1,5 @@
 """The observation and action spaces of an agent, and the information about one decision."""
 
-from dataclasses import fields
 from typing import cast
 
 import numpy as np
@@ -9,7 +8,7 @@ from gymnasium import spaces
 from benchnav.arrays import FloatArray
 from benchnav.envs.agent_batch import Transition
 from benchnav.envs.encoders.encoder import Encoder, Float32Array
-from benchnav.envs.reward import RewardTerms
+from benchnav.envs.reward import TERMS
 
 Space = spaces.Space[Float32Array]
 
@@ -39,4 +38,4 @@ def last_seen(step: Transition) -> Float32Array:
 
 def terms(step: Transition) -> dict[str, FloatArray]:
     """Return the reward's terms (B, A) by name, before scaling."""
-    return {f.name: getattr(step.terms, f.name) for f in fields(RewardTerms)}
+    return {name: getattr(step.terms, name) for name in TERMS}

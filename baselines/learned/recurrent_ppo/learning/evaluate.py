@@ -1,14 +1,27 @@
 """Strict success of a policy, deterministic, over whole worlds."""
 
+from typing import Protocol
+
 import numpy as np
 
 from benchnav.arrays import BoolArray
 from benchnav.envs import AgentBatch
 
-from ..actor import Actor, Float32Array
+from ..actor import Float32Array
 
 
-def evaluate(actor: Actor, batch: AgentBatch) -> BoolArray:
+class Deciding(Protocol):
+    """A policy, such as `Actor`."""
+
+    @property
+    def state_size(self) -> int:
+        """The number of memory values per agent."""
+
+    def decide(self, x: Float32Array, state: Float32Array) -> Float32Array:
+        """Return actions (N, 2) of observations (N, D); advance ``state`` (N, state_size)."""
+
+
+def evaluate(actor: Deciding, batch: AgentBatch) -> BoolArray:
     """Return which agents (B, A) arrived without contact in each world; False for padding."""
     x = batch.reset(np.arange(batch.rows))
     pending, arrived = batch.active.copy(), np.zeros_like(batch.active)
