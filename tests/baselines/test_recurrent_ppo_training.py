@@ -216,7 +216,8 @@ def test_the_hash_is_of_what_decides_the_weights():
     assert recipe.hash == tiny(perception="exact", precision="auto", processes=1).hash
     others = [
         tiny(rows=3), tiny(gamma=0.9), tiny(encoder="paper"), tiny(sequence=7),
-        tiny(precision="float32"), tiny(processes=2), tiny(perception="noisy"), tiny(network={"lstm_layers": 1, "lstm_size": 9}),
+        tiny(precision="float32"), tiny(processes=2), tiny(perception="noisy"),
+        tiny(network={"lstm_layers": 1, "lstm_size": 9}),
     ]  # fmt: skip
     assert len({recipe.hash, *(other.hash for other in others)}) == 9
 
