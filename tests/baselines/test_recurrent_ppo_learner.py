@@ -429,7 +429,7 @@ def test_all_processes_make_as_many_minibatches(monkeypatch):
         )
         met = [samples.returns[samples.mask > 0.5].tolist() for samples in buffer.get(16)]
         assert len(met) == batches
-        assert sorted(number for part in met for number in part) == buffer.returns.flatten().tolist()
+        assert sorted(x for part in met for x in part) == buffer.returns.flatten().tolist()
 
 
 def test_memories_start_empty():

@@ -197,7 +197,7 @@ class Training:
                 self._env, callback, learner.rollout_buffer, self.recipe.rollout
             )
             learner.train()
-        except ValueError:  # torch refuses a Gaussian that is not finite
+        except (ValueError, RuntimeError):  # torch refuses a Gaussian that is not finite
             self._check_finite(decisions)
             raise
         self._check_finite(decisions)
