@@ -146,7 +146,7 @@ def test_bfloat16_learns_what_float32_learns(shape, monkeypatch):
     live = torch.sort(torch.tensor(ours.values[ours.live])).values
     samples = next(ours.get(None))
     (*_, loss), slopes = evaluated(learner.policy, samples, live)
-    monkeypatch.setattr(learner.policy, "bfloat16", True)
+    monkeypatch.setattr(learner.policy, "half_products", True)
     (*_, rough), rough_slopes = evaluated(learner.policy, samples, live)
     assert rough != loss
     torch.testing.assert_close(rough, loss, rtol=0.01, atol=1e-3)

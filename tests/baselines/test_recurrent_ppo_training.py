@@ -139,7 +139,7 @@ def test_a_resumed_training_keeps_its_precision(tmp_path, monkeypatch):
     for resume in (False, True):
         training = Training(tiny(), 0, tmp_path)
         training._begin(resume)
-        assert training.learner.policy.bfloat16
+        assert training.learner.policy.half_products
         monkeypatch.setattr(segments, "native_precision", lambda _: "float32")
 
 

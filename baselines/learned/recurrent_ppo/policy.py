@@ -7,11 +7,11 @@ from sb3_contrib.common.recurrent.policies import RecurrentActorCriticPolicy
 
 
 class MixedPrecisionPolicy(RecurrentActorCriticPolicy):
-    """With ``bfloat16``, matrix products of the learner are in bfloat16; weights stay float32."""
+    """With ``half_products``, the learner's matrix products are in bfloat16; weights are float32."""
 
-    bfloat16: bool = False
+    half_products: bool = False
 
     def evaluate_actions(self, *args: Any, **kwargs: Any) -> Any:
-        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.bfloat16):
+        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.half_products):
             results = super().evaluate_actions(*args, **kwargs)
         return tuple(part.float() for part in results)

@@ -101,18 +101,19 @@ class AgentVecEnv(VecEnv):
     @property
     def active(self) -> BoolArray:
         """(S,) slots with an active attempt."""
-        return _joined([slots.active for slots in self._slots])
+        active: BoolArray = _joined([slots.active for slots in self._slots])
+        return active
 
     def decide(self, actions: AnyArray) -> SlotTransition:
         """Execute one decision, ``actions`` (S, 2) in [-1, 1], without the dicts of `step`."""
         steps = self._execute(actions)
-        flags = [[step.over for step in steps], [step.timed_out for step in steps],
-                 [step.restarted for step in steps]]  # fmt: skip
         return SlotTransition(
-            np.concatenate([_flat(step.observation) for step in steps]),
-            _joined([step.reward for step in steps]).astype(np.float32),
-            *map(_joined, flags),
-            np.concatenate([_flat(step.final) for step in steps]),
+            observation=np.concatenate([_flat(step.observation) for step in steps]),
+            reward=_joined([step.reward for step in steps]).astype(np.float32),
+            over=_joined([step.over for step in steps]),
+            timed_out=_joined([step.timed_out for step in steps]),
+            restarted=_joined([step.restarted for step in steps]),
+            final=np.concatenate([_flat(step.final) for step in steps]),
         )
 
     def _execute(self, actions: AnyArray) -> list[Transition]:

@@ -23,13 +23,14 @@ class Networks:
 
     def __init__(self, policy: MixedPrecisionPolicy) -> None:
         self._policy = policy
-        dtype = torch.bfloat16 if policy.bfloat16 else torch.float32
+        lstms: list[Any] = [policy.lstm_actor, policy.lstm_critic]
+        dtype = torch.bfloat16 if policy.half_products else torch.float32
         self._lstms = [
             [
                 (torch.cat([w_ih, w_hh], 1).to(dtype).t(), b_ih + b_hh)
                 for w_ih, w_hh, b_ih, b_hh in lstm.all_weights
             ]
-            for lstm in (policy.lstm_actor, policy.lstm_critic)
+            for lstm in lstms
         ]
 
     def _advance(self, x: Tensor, state: Tensor, net: int) -> Tensor:
@@ -48,14 +49,15 @@ class Networks:
         """Return sampled actions (N, 2) and their log-probabilities; advance ``state``."""
         policy = self._policy
         latent = policy.mlp_extractor.forward_actor(self._advance(x, state, ACTOR))
-        normal = Normal(policy.action_net(latent), policy.log_std.exp(), validate_args=False)
+        normal: Any = Normal(policy.action_net(latent), policy.log_std.exp(), validate_args=False)
         action = normal.sample()
         return action, normal.log_prob(action).sum(1)
 
     def value(self, x: Tensor, state: Tensor) -> Tensor:
         """Return values (N,); advance ``state``."""
         latent = self._policy.mlp_extractor.forward_critic(self._advance(x, state, CRITIC))
-        return self._policy.value_net(latent)[:, 0]
+        value: Tensor = self._policy.value_net(latent)
+        return value[:, 0]
 
 
 class Collector:

@@ -87,7 +87,7 @@ def native_precision(device: torch.device) -> Precision:
 def set_precision(learner: Learner, precision: Precision) -> None:
     """Set the precision of the matrix products of recurrent networks."""
     if isinstance(learner, SequencePPO):
-        learner.policy.bfloat16 = precision == "bfloat16"
+        learner.policy.half_products = precision == "bfloat16"
 
 
 def copy_state(source: Learner, target: Learner) -> None:
@@ -95,7 +95,7 @@ def copy_state(source: Learner, target: Learner) -> None:
     target.policy.load_state_dict(source.policy.state_dict())
     target.policy.optimizer.load_state_dict(source.policy.optimizer.state_dict())
     if isinstance(source, SequencePPO) and isinstance(target, SequencePPO):
-        target.policy.bfloat16 = source.policy.bfloat16
+        target.policy.half_products = source.policy.half_products
 
 
 def buffer_of(learner: Learner) -> Any:

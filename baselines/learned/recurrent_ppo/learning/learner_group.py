@@ -44,11 +44,11 @@ class LearnerGroup:
         """Return this process's part of ``count`` equal things."""
         return count * (self.rank + 1) // self.size - count * self.rank // self.size
 
-    def average_gradients(self, policy: torch.nn.Module) -> None:
+    def average_gradients(self, policy: Any) -> None:
         """Replace each gradient of ``policy`` by the mean over all processes, from now on."""
         if self.size == 1:
             return
-        parameters = [p for p in policy.parameters() if p.requires_grad]
+        parameters: list[Any] = [p for p in policy.parameters() if p.requires_grad]
         missing = len(parameters)
 
         def average(_: torch.Tensor) -> None:
@@ -57,21 +57,16 @@ class LearnerGroup:
             if missing:
                 return
             missing = len(parameters)
-            flat = torch.cat([_gradient(p).flatten() for p in parameters])
+            flat = torch.cat([p.grad.flatten() for p in parameters])
             dist.all_reduce(flat)
             flat /= self.size
             for p, part in zip(
                 parameters, flat.split([p.numel() for p in parameters]), strict=True
             ):
-                _gradient(p).copy_(part.view_as(p))
+                p.grad.copy_(part.view_as(p))
 
         for parameter in parameters:
             parameter.register_post_accumulate_grad_hook(average)
-
-
-def _gradient(parameter: torch.Tensor) -> torch.Tensor:
-    assert parameter.grad is not None  # noqa: S101 - a hook runs after the gradient is there
-    return parameter.grad
 
 
 @contextmanager
@@ -115,11 +110,12 @@ def learner_group(size: int, work: Callable[..., None], *arguments: Any) -> Iter
             ) from error
         finally:
             for process in others:
-                process.kill()
-                process.join()
+                if process.pid is not None:
+                    process.kill()
+                    process.join()
             if dist.is_initialized():
                 dist.destroy_process_group()
-            os.environ.pop(_THREADS)
+            os.environ.pop(_THREADS, None)
             if before is not None:
                 os.environ[_THREADS] = before
 
