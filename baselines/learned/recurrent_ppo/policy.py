@@ -7,7 +7,7 @@ from sb3_contrib.common.recurrent.policies import RecurrentActorCriticPolicy
 
 
 class MixedPrecisionPolicy(RecurrentActorCriticPolicy):
-    """With ``half_products``, the learner's matrix products are in bfloat16; weights are float32."""
+    """With ``half_products``, the learner multiplies matrices in bfloat16; weights are float32."""
 
     half_products: bool = False
 

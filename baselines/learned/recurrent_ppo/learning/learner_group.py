@@ -60,10 +60,10 @@ class LearnerGroup:
             flat = torch.cat([p.grad.flatten() for p in parameters])
             dist.all_reduce(flat)
             flat /= self.size
-            for p, part in zip(
-                parameters, flat.split([p.numel() for p in parameters]), strict=True
-            ):
-                p.grad.copy_(part.view_as(p))
+            first = 0
+            for p in parameters:
+                p.grad.copy_(flat[first : first + p.numel()].view_as(p))
+                first += p.numel()
 
         for parameter in parameters:
             parameter.register_post_accumulate_grad_hook(average)
