@@ -5,40 +5,51 @@ from typing import Any
 import numpy as np
 import torch
 from sb3_contrib import RecurrentPPO
-from sb3_contrib.common.recurrent.type_aliases import RNNStates
 
 from benchnav.envs import AgentVecEnv, AttemptPPO
 
 from ..actor import Float32Array
-from ..policy import FusedPolicy
+from ..policy import MixedPrecisionPolicy
 from .buffer import SequenceBuffer
-from .recipe import Recipe, Stage
+from .collector import Collector
+from .learner_group import LearnerGroup
+from .recipe import Precision, Recipe, Stage
 
 
 class SequencePPO(RecurrentPPO):
     """RecurrentPPO whose rollouts are cut into short sequences without idle transitions."""
 
-    _last_lstm_states: Any
+    policy: MixedPrecisionPolicy
+    rollout_buffer: SequenceBuffer
+    _collector: Collector | None = None
 
     def _setup_model(self) -> None:
         super()._setup_model()
-        stock: Any = self.rollout_buffer
+        lstm = self.policy.lstm_actor
         self.rollout_buffer = SequenceBuffer(
-            self.n_steps, self.observation_space, self.action_space, stock.hidden_state_shape,
-            self.device, gamma=self.gamma, gae_lambda=self.gae_lambda, n_envs=self.n_envs,
+            self.n_steps, self.observation_space, self.action_space, self.device,
+            gamma=self.gamma, gae_lambda=self.gae_lambda, n_envs=self.n_envs,
+            state=(2, 2, lstm.num_layers, lstm.hidden_size),
         )  # fmt: skip
 
     def collect_rollouts(
         self, env: Any, callback: Any, rollout_buffer: Any, n_rollout_steps: int
     ) -> bool:
-        rollout_buffer.env = env
-        return super().collect_rollouts(env, callback, rollout_buffer, n_rollout_steps)
+        if self._collector is None:
+            self._collector = Collector(env, self.policy, self._last_obs)
+        self.policy.set_training_mode(False)
+        self._collector.fill(rollout_buffer, self.gamma)
+        self.num_timesteps += self.n_envs * n_rollout_steps
+        return True
+
+    def join(self, group: LearnerGroup) -> None:
+        """Learn as one of a group: the same minibatches in number, and the mean of gradients."""
+        self.rollout_buffer.group = group
+        group.average_gradients(self.policy)
 
     def forget(self) -> None:
-        """Reset all memories."""
-        self._last_lstm_states = RNNStates(
-            *(tuple(torch.zeros_like(t) for t in pair) for pair in self._last_lstm_states)
-        )
+        """Reset all memories; the environment must have been reset."""
+        self._collector = None
 
 
 Learner = SequencePPO | AttemptPPO
@@ -51,10 +62,13 @@ def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Le
         "n_steps": recipe.rollout, "gamma": recipe.gamma, "gae_lambda": recipe.gae_lambda,
         "clip_range": recipe.clip, "device": device, "seed": seed,
     }  # fmt: skip
-    policy: dict[str, Any] = {"net_arch": list(network.dense), "log_std_init": network.log_std}
+    policy: dict[str, Any] = {
+        "net_arch": list(network.dense), "log_std_init": network.log_std,
+        "optimizer_kwargs": {"fused": True, "eps": 1e-5},  # eps: the default of SB3,
+    }  # fmt: skip
     if network.lstm_layers:
         policy |= {"lstm_hidden_size": network.lstm_size, "n_lstm_layers": network.lstm_layers}
-        learner: Learner = SequencePPO(FusedPolicy, env, policy_kwargs=policy, **shared)
+        learner: Learner = SequencePPO(MixedPrecisionPolicy, env, policy_kwargs=policy, **shared)
         buffer_of(learner).length = recipe.sequence
     else:
         learner = AttemptPPO(
@@ -64,10 +78,24 @@ def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Le
     return learner
 
 
-def copy_weights(source: Learner, target: Learner) -> None:
-    """Copy policy and optimiser of ``source`` to ``target``."""
+def native_precision(device: torch.device) -> Precision:
+    """Return "bfloat16" where the processor multiplies such numbers itself, else "float32"."""
+    native = device.type == "cpu" and torch.cpu._is_avx512_bf16_supported()
+    return "bfloat16" if native else "float32"
+
+
+def set_precision(learner: Learner, precision: Precision) -> None:
+    """Set the precision of the matrix products of recurrent networks."""
+    if isinstance(learner, SequencePPO):
+        learner.policy.half_products = precision == "bfloat16"
+
+
+def copy_state(source: Learner, target: Learner) -> None:
+    """Copy policy, optimiser and precision of ``source`` to ``target``."""
     target.policy.load_state_dict(source.policy.state_dict())
     target.policy.optimizer.load_state_dict(source.policy.optimizer.state_dict())
+    if isinstance(source, SequencePPO) and isinstance(target, SequencePPO):
+        target.policy.half_products = source.policy.half_products
 
 
 def buffer_of(learner: Learner) -> Any:

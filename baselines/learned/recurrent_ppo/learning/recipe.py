@@ -13,6 +13,7 @@ from benchnav.errors import did_you_mean
 from benchnav.navigation import Need
 
 Share = Annotated[float, Field(ge=0, le=1)]
+Precision = Literal["float32", "bfloat16"]
 Rate = Annotated[float, Field(gt=0, le=1)]
 
 
@@ -74,9 +75,16 @@ class Recipe(_Part):
     )
     courses: tuple[Course, ...] = Field(min_length=1, max_length=100)
     rows: int = Field(64, ge=1, le=4096, description="worlds that run side by side")
+    processes: int = Field(
+        1, ge=1, le=256, description="learners that share the rows and average their gradients"
+    )
     rollout: int = Field(64, ge=2, le=4096, description="decisions a slot makes between updates")
     sequence: int = Field(64, ge=1, le=4096, description="longest sequence that is unrolled")
     network: Network = Network()
+    precision: Literal["auto", "float32", "bfloat16"] = Field(
+        "auto",
+        description="of matrix products while an LSTM learns; auto: bfloat16 where it is native",
+    )
     gamma: Share = 0.99
     gae_lambda: Share = 0.95
     clip: Annotated[float, Field(gt=0, lt=1)] = 0.2
@@ -93,8 +101,9 @@ class Recipe(_Part):
     def hash(self) -> str:
         """16 hex digits of everything that determines the weights, except the seed."""
         fields = self.model_dump(mode="json", exclude={"description"}, exclude_none=True)
-        if self.perception == "exact":  # older recipes do not have the key
-            del fields["perception"]
+        for name in ("perception", "precision", "processes"):  # older recipes do not have the keys
+            if fields[name] == Recipe.model_fields[name].default:
+                del fields[name]
         return hashlib.sha256(json.dumps(fields, sort_keys=True).encode()).hexdigest()[:16]
 
     @property
@@ -113,6 +122,12 @@ class Recipe(_Part):
         if self.network.lstm_layers == 0 and not self.network.dense:
             raise FieldError(("network",), "must have LSTM or dense layers; got neither")
         _refuse_twice(self.courses, ("courses",))
+        if self.processes > 1 and self.network.lstm_layers == 0:
+            raise FieldError(("processes",), f"must be 1 without an LSTM; got {self.processes}")
+        if self.processes > self.rows:
+            raise FieldError(
+                ("processes",), f"must be at most rows, which is {self.rows}; got {self.processes}"
+            )
         for i, stage in enumerate(self.stages):
             if stage.batch <= self.sequence:
                 raise FieldError(
