@@ -45,16 +45,53 @@ class PaperEncoder(Encoder):
 
     @cached_property
     def numbers(self) -> tuple[Number, ...]:
-        rays = [number for ray in range(RAYS) for number in _ray_numbers(ray)]
-        movers = [number for ray in range(RAYS) for number in _mover_numbers(ray)]
+        rays = [number for ray in range(RAYS) for number in self._ray_numbers(ray)]
+        movers = [number for ray in range(RAYS) for number in self._mover_numbers(ray)]
         return (*rays, *self._own_numbers(), *(movers if self.movers else ()))
 
     def encode(self, seen: Observation, bodies: Bodies) -> Float32Array:
         rays = rays_of(seen, RAYS, self.name)
-        parts = [_ray_values(rays), self._own_values(seen, bodies)]
+        parts = [self._ray_values(rays), self._own_values(seen, bodies)]
         if self.movers:
-            parts.append(_mover_values(rays))
+            parts.append(self._mover_values(rays))
         return within(self.numbers, np.concatenate(parts, axis=-1))
+
+    def _ray_numbers(self, ray: int) -> list[Number]:
+        flags = [
+            Number(f"ray{ray}.{kind.name.lower()}", "", 0, 1, f"it meets {_WORDS[kind]} first")
+            for kind in _ONE_HOT
+        ]
+        nothing = Number(f"ray{ray}.nothing", "", 0, 1, "it meets none of these within range")
+        return [*flags, nothing, self._length_number(f"ray{ray}.length", "its length")]
+
+    def _mover_numbers(self, ray: int) -> list[Number]:
+        what = f"speed towards the agent of the mover that it meets, over {SPEED:g} m/s"
+        speed = Number(f"ray{ray}.mover_speed", "m/s", -1.5, 1.5, what)
+        return [speed, self._length_number(f"ray{ray}.mover_distance", "the mover's distance")]
+
+    def _ray_values(self, rays: Rays) -> FloatArray:
+        goal = np.isfinite(rays.goal)
+        kind = np.where(goal, int(Kind.GOAL), rays.kind)
+        mover = kind == int(Kind.DYNAMIC)
+        flags = [(kind == int(k)).astype(float) for k in _ONE_HOT]
+        nothing = (mover | (kind == int(Kind.NOTHING))).astype(float)
+        length = np.where(goal, rays.goal, np.where(mover, RANGE, rays.distance))
+        values = np.stack([*flags, nothing, self._length_values(length)], axis=-1)
+        return values.reshape(*values.shape[:2], -1)
+
+    def _mover_values(self, rays: Rays) -> FloatArray:
+        mover = rays.kind == int(Kind.DYNAMIC)
+        speed = np.where(mover, rays.approach, 0.0) / SPEED
+        length = self._length_values(np.where(mover, rays.distance, RANGE))
+        values = np.stack([speed, length], axis=-1)
+        return values.reshape(*values.shape[:2], -1)
+
+    def _length_number(self, name: str, what: str) -> Number:
+        return Number(name, "m", 0, 1, f"{what} over {RANGE:g} m, 1 if none")
+
+    def _length_values(self, length: FloatArray) -> FloatArray:
+        """Return the numbers of lengths [m], which are at most `RANGE`."""
+        return length / RANGE
 
     def _own_numbers(self) -> tuple[Number, ...]:
         return (
@@ -96,44 +133,3 @@ def own_frame(seen: Observation) -> FloatArray:
     velocity = ahead_aside(seen.heading, seen.velocity)
     distance = np.hypot(goal[..., 0], goal[..., 1])[..., None]
     return np.concatenate([goal / SPAN, velocity / SPEED, goal / np.maximum(distance, 1e-9)], -1)
-
-
-def _ray_numbers(ray: int) -> list[Number]:
-    flags = [
-        Number(f"ray{ray}.{kind.name.lower()}", "", 0, 1, f"it meets {_WORDS[kind]} first")
-        for kind in _ONE_HOT
-    ]
-    return [
-        *flags,
-        Number(f"ray{ray}.nothing", "", 0, 1, "it meets none of these within range"),
-        Number(f"ray{ray}.length", "m", 0, 1, f"its length over {RANGE:g} m"),
-    ]
-
-
-def _mover_numbers(ray: int) -> list[Number]:
-    return [
-        Number(
-            f"ray{ray}.mover_speed", "m/s", -1.5, 1.5,
-            f"speed towards the agent of the mover that it meets, over {SPEED:g} m/s",
-        ),
-        Number(f"ray{ray}.mover_distance", "m", 0, 1, f"its distance over {RANGE:g} m, 1 if none"),
-    ]  # fmt: skip
-
-
-def _ray_values(rays: Rays) -> FloatArray:
-    goal = np.isfinite(rays.goal)
-    kind = np.where(goal, int(Kind.GOAL), rays.kind)
-    mover = kind == int(Kind.DYNAMIC)
-    flags = [(kind == int(k)).astype(float) for k in _ONE_HOT]
-    nothing = (mover | (kind == int(Kind.NOTHING))).astype(float)
-    length = np.where(goal, rays.goal, np.where(mover, RANGE, rays.distance)) / RANGE
-    values = np.stack([*flags, nothing, length], axis=-1)
-    return values.reshape(*values.shape[:2], -1)
-
-
-def _mover_values(rays: Rays) -> FloatArray:
-    mover = rays.kind == int(Kind.DYNAMIC)
-    speed = np.where(mover, rays.approach, 0.0) / SPEED
-    distance = np.where(mover, rays.distance, RANGE) / RANGE
-    values = np.stack([speed, distance], axis=-1)
-    return values.reshape(*values.shape[:2], -1)
