@@ -10,8 +10,16 @@ class FusedPolicy(RecurrentActorCriticPolicy):
     """The stock class loops over a batch's steps as soon as any episode starts in it.
 
     Sequences are cut where episodes start, so masking the state that a sequence begins
-    with does the same in one call.
+    with does the same in one call. With ``bfloat16``, matrix products of
+    the learner are in bfloat16.
     """
+
+    bfloat16: bool = False
+
+    def evaluate_actions(self, *args: Any, **kwargs: Any) -> Any:
+        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.bfloat16):
+            results = super().evaluate_actions(*args, **kwargs)
+        return tuple(part.float() for part in results)
 
     @staticmethod
     def _process_sequence(

@@ -12,6 +12,7 @@ from safetensors.torch import save_file
 from benchnav.errors import StoreError, UsageError
 
 from .learner import Learner
+from .recipe import Precision
 
 FILE = "checkpoint.safetensors"
 
@@ -29,6 +30,7 @@ class Progress:
     best: float = -1.0  # validation success in this stage
     waited: int = 0  # checkpoints since the best
     seconds: float = 0.0  # of training
+    precision: Precision | None = None  # with which it began; None: of an older version
 
 
 def save(folder: Path, learner: Learner, progress: Progress) -> None:

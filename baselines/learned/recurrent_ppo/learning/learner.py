@@ -12,12 +12,13 @@ from benchnav.envs import AgentVecEnv, AttemptPPO
 from ..actor import Float32Array
 from ..policy import FusedPolicy
 from .buffer import SequenceBuffer
-from .recipe import Recipe, Stage
+from .recipe import Precision, Recipe, Stage
 
 
 class SequencePPO(RecurrentPPO):
     """RecurrentPPO whose rollouts are cut into short sequences without idle transitions."""
 
+    policy: FusedPolicy
     _last_lstm_states: Any
 
     def _setup_model(self) -> None:
@@ -51,7 +52,10 @@ def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Le
         "n_steps": recipe.rollout, "gamma": recipe.gamma, "gae_lambda": recipe.gae_lambda,
         "clip_range": recipe.clip, "device": device, "seed": seed,
     }  # fmt: skip
-    policy: dict[str, Any] = {"net_arch": list(network.dense), "log_std_init": network.log_std}
+    policy: dict[str, Any] = {
+        "net_arch": list(network.dense), "log_std_init": network.log_std,
+        "optimizer_kwargs": {"fused": True, "eps": 1e-5},  # eps: the default of SB3,
+    }  # fmt: skip
     if network.lstm_layers:
         policy |= {"lstm_hidden_size": network.lstm_size, "n_lstm_layers": network.lstm_layers}
         learner: Learner = SequencePPO(FusedPolicy, env, policy_kwargs=policy, **shared)
@@ -64,10 +68,24 @@ def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Le
     return learner
 
 
-def copy_weights(source: Learner, target: Learner) -> None:
-    """Copy policy and optimiser of ``source`` to ``target``."""
+def native_precision(device: torch.device) -> Precision:
+    """Return "bfloat16" where the processor multiplies such numbers itself, else "float32"."""
+    native = device.type == "cpu" and torch.cpu._is_avx512_bf16_supported()
+    return "bfloat16" if native else "float32"
+
+
+def set_precision(learner: Learner, precision: Precision) -> None:
+    """Set the precision of the matrix products of recurrent networks."""
+    if isinstance(learner, SequencePPO):
+        learner.policy.bfloat16 = precision == "bfloat16"
+
+
+def copy_state(source: Learner, target: Learner) -> None:
+    """Copy policy, optimiser and precision of ``source`` to ``target``."""
     target.policy.load_state_dict(source.policy.state_dict())
     target.policy.optimizer.load_state_dict(source.policy.optimizer.state_dict())
+    if isinstance(source, SequencePPO) and isinstance(target, SequencePPO):
+        target.policy.bfloat16 = source.policy.bfloat16
 
 
 def buffer_of(learner: Learner) -> Any:

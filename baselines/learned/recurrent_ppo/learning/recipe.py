@@ -13,6 +13,7 @@ from benchnav.errors import did_you_mean
 from benchnav.navigation import Need
 
 Share = Annotated[float, Field(ge=0, le=1)]
+Precision = Literal["float32", "bfloat16"]
 Rate = Annotated[float, Field(gt=0, le=1)]
 
 
@@ -77,6 +78,10 @@ class Recipe(_Part):
     rollout: int = Field(64, ge=2, le=4096, description="decisions a slot makes between updates")
     sequence: int = Field(64, ge=1, le=4096, description="longest sequence that is unrolled")
     network: Network = Network()
+    precision: Literal["auto", "float32", "bfloat16"] = Field(
+        "auto",
+        description="of matrix products while an LSTM learns; auto: bfloat16 where it is native",
+    )
     gamma: Share = 0.99
     gae_lambda: Share = 0.95
     clip: Annotated[float, Field(gt=0, lt=1)] = 0.2
@@ -93,8 +98,9 @@ class Recipe(_Part):
     def hash(self) -> str:
         """16 hex digits of everything that determines the weights, except the seed."""
         fields = self.model_dump(mode="json", exclude={"description"}, exclude_none=True)
-        if self.perception == "exact":  # older recipes do not have the key
-            del fields["perception"]
+        for name in ("perception", "precision"):  # older recipes do not have the keys
+            if fields[name] == Recipe.model_fields[name].default:
+                del fields[name]
         return hashlib.sha256(json.dumps(fields, sort_keys=True).encode()).hexdigest()[:16]
 
     @property

@@ -30,9 +30,18 @@ from . import checkpoint
 from .checkpoint import Progress
 from .courses import make_env, training_pools, validation_batches
 from .evaluate import evaluate
-from .learner import SequencePPO, actor_tensors, copy_weights, enter, make_learner, reseed
+from .learner import (
+    SequencePPO,
+    actor_tensors,
+    copy_state,
+    enter,
+    make_learner,
+    native_precision,
+    reseed,
+    set_precision,
+)
 from .log import Curve
-from .recipe import Recipe, Stage
+from .recipe import Precision, Recipe, Stage
 
 WEIGHTS = "weights.safetensors"
 Report = Callable[[TrainingReport], None]
@@ -67,7 +76,9 @@ class Training:
         self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
         if resume:
             progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
-        else:
+        progress = replace(progress, precision=progress.precision or self._precision())
+        set_precision(self.learner, progress.precision)
+        if not resume:
             checkpoint.save(self.folder, self.learner, progress)
         self._report()
         curve = Curve(self.folder, progress.decisions)
@@ -77,6 +88,10 @@ class Training:
         finally:
             curve.close()
         return curve.rows[-1] if curve.rows else {}
+
+    def _precision(self) -> Precision:
+        wanted = self.recipe.precision
+        return native_precision(self.learner.device) if wanted == "auto" else wanted
 
     def _claim(self, resume: bool) -> None:
         there = (self.folder / checkpoint.FILE).exists()
@@ -107,7 +122,7 @@ class Training:
             self._lay_out(stage)
             before = self.learner
             self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
-            copy_weights(before, self.learner)
+            copy_state(before, self.learner)
         correct = foresee if stage.foresight else None
         self._env.enter(stage.reward, seed, correct)
         for batch in self._validation.values():
