@@ -61,6 +61,22 @@ def rolled_out(layers=1, size=8, dense=(), rollouts=3):
     return learner
 
 
+def test_a_stage_that_gives_the_noise_sets_it_and_learns_it_no_more():
+    recipe = recipe_of(lstm_layers=1, lstm_size=4)
+    env = make_env(recipe, training_pools(recipe, recipe.stages[0]))
+    env.enter(recipe.stages[0].reward, 0)
+    learner = make_learner(recipe, env, 0, "cpu")
+    given = recipe.stages[0].model_copy(update={"log_std": (-0.5, -1.5)})
+    for progress, expected in ((0.0, -0.5), (0.5, -1.0), (1.0, -1.5), (1.2, -1.5)):
+        enter(learner, given, progress)
+        np.testing.assert_allclose(learner.policy.log_std.detach(), expected)
+    learner.learn(2 * recipe.rollout)
+    np.testing.assert_allclose(learner.policy.log_std.detach(), -1.5)
+    enter(learner, recipe.stages[0], 0.0)
+    learner.learn(2 * recipe.rollout)
+    assert (learner.policy.log_std.detach() != -1.5).all()
+
+
 def random_lstm(layers, seed):
     torch.manual_seed(seed)
     return torch.nn.LSTM(3, 5, num_layers=layers)
