@@ -51,12 +51,13 @@ class AutoresetSimulation(Simulation):
         counts = np.zeros((self.B, self.A, KINDS), np.int64)
         since = (self.records["steps_done"] - 1) * self.records["dt"] - 1e-9  # rounding
         going = (self._opened["code"] >= 0) & (self._opened["start"] >= since[:, None, None])
-        for b in np.flatnonzero(going.any((1, 2)) | (self.records["closed"] > 0)):
+        listed = np.arange(self._closed.shape[1]) < self.records["closed"][:, None]
+        closed = listed & (self._closed["start"] >= since[:, None])
+        for b in np.flatnonzero(going.any((1, 2)) | closed.any(1)):
             agent, slot = np.nonzero(going[b])
             rows = self._opened[b, agent, slot]
             rows["agent"] = agent
-            closed = self._closed[b, : self.records["closed"][b]]
-            rows = np.concatenate([rows, closed[closed["start"] >= since[b]]])
+            rows = np.concatenate([rows, self._closed[b, closed[b]]])
             rows = rows[rows["charged"]]
             kind, _ = partners(self.worlds[b], rows["code"])
             np.add.at(counts[b], (rows["agent"], kind), 1)

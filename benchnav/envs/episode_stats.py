@@ -25,6 +25,12 @@ class Tally:
         for f in fields(RewardTerms):
             self._terms[f.name] += float(np.sum(getattr(step.terms, f.name), where=step.acted))
 
+    def merge(self, other: "Tally") -> None:
+        """Add the statistics of other attempts."""
+        self.counts.update(other.counts)
+        for name, value in other._terms.items():
+            self._terms[name] += value
+
     def take(self) -> dict[str, float]:
         """Return attempts, shares of outcomes, and means of terms per attempt, and reset them."""
         counts, terms = self.counts, self._terms

@@ -1,14 +1,16 @@
 """Stable-Baselines3's VecEnv: every learning agent of every world is one environment."""
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from operator import index
 from typing import Any, cast
 
 import numpy as np
 from stable_baselines3.common.vec_env import VecEnv
 
-from benchnav.arrays import BoolArray, ByteArray
+from benchnav.arrays import AnyArray, BoolArray, ByteArray
 from benchnav.envs.agent_batch import AgentBatch, Correction, Transition
+from benchnav.envs.encoders.encoder import Float32Array
 from benchnav.envs.episode_stats import Tally
 from benchnav.envs.factory import check_render_mode
 from benchnav.envs.gym.spaces import action_space, last_seen, observation_space, terms
@@ -16,6 +18,18 @@ from benchnav.envs.learner_slots import LearnerSlots
 from benchnav.envs.rendering import FPS, RGB_ARRAY, Renderer
 from benchnav.envs.reward import RewardWeights
 from benchnav.errors import UsageError
+
+
+@dataclass(frozen=True, eq=False)
+class SlotTransition:
+    """The results of one decision of all slots, (S,) each; entries of idle slots are 0."""
+
+    observation: Float32Array  # (S, D) after restarts
+    reward: Float32Array  # scaled
+    over: BoolArray  # the attempt ended
+    timed_out: BoolArray  # the attempt ended at the horizon
+    restarted: BoolArray  # the observation is the first of another attempt
+    final: Float32Array  # (S, D) before restarts
 
 
 class AgentVecEnv(VecEnv):
@@ -84,18 +98,39 @@ class AgentVecEnv(VecEnv):
         self.reset_infos = [{"idle": not bool(here)} for here in active]
         return observation
 
-    def step_async(self, actions: Any) -> None:
-        self._action = actions
+    @property
+    def active(self) -> BoolArray:
+        """(S,) slots with an active attempt."""
+        return _joined([slots.active for slots in self._slots])
 
-    def step_wait(self) -> Any:
+    def decide(self, actions: AnyArray) -> SlotTransition:
+        """Execute one decision, ``actions`` (S, 2) in [-1, 1], without the dicts of `step`."""
+        steps = self._execute(actions)
+        flags = [[step.over for step in steps], [step.timed_out for step in steps],
+                 [step.restarted for step in steps]]  # fmt: skip
+        return SlotTransition(
+            np.concatenate([_flat(step.observation) for step in steps]),
+            _joined([step.reward for step in steps]).astype(np.float32),
+            *map(_joined, flags),
+            np.concatenate([_flat(step.final) for step in steps]),
+        )
+
+    def _execute(self, actions: AnyArray) -> list[Transition]:
         steps, first = [], 0
         for slots in self._slots:
-            steps.append(slots.step(self._action[first : first + slots.size]))
+            steps.append(slots.step(actions[first : first + slots.size]))
             first += slots.size
         for step in steps:
             self.tally.add(step)
         self.acted = _joined([step.acted for step in steps])
         self.woke = _joined([step.restarted & ~step.acted for step in steps])
+        return steps
+
+    def step_async(self, actions: Any) -> None:
+        self._action = actions
+
+    def step_wait(self) -> Any:
+        steps = self._execute(self._action)
         observation = np.concatenate([_flat(step.observation) for step in steps])
         reward = _joined([step.reward for step in steps]).astype(np.float32)
         done = _joined([step.over for step in steps])

@@ -44,14 +44,12 @@ def training_pools(recipe: Recipe, stage: Stage) -> list[Pool]:
     return list(pools.values())
 
 
-def make_env(recipe: Recipe, pools: Sequence[Pool]) -> AgentVecEnv:
+def make_env(recipe: Recipe, pools: Sequence[Pool], rows: int | None = None) -> AgentVecEnv:
     """Return an environment; pools share rows by their numbers of worlds, at least one each."""
+    rows = recipe.rows if rows is None else rows
     total = sum(len(pool.worlds) for pool in pools)
     return CourseEnv(
-        [
-            _batch(recipe, pool, max(1, round(recipe.rows * len(pool.worlds) / total)))
-            for pool in pools
-        ]
+        [_batch(recipe, pool, max(1, round(rows * len(pool.worlds) / total))) for pool in pools]
     )
 
 

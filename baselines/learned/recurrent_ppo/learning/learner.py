@@ -5,41 +5,51 @@ from typing import Any
 import numpy as np
 import torch
 from sb3_contrib import RecurrentPPO
-from sb3_contrib.common.recurrent.type_aliases import RNNStates
 
 from benchnav.envs import AgentVecEnv, AttemptPPO
 
 from ..actor import Float32Array
-from ..policy import FusedPolicy
+from ..policy import MixedPrecisionPolicy
 from .buffer import SequenceBuffer
+from .collector import Collector
+from .learner_group import LearnerGroup
 from .recipe import Precision, Recipe, Stage
 
 
 class SequencePPO(RecurrentPPO):
     """RecurrentPPO whose rollouts are cut into short sequences without idle transitions."""
 
-    policy: FusedPolicy
-    _last_lstm_states: Any
+    policy: MixedPrecisionPolicy
+    rollout_buffer: SequenceBuffer
+    _collector: Collector | None = None
 
     def _setup_model(self) -> None:
         super()._setup_model()
-        stock: Any = self.rollout_buffer
+        lstm = self.policy.lstm_actor
         self.rollout_buffer = SequenceBuffer(
-            self.n_steps, self.observation_space, self.action_space, stock.hidden_state_shape,
-            self.device, gamma=self.gamma, gae_lambda=self.gae_lambda, n_envs=self.n_envs,
+            self.n_steps, self.observation_space, self.action_space, self.device,
+            gamma=self.gamma, gae_lambda=self.gae_lambda, n_envs=self.n_envs,
+            state=(2, 2, lstm.num_layers, lstm.hidden_size),
         )  # fmt: skip
 
     def collect_rollouts(
         self, env: Any, callback: Any, rollout_buffer: Any, n_rollout_steps: int
     ) -> bool:
-        rollout_buffer.env = env
-        return super().collect_rollouts(env, callback, rollout_buffer, n_rollout_steps)
+        if self._collector is None:
+            self._collector = Collector(env, self.policy, self._last_obs)
+        self.policy.set_training_mode(False)
+        self._collector.fill(rollout_buffer, self.gamma)
+        self.num_timesteps += self.n_envs * n_rollout_steps
+        return True
+
+    def join(self, group: LearnerGroup) -> None:
+        """Learn as one of a group: the same minibatches in number, and the mean of gradients."""
+        self.rollout_buffer.group = group
+        group.average_gradients(self.policy)
 
     def forget(self) -> None:
-        """Reset all memories."""
-        self._last_lstm_states = RNNStates(
-            *(tuple(torch.zeros_like(t) for t in pair) for pair in self._last_lstm_states)
-        )
+        """Reset all memories; the environment must have been reset."""
+        self._collector = None
 
 
 Learner = SequencePPO | AttemptPPO
@@ -58,7 +68,7 @@ def make_learner(recipe: Recipe, env: AgentVecEnv, seed: int, device: str) -> Le
     }  # fmt: skip
     if network.lstm_layers:
         policy |= {"lstm_hidden_size": network.lstm_size, "n_lstm_layers": network.lstm_layers}
-        learner: Learner = SequencePPO(FusedPolicy, env, policy_kwargs=policy, **shared)
+        learner: Learner = SequencePPO(MixedPrecisionPolicy, env, policy_kwargs=policy, **shared)
         buffer_of(learner).length = recipe.sequence
     else:
         learner = AttemptPPO(

@@ -79,6 +79,9 @@ class Recipe(_Part):
     )
     courses: tuple[Course, ...] = Field(min_length=1, max_length=100)
     rows: int = Field(64, ge=1, le=4096, description="worlds that run side by side")
+    processes: int = Field(
+        1, ge=1, le=256, description="learners that share the rows and average their gradients"
+    )
     rollout: int = Field(64, ge=2, le=4096, description="decisions a slot makes between updates")
     sequence: int = Field(64, ge=1, le=4096, description="longest sequence that is unrolled")
     network: Network = Network()
@@ -102,7 +105,7 @@ class Recipe(_Part):
     def hash(self) -> str:
         """16 hex digits of everything that determines the weights, except the seed."""
         fields = self.model_dump(mode="json", exclude={"description"}, exclude_none=True)
-        for name in ("perception", "precision"):  # older recipes do not have the keys
+        for name in ("perception", "precision", "processes"):  # older recipes do not have the keys
             if fields[name] == Recipe.model_fields[name].default:
                 del fields[name]
         return hashlib.sha256(json.dumps(fields, sort_keys=True).encode()).hexdigest()[:16]
@@ -123,6 +126,12 @@ class Recipe(_Part):
         if self.network.lstm_layers == 0 and not self.network.dense:
             raise FieldError(("network",), "must have LSTM or dense layers; got neither")
         _refuse_twice(self.courses, ("courses",))
+        if self.processes > 1 and self.network.lstm_layers == 0:
+            raise FieldError(("processes",), f"must be 1 without an LSTM; got {self.processes}")
+        if self.processes > self.rows:
+            raise FieldError(
+                ("processes",), f"must be at most rows, which is {self.rows}; got {self.processes}"
+            )
         for i, stage in enumerate(self.stages):
             if stage.batch <= self.sequence:
                 raise FieldError(

@@ -19,6 +19,7 @@ import torch
 from stable_baselines3.common.callbacks import CallbackList
 
 from benchnav.envs import AgentBatch, AgentVecEnv, TrainingReport
+from benchnav.envs.episode_stats import Tally
 from benchnav.errors import TrainingError, UsageError
 from benchnav.store.runs.lock import locked
 from benchnav.threads import core_count
@@ -40,9 +41,11 @@ from .learner import (
     reseed,
     set_precision,
 )
+from .learner_group import LearnerGroup, learner_group
 from .log import Curve
 from .recipe import Precision, Recipe, Stage
 
+VALIDATION = "validation "  # and the scenario: a column of the curve
 WEIGHTS = "weights.safetensors"
 Report = Callable[[TrainingReport], None]
 
@@ -53,6 +56,7 @@ class Training:
     def __init__(self, recipe: Recipe, seed: int, folder: Path, device: str = "cpu") -> None:
         self.recipe, self.seed, self.folder = recipe, seed, folder
         self._device = device
+        self._group = LearnerGroup()
 
     def run(self, resume: bool, report: Report) -> dict[str, float]:
         """Train to the end; return the last row of the curve.
@@ -66,28 +70,49 @@ class Training:
         self.folder.mkdir(parents=True, exist_ok=True)
         with locked(self.folder):
             self._claim(resume)  # another process began at the same time
-            return self._run(resume, report)
+            arguments = (self.recipe, self.seed, self.folder, self._device, resume)
+            with learner_group(self.recipe.processes, _learn_along, *arguments) as self._group:
+                return self._run(resume, report)
 
     def _run(self, resume: bool, report: Report) -> dict[str, float]:
-        torch.set_num_threads(1)
-        self._lay_out(self.recipe.stages[0])
-        self._validation = validation_batches(self.recipe)
-        progress = Progress(self.recipe.hash, self.seed)
-        self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
-        if resume:
-            progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
-        progress = replace(progress, precision=progress.precision or self._precision())
-        set_precision(self.learner, progress.precision)
-        if not resume:
-            checkpoint.save(self.folder, self.learner, progress)
-        self._report()
+        progress = self._begin(resume)
         curve = Curve(self.folder, progress.decisions)
         try:
             while progress.stage < len(self.recipe.stages):
-                progress = self._segment(progress, curve, report)
+                row, progress = self._segment(progress, report)
+                self._keep(row, progress, curve)
+                report(TrainingReport(progress.decisions, self.recipe.decisions, _mean(row)))
         finally:
             curve.close()
         return curve.rows[-1] if curve.rows else {}
+
+    def _learn_along(self, resume: bool) -> None:
+        """Do what the process of rank 0 does, but write nothing."""
+        progress = self._begin(resume)
+        while progress.stage < len(self.recipe.stages):
+            _, progress = self._segment(progress, lambda _: None)
+
+    def _begin(self, resume: bool) -> Progress:
+        """Prepare worlds and learner; return the progress so far."""
+        torch.set_num_threads(1)
+        self._lay_out(self.recipe.stages[0])
+        self._validation = validation_batches(self.recipe)
+        self._new_learner()
+        progress = Progress(self.recipe.hash, self.seed)
+        if resume:
+            progress = checkpoint.load(self.folder, self.learner, self.recipe.hash, self.seed)
+        progress = replace(progress, precision=progress.precision or self._precision())
+        set_precision(self.learner, progress.precision or "float32")
+        if self._group.rank == 0:
+            if not resume:
+                checkpoint.save(self.folder, self.learner, progress)
+            self._report()
+        return progress
+
+    def _new_learner(self) -> None:
+        self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
+        if isinstance(self.learner, SequencePPO):
+            self.learner.join(self._group)
 
     def _precision(self) -> Precision:
         wanted = self.recipe.precision
@@ -114,14 +139,15 @@ class Training:
     def _lay_out(self, stage: Stage) -> None:
         """Draw the worlds of a stage."""
         self._courses = self.recipe.courses_of(stage)
-        self._env = make_env(self.recipe, training_pools(self.recipe, stage))
+        rows = self._group.share(self.recipe.rows)
+        self._env = make_env(self.recipe, training_pools(self.recipe, stage), rows)
 
     def _enter(self, stage: Stage, seed: int) -> AgentVecEnv:
         """Return the restarted worlds of a stage."""
         if self.recipe.courses_of(stage) != self._courses:
             self._lay_out(stage)
             before = self.learner
-            self.learner = make_learner(self.recipe, self._env, self.seed, self._device)
+            self._new_learner()
             copy_state(before, self.learner)
         correct = foresee if stage.foresight else None
         self._env.enter(stage.reward, seed, correct)
@@ -129,10 +155,11 @@ class Training:
             batch.correct = correct
         return self._env
 
-    def _segment(self, progress: Progress, curve: Curve, report: Report) -> Progress:
-        """Train until the next checkpoint; return its progress."""
+    def _segment(self, progress: Progress, report: Report) -> tuple[dict[str, float], Progress]:
+        """Train until the next checkpoint; return its row of the curve, and its progress."""
         began, stage = perf_counter(), self.recipe.stages[progress.stage]
-        rng = np.random.default_rng([self.seed, progress.segment])
+        key = [self.seed, progress.segment, self._group.rank]
+        rng = np.random.default_rng(key[: 3 if self._group.rank else 2])
         env = self._enter(stage, int(rng.integers(2**31)))
         learner = self.learner
         reseed(learner, rng)
@@ -145,22 +172,22 @@ class Training:
         while here < goal:
             enter(learner, stage, (progress.in_stage + here) / stage.decisions)
             self._update(callback, progress.decisions + here)
-            here = int(env.tally.counts["decisions"])
+            here = sum(self._group.gather(int(env.tally.counts["decisions"])))
             report(TrainingReport(progress.decisions + here, self.recipe.decisions))
-        row = env.tally.take()
-        row["decisions"] = progress.decisions + here
+        tally = Tally()
+        for part in self._group.gather(env.tally):
+            tally.merge(part)
         success = self._validate()
-        reached = float(np.mean(list(success.values())))
-        progress = self._after(progress, here, reached)
+        progress = self._after(progress, here, float(np.mean(list(success.values()))))
         progress = replace(progress, seconds=progress.seconds + perf_counter() - began)
-        row |= {"stage": progress.stage, "seconds": progress.seconds, **success}
+        row = tally.take() | {"decisions": progress.decisions}
+        return row | {"stage": progress.stage, "seconds": progress.seconds, **success}, progress
+
+    def _keep(self, row: dict[str, float], progress: Progress, curve: Curve) -> None:
+        """Write a checkpoint, last of all, so that what belongs to it is on disk before."""
         curve.add(row)
-        self._write_weights(progress, success)
-        checkpoint.save(
-            self.folder, learner, progress
-        )  # last, so that its content is on disk before
-        report(TrainingReport(progress.decisions, self.recipe.decisions, reached))
-        return progress
+        self._write_weights(progress, _success(row))
+        checkpoint.save(self.folder, self.learner, progress)
 
     def _update(self, callback: Any, decisions: int) -> None:
         """Make one rollout, and learn from it."""
@@ -197,10 +224,12 @@ class Training:
         return then
 
     def _validate(self) -> dict[str, float]:
-        actor = Actor(actor_tensors(self.learner))
-        return {
-            f"validation {name}": _share(actor, batch) for name, batch in self._validation.items()
-        }
+        """Return the success in each scenario; the processes share the scenarios."""
+        actor, group = Actor(actor_tensors(self.learner)), self._group
+        mine = list(self._validation.items())[group.rank :: group.size]
+        parts = group.gather({name: _share(actor, batch) for name, batch in mine})
+        success = {name: value for part in parts for name, value in part.items()}
+        return {f"{VALIDATION}{name}": success[name] for name in self._validation}
 
     def _check_finite(self, decisions: int) -> None:
         for name, parameter in self.learner.policy.named_parameters():
@@ -218,6 +247,22 @@ class Training:
             "progress": asdict(progress), "success": success,
             "machine": _machine(), "versions": _versions(),
         }  # fmt: skip
+
+
+def _learn_along(
+    group: LearnerGroup, recipe: Recipe, seed: int, folder: Path, device: str, resume: bool
+) -> None:
+    training = Training(recipe, seed, folder, device)
+    training._group = group
+    training._learn_along(resume)
+
+
+def _success(row: dict[str, float]) -> dict[str, float]:
+    return {name: value for name, value in row.items() if name.startswith(VALIDATION)}
+
+
+def _mean(row: dict[str, float]) -> float:
+    return float(np.mean(list(_success(row).values())))
 
 
 def _share(actor: Actor, batch: AgentBatch) -> float:

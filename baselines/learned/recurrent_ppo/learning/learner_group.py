@@ -1,0 +1,142 @@
+"""Data-parallel learners: processes that collect each for themselves and average their gradients.
+
+All processes run the same code with the same weights and draw different worlds. They meet at each
+gradient through gloo, on the loopback interface; the process of rank 0 alone writes files.
+"""
+
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from multiprocessing import get_context
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import torch
+import torch.distributed as dist
+
+from benchnav.errors import TrainingError
+from benchnav.processes.fork_server import exit_text
+from benchnav.processes.main_module import without_main
+from benchnav.processes.process_tree import end_with_parent
+from benchnav.threads import core_count
+
+_PATIENCE = 5.0  # [s] for a process that ended, or must end
+_THREADS = "BENCHNAV_THREADS"
+
+
+class LearnerGroup:
+    """This process among the learners; alone by default."""
+
+    def __init__(self, rank: int = 0, size: int = 1) -> None:
+        self.rank, self.size = rank, size
+
+    def gather(self, value: Any) -> list[Any]:
+        """Return the value of every process, by rank."""
+        values = [value] * self.size
+        if self.size > 1:
+            dist.all_gather_object(values, value)
+        return values
+
+    def share(self, count: int) -> int:
+        """Return this process's part of ``count`` equal things."""
+        return count * (self.rank + 1) // self.size - count * self.rank // self.size
+
+    def average_gradients(self, policy: torch.nn.Module) -> None:
+        """Replace each gradient of ``policy`` by the mean over all processes, from now on."""
+        if self.size == 1:
+            return
+        parameters = [p for p in policy.parameters() if p.requires_grad]
+        missing = len(parameters)
+
+        def average(_: torch.Tensor) -> None:
+            nonlocal missing
+            missing -= 1
+            if missing:
+                return
+            missing = len(parameters)
+            flat = torch.cat([_gradient(p).flatten() for p in parameters])
+            dist.all_reduce(flat)
+            flat /= self.size
+            for p, part in zip(
+                parameters, flat.split([p.numel() for p in parameters]), strict=True
+            ):
+                _gradient(p).copy_(part.view_as(p))
+
+        for parameter in parameters:
+            parameter.register_post_accumulate_grad_hook(average)
+
+
+def _gradient(parameter: torch.Tensor) -> torch.Tensor:
+    assert parameter.grad is not None  # noqa: S101 - a hook runs after the gradient is there
+    return parameter.grad
+
+
+@contextmanager
+def learner_group(size: int, work: Callable[..., None], *arguments: Any) -> Iterator[LearnerGroup]:
+    """Yield the group of this process and ``size`` - 1 new ones, which run ``work``.
+
+    They call ``work(group, *arguments)``, and end with this process. Raises TrainingError where
+    one of them ends early.
+    """
+    if size == 1:
+        yield LearnerGroup()
+        return
+    context, before = get_context("spawn"), os.environ.get(_THREADS)
+    with TemporaryDirectory(prefix="benchnav-") as folder:
+        meeting = str(Path(folder) / "meeting")
+        others = [
+            context.Process(
+                target=_run, args=(rank, size, meeting, work, arguments), daemon=True,
+                name=f"benchnav learner {rank}",
+            )
+            for rank in range(1, size)
+        ]  # fmt: skip
+        try:
+            with without_main():
+                for process in others:
+                    process.start()
+            _join(0, size, meeting)
+            yield LearnerGroup(0, size)
+            for process in others:
+                process.join(_PATIENCE)
+        except RuntimeError as error:  # gloo: the connection to a process is closed
+            for process in others:
+                process.join(_PATIENCE / size)
+            ended = [f"{p.name} {exit_text(p.exitcode)}" for p in others if p.exitcode]
+            if not ended:
+                raise
+            raise TrainingError(
+                f"All {size} processes of a training must stay alive: {', '.join(ended)} (see"
+                " above for the cause; memory may be short). The last checkpoint is kept: continue"
+                " with resume."
+            ) from error
+        finally:
+            for process in others:
+                process.kill()
+                process.join()
+            if dist.is_initialized():
+                dist.destroy_process_group()
+            os.environ.pop(_THREADS)
+            if before is not None:
+                os.environ[_THREADS] = before
+
+
+def _join(rank: int, size: int, meeting: str) -> None:
+    os.environ[_THREADS] = str(max(1, core_count() // size))
+    os.environ["GLOO_SOCKET_IFNAME"] = "lo0" if sys.platform == "darwin" else "lo"
+    dist.init_process_group("gloo", init_method=f"file://{meeting}", rank=rank, world_size=size)
+
+
+def _run(
+    rank: int, size: int, meeting: str, work: Callable[..., None], arguments: tuple[Any, ...]
+) -> None:
+    """Work in a new process: Ctrl-C is handled by its parent."""
+    end_with_parent()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.dup2(2, 1)
+    torch.set_num_threads(1)
+    _join(rank, size, meeting)
+    work(LearnerGroup(rank, size), *arguments)
