@@ -2,7 +2,7 @@
 
 The same objects, measured on a scale on which close things differ most: the numbers that decide
 about a collision vary by about 1 where lengths over 8 m vary by 0.1, so that a policy learns
-from them several times faster (docs/learning/failures.md).
+from them several times faster (docs/results/policy-failures.md).
 """
 
 from typing import ClassVar
