@@ -12,6 +12,7 @@ from benchmarks import (
     noise,
     orca_peers,
     planning,
+    training,
 )
 from benchmarks.check import failures, report
 from benchmarks.pair import Pair, measured
@@ -52,6 +53,7 @@ def pairs(peers: str) -> list[Pair]:
     return [
         *orca_peers.pairs(peers), *leader_arena.pairs(), *dynamics.pairs(), *noise.pairs(),
         *end_to_end.pairs(), *isolation.pairs(), *planning.pairs(),
+        *training.pairs(),
     ]  # fmt: skip
 
 

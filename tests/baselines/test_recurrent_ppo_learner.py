@@ -17,6 +17,7 @@ from benchnav_baselines.learned.recurrent_ppo.learning.learner import (
     reseed,
     set_precision,
 )
+from benchnav_baselines.learned.recurrent_ppo.learning.learner_group import LearnerGroup
 from benchnav_baselines.learned.recurrent_ppo.learning.recipe import Network, Recipe
 from gymnasium import spaces
 from hypothesis import given, settings
@@ -255,7 +256,7 @@ def filled(kind, starts, live, length=4):
         setattr(buffer, name, rng.normal(size=array.shape).astype(np.float32))
     if kind is SequenceBuffer:
         states = torch.tensor(rng.normal(size=(T, N, 2, 2, 2, 3)), dtype=torch.float32)
-        starts = starts | np.pad(live[1:] & ~live[:-1], ((1, 0), (0, 0)))
+        starts = starts.astype(bool) | np.pad(live[1:] & ~live[:-1], ((1, 0), (0, 0)))
         for t in range(T):
             slots = np.flatnonzero(live[t])
             buffer.begin(t, slots, starts[t, slots], states[t, slots])
@@ -407,6 +408,42 @@ def test_the_actor_s_bits_depend_on_no_batch_and_no_order(network):
             np.testing.assert_array_equal(actor.decide(x[at], memory), expected[at])
             parted[at] = memory
         np.testing.assert_array_equal(parted, whole)
+
+
+def test_a_group_learns_from_the_mean_of_its_gradients(monkeypatch):
+    """Two backward passes; the other process has gradients of its own."""
+    policy, other = torch.nn.Linear(3, 2), torch.randn(8)
+
+    def gradient():
+        policy.zero_grad()
+        policy(torch.ones(5, 3)).square().sum().backward()
+        return torch.cat([p.grad.flatten() for p in policy.parameters()])
+
+    own = gradient()
+    LearnerGroup().average_gradients(policy)
+    assert torch.equal(gradient(), own)
+    monkeypatch.setattr("torch.distributed.all_reduce", lambda flat: flat.add_(other))
+    LearnerGroup(0, 2).average_gradients(policy)
+    for _ in range(2):
+        torch.testing.assert_close(gradient(), (own + other) / 2)
+
+
+def test_processes_share_rows():
+    assert [LearnerGroup(rank, 3).share(64) for rank in range(3)] == [21, 21, 22]
+
+
+def test_all_processes_make_as_many_minibatches(monkeypatch):
+    live = np.ones((8, 6), bool)
+    buffer = filled(SequenceBuffer, np.zeros((8, 6)), live)
+    monkeypatch.setattr(buffer, "group", LearnerGroup(0, 2))
+    for others, batches in [([48, 2], 2), ([48, 99], 6), ([48, 3], 3)]:
+        answers = iter(others)
+        monkeypatch.setattr(
+            LearnerGroup, "gather", lambda _, value, left=answers: [value, next(left)]
+        )
+        met = [samples.returns[samples.mask > 0.5].tolist() for samples in buffer.get(16)]
+        assert len(met) == batches
+        assert sorted(number for part in met for number in part) == buffer.returns.flatten().tolist()
 
 
 def test_memories_start_empty():

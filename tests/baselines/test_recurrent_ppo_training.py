@@ -3,12 +3,13 @@
 import csv
 import json
 from dataclasses import replace
+from multiprocessing import active_children
 
 import numpy as np
 import pytest
 import torch
 import yaml
-from benchnav_baselines.learned.recurrent_ppo.learning import checkpoint
+from benchnav_baselines.learned.recurrent_ppo.learning import checkpoint, segments
 from benchnav_baselines.learned.recurrent_ppo.learning.courses import (
     training_pools,
     validation_batches,
@@ -110,6 +111,48 @@ def test_a_training_is_its_recipe_and_seed(tmp_path, network):
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("changes", [{"precision": "bfloat16"}, {"processes": 2}])
+def test_every_option_can_be_resumed(tmp_path, changes):
+    recipe = tiny(**changes)
+    Training(recipe, 1, tmp_path / "whole").run(False, silent)
+    with pytest.raises(Killed):
+        Training(recipe, 1, tmp_path / "broken").run(False, killer(after=1))
+    assert not active_children()
+    Training(recipe, 1, tmp_path / "broken").run(True, silent)
+    assert_same(tmp_path / "whole", tmp_path / "broken")
+
+
+@pytest.mark.slow
+def test_a_process_that_is_killed_ends_the_training(tmp_path):
+    def report(now):
+        for process in active_children():
+            process.kill()
+
+    with pytest.raises(TrainingError, match=r"learner 1 was killed by SIGKILL .* resume"):
+        Training(tiny(processes=2), 0, tmp_path).run(False, report)
+    assert (tmp_path / checkpoint.FILE).exists()
+    assert not active_children()
+
+
+def test_a_resumed_training_keeps_its_precision(tmp_path, monkeypatch):
+    monkeypatch.setattr(segments, "native_precision", lambda _: "bfloat16")
+    for resume in (False, True):
+        training = Training(tiny(), 0, tmp_path)
+        training._begin(resume)
+        assert training.learner.policy.bfloat16
+        monkeypatch.setattr(segments, "native_precision", lambda _: "float32")
+
+
+@pytest.mark.skipif(not torch.cuda.is_available(), reason="there is no CUDA device")
+@pytest.mark.parametrize("precision", ["float32", "bfloat16"])
+def test_a_device_trains(tmp_path, precision):
+    training = Training(tiny(precision=precision), 0, tmp_path, "cuda")
+    training.run(False, silent)
+    assert training.learner.device.type == "cuda"
+    read_weights(tmp_path / WEIGHTS)
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("layers", [0, 1])
 def test_a_stage_may_have_another_number_of_slots(tmp_path, layers):
     """Four leaders in each row, then one robot whose people are driven by the scenario."""
@@ -170,12 +213,13 @@ def test_patience_counts_checkpoints_without_a_better_one():
 def test_the_hash_is_of_what_decides_the_weights():
     recipe = tiny()
     assert recipe.hash == tiny(description="other words").hash
-    assert recipe.hash == tiny(perception="exact").hash
+    assert recipe.hash == tiny(perception="exact", precision="auto", processes=1).hash
     others = [
         tiny(rows=3), tiny(gamma=0.9), tiny(encoder="paper"), tiny(sequence=7),
-        tiny(perception="noisy"), tiny(network={"lstm_layers": 1, "lstm_size": 9}),
+        tiny(precision="float32"), tiny(processes=2), tiny(perception="noisy"),
+        tiny(network={"lstm_layers": 1, "lstm_size": 9}),
     ]  # fmt: skip
-    assert len({recipe.hash, *(other.hash for other in others)}) == 7
+    assert len({recipe.hash, *(other.hash for other in others)}) == 9
 
 
 def test_a_recipe_trains_and_validates_in_its_perception_track():
@@ -224,6 +268,7 @@ def call(capfd, tmp_path):
          "recipe.yaml:10: stages[1].reward.wall is not a known key. Did you mean 'walls'?"),
         ("lstm_layers: 1", "lstm_layers: 0", "recipe.yaml:7: network must have LSTM or dense"),
         ("leaders/static", "leaders/statik", "leaders/static"),
+        ("rows: 2", "processes: 3\nrows: 2", "recipe.yaml:4: processes must be at most rows"),
     ],
 )  # fmt: skip
 def test_a_wrong_recipe_is_corrected_before_anything_begins(call, tmp_path, old, new, complaint):
@@ -239,6 +284,9 @@ def test_options_that_cannot_be_followed_are_refused(call):
     code, said = call(TINY, "--device", "abacus")
     assert code == 2
     assert "The device must be one of" in said
+    code, said = call(TINY, "--processes", 3)
+    assert code == 2
+    assert "processes must be at most rows, which is 2; got 3" in said
     assert status(["train", "dynamik"]) == 2
 
 

@@ -22,6 +22,10 @@ def train(
     device: Annotated[
         str, typer.Option(metavar="NAME", help="cpu, cuda, or auto; same weights on cpu only.")
     ] = "cpu",
+    processes: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=1, help="Learners, one a core. [default: the recipe's]"),
+    ] = None,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print errors only.")] = False,
 ) -> None:
     """Train a navigator from a recipe.
@@ -31,5 +35,7 @@ def train(
     """
     from benchnav.api.execution.train import train as execute
 
-    done = execute(recipe, seed=seed, out=out, resume=resume, device=device, quiet=quiet)
+    done = execute(
+        recipe, seed=seed, out=out, resume=resume, device=device, processes=processes, quiet=quiet
+    )
     put(str(done.weights))

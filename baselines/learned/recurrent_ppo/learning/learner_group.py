@@ -17,7 +17,7 @@ from typing import Any
 import torch
 import torch.distributed as dist
 
-from benchnav.errors import TrainingError
+from benchnav.errors import BenchnavError, TrainingError
 from benchnav.processes.fork_server import exit_text
 from benchnav.processes.main_module import without_main
 from benchnav.processes.process_tree import end_with_parent
@@ -28,7 +28,7 @@ _THREADS = "BENCHNAV_THREADS"
 
 
 class LearnerGroup:
-    """This process among the learners; alone by default."""
+    """The place of this process among the learners; alone by default."""
 
     def __init__(self, rank: int = 0, size: int = 1) -> None:
         self.rank, self.size = rank, size
@@ -138,5 +138,12 @@ def _run(
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     os.dup2(2, 1)
     torch.set_num_threads(1)
-    _join(rank, size, meeting)
-    work(LearnerGroup(rank, size), *arguments)
+    try:
+        _join(rank, size, meeting)
+        work(LearnerGroup(rank, size), *arguments)
+    except BenchnavError:
+        sys.exit(1)  # all processes have the same error, and rank 0 reports it
+    except RuntimeError as error:
+        if "peer" not in str(error):  # the end of another process is reported by rank 0
+            raise
+        sys.exit(1)
