@@ -14,7 +14,7 @@ from benchnav.scenario.catalogue import find
 
 CASES = (  # navigator, scenario, worlds, wanted ratio to the in-process rate
     ("orca", "leaders/dynamic", 64, 0.85),
-    ("recurrent-ppo", "leaders/dynamic", 64, 0.85),
+    ("recurrent-ppo-vo", "leaders/dynamic", 64, 0.85),
     ("orca", "bottleneck/door", 16, 0.85),
     ("orca", "leaders/dynamic", 1, 0.85),
 )

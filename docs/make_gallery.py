@@ -25,7 +25,7 @@ HEIGHT, WIDTH, GAP = 240, 720, 12  # [pixels] of one world at most, and between 
 COLORS = 64  # in a file, which keeps it small
 EPISODES = (  # of (file, scenario, seed, track, navigators, what to see)
     (
-        "dynamic", "leaders/dynamic", 3, "known", ("orca", "recurrent-ppo"),
+        "dynamic", "leaders/dynamic", 3, "known", ("orca", "recurrent-ppo-vo"),
         "Moving obstacles, seen by seven rays: the local planner ORCA, and the learned policy.",
     ),
     (

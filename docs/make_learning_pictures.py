@@ -104,7 +104,7 @@ def _episode(scenario_name: str, seed: int, weights: Path) -> Episode:
     scenario = find(scenario_name)
     about = Assignment(
         scenario.identity, scenario.hash, "validation", "unknown", "phase",
-        {"type": "recurrent-ppo", "weights": str(weights), "foresight": False, "patience": 0},
+        {"type": "recurrent-ppo", "weights": str(weights)},
         salt="00",
     )  # fmt: skip
     return next(rollout(about, [(seed, build(scenario, "validation", seed))]))[0]

@@ -31,7 +31,7 @@ GROUPS = (
     (("groups/diagonal", 0), ("groups/crossing-four", 0)),
     (("groups/bottleneck-opposed", 0),),
 )
-MOVING = ("orca", "recurrent-ppo")  # the navigators of the moving picture
+MOVING = ("orca", "recurrent-ppo-vo")  # the navigators of the moving picture
 WIDTH = 11.0  # [inch] of the picture
 HEAD = 0.3  # [inch] above each row
 COLOURS = 128  # in the file, which keeps it small

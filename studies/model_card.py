@@ -2,14 +2,14 @@
 
 Writes its model card: where it learned, what that cost, what each stage gained, and strict
 success per agent in worlds of the test split, with the interval clustered by world, beside
-what full knowledge reached in the same worlds, what the policy reaches that nothing corrects,
-and what other seeds of the training reached.
+what full knowledge reached in the same worlds, what the same weights reach with or without
+correction, and what other seeds of the training reached.
 """
 
 import argparse
 import json
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -39,7 +39,17 @@ KINDS = (Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.DYNAMIC)
 LEADERS = tuple(name for name in SCENARIOS if name.startswith("leaders/"))
 KNOWLEDGE = Path("docs/learning/full_knowledge.json")
 CURVES = Path("docs/learning/curves")
-ALONE = {"foresight": False, "patience": 0}
+COMPANIONS: Mapping[str, tuple[Spec, str]] = {
+    "recurrent-ppo": (
+        "recurrent-ppo-vo",
+        "With velocity obstacles of what its rays hit, and detours (`recurrent-ppo-vo`):",
+    ),
+    "recurrent-ppo-plus": (
+        {"type": "recurrent-ppo-plus", "foresight": False, "patience": 0},
+        "The policy alone, which nothing corrects (`foresight: false, patience: 0`):",
+    ),
+}
+"""Navigator → another one with its weights, and its description."""
 
 
 @dataclass(frozen=True)
@@ -112,8 +122,8 @@ def _first_hits(episode: Episode, agents: Any) -> Iterator[int]:
             yield int(contacts.kind[rows[0]])
 
 
-def card(navigator: str, rows: list[Row], alone: list[Row], seeds: dict[int, list[Row]]) -> str:
-    """The card as Markdown: of the navigator, its policy alone, and other seeds' trainings."""
+def card(navigator: str, rows: list[Row], other: list[Row], seeds: dict[int, list[Row]]) -> str:
+    """The card as Markdown: of the navigator, of its companion, and of other seeds' trainings."""
     about = make(NAVIGATORS, navigator).pilot.about
     progress = about["progress"]
     known = {k["scenario"]: k for k in json.loads(KNOWLEDGE.read_text())}
@@ -138,15 +148,15 @@ def card(navigator: str, rows: list[Row], alone: list[Row], seeds: dict[int, lis
         "|---|---|---|---|---|---|---|",
     ]
     lines += [_line(row, known.get(row.scenario)) for row in rows]
-    lines += ["", *_alone(alone)]
+    lines += ["", *_companion(COMPANIONS[navigator][1], other)]
     if seeds:
         lines += ["", *_seeds({progress["seed"]: rows, **seeds})]
     lines += ["", *_stages(about["recipe"], progress["seed"])]
     return "\n".join([*lines, ""])
 
 
-def _alone(rows: list[Row]) -> Iterator[str]:
-    yield "The policy alone, which nothing corrects (`foresight: false, patience: 0`):"
+def _companion(title: str, rows: list[Row]) -> Iterator[str]:
+    yield title
     yield ""
     yield "| scenario | agents | success % | hit by agent, wall, static, mover % | timeout % |"
     yield "|---|---|---|---|---|"
@@ -211,7 +221,7 @@ def _stages(recipe: str, seed: int) -> Iterator[str]:
 def main() -> None:
     """Measure, print, and write the card."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("navigator")
+    parser.add_argument("navigator", choices=COMPANIONS)
     parser.add_argument("--agents", type=int, default=10_000, help="at least so many a scenario")
     parser.add_argument("--scenario", action="append", help="instead of all; may be given again")
     parser.add_argument(
@@ -221,21 +231,22 @@ def main() -> None:
     parser.add_argument("--out", type=Path, help="the card; and the numbers as JSON beside it")
     options = parser.parse_args()
 
-    def measured(names: Sequence[str], **changes: Any) -> list[Row]:
+    def measured(names: Sequence[str], spec: Spec) -> list[Row]:
         rows = []
         for scenario in names:
-            rows.append(measure({"type": options.navigator, **changes}, scenario, options.agents))
-            print(changes, rows[-1], flush=True)
+            rows.append(measure(spec, scenario, options.agents))
+            print(spec, rows[-1], flush=True)
         return rows
 
+    specs = [{"type": options.navigator, "weights": str(path)} for path in options.seed]
     seeds = {
-        make(NAVIGATORS, {"type": options.navigator, "weights": str(path)}).pilot.about["progress"][
-            "seed"
-        ]: measured(LEADERS, weights=str(path))
-        for path in options.seed
+        make(NAVIGATORS, spec).pilot.about["progress"]["seed"]: measured(LEADERS, spec)
+        for spec in specs
     }
-    rows = measured(options.scenario or SCENARIOS)
-    text = card(options.navigator, rows, measured(LEADERS, **ALONE), seeds)
+    scenarios = options.scenario or SCENARIOS
+    rows = measured(scenarios, options.navigator)
+    companion = measured(scenarios, COMPANIONS[options.navigator][0])
+    text = card(options.navigator, rows, companion, seeds)
     if options.out:
         options.out.write_text(text)
     else:

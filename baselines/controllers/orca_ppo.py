@@ -24,7 +24,7 @@ from benchnav.navigation import (
 from ..common.policy_runner import TURN_ON_THE_SPOT
 from ..common.twist_conversion import as_velocity
 from ..learned.recurrent_ppo.controller import RecurrentPPOPlusController
-from ..learned.recurrent_ppo.policy_at_work import PolicyConfig
+from ..learned.recurrent_ppo.policy_at_work import CorrectedConfig
 from .orca.avoidance import OrcaConfig
 from .orca.controller import OrcaController
 
@@ -35,7 +35,9 @@ class OrcaPpoConfig(PluginConfig):
     orca: OrcaConfig = Field(
         OrcaConfig(time_horizon=3.0, edge_margin=0.02), description="parameters of ORCA"
     )
-    policy: PolicyConfig = Field(PolicyConfig(), description="parameters of `recurrent-ppo-plus`")
+    policy: CorrectedConfig = Field(
+        CorrectedConfig(), description="parameters of `recurrent-ppo-plus`"
+    )
     memory: float = Field(
         5.0,
         ge=0,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from benchnav.leaderboard.marks import labels_of
 from benchnav.leaderboard.record import ALL, ALL_INTERQUARTILE, Record
+from benchnav.navigation.plugin.trainings import entry_of
 from benchnav.runner.plan.installed_differences import Caveat, caveats_of
 from benchnav.store.runs.run_folder import RunFolder
 
@@ -53,7 +54,7 @@ def with_caveats(record: Record, caveats: Sequence[Caveat]) -> Record:
         caveat.text
         for caveat in caveats
         if (whole or caveat.scenario in ("", record.scenario))
-        and caveat.navigator in ("", record.navigator)
+        and entry_of(caveat.navigator) in ("", record.navigator)
     ]
     return replace(record, caveat=" ".join(own))
 

@@ -4,7 +4,14 @@ from collections.abc import Callable, Mapping, Sequence
 
 from benchnav.errors import UsageError, did_you_mean
 from benchnav.leaderboard.record import Record
-from benchnav.leaderboard.rendering.cell import Cell, rank, rehearsal, training, verified
+from benchnav.leaderboard.rendering.cell import (
+    Cell,
+    rank,
+    rehearsal,
+    training,
+    trainings,
+    verified,
+)
 
 DEFAULT = ("success", "collided", "spl", "time_to_goal", "turning", "latency_p50")
 PROFILES: Mapping[str, tuple[str, ...]] = {
@@ -20,6 +27,7 @@ DESCRIPTIVE: Mapping[str, Callable[[Record], Cell]] = {
     "rank": rank,
     "mode": lambda r: Cell(r.mode),
     "training": training,
+    "trainings": trainings,
     "rehearsal": rehearsal,
     "verified": verified,
 }

@@ -12,7 +12,14 @@ from benchnav.errors import StoreError, UsageError, did_you_mean
 from benchnav.leaderboard.caveats import metric_caveats, table_caveats
 from benchnav.leaderboard.columns import choose, choose_columns
 from benchnav.leaderboard.label import require_one_navigator_per_label
-from benchnav.leaderboard.marks import labels_of, marked
+from benchnav.leaderboard.marks import marked
+from benchnav.leaderboard.navigator_facts import (
+    Facts,
+    entries_of_all,
+    facts_in,
+    facts_of_entries,
+    trained_in,
+)
 from benchnav.leaderboard.record import Leaderboard, NotApplicable
 from benchnav.leaderboard.rendering.formats import render
 from benchnav.leaderboard.statistics.curve import (
@@ -26,10 +33,10 @@ from benchnav.leaderboard.statistics.head_to_head import Duel, duel
 from benchnav.leaderboard.table import leaderboard
 from benchnav.metrics.declared import declared_metrics
 from benchnav.metrics.metric import Metric
+from benchnav.navigation.plugin.trainings import entry_of
 from benchnav.runner.plan.installed_differences import Caveat
 from benchnav.scenario.condition import perception_of
 from benchnav.scenario.parameters import joined_parameters, split_parameters
-from benchnav.store.runs.manifest import IN_PROCESS
 from benchnav.store.runs.reading import encoded_results_of, episodes_in_every_track
 from benchnav.store.runs.run_folder import RunFolder
 
@@ -49,8 +56,8 @@ class StoredValues:
     metrics: Mapping[str, Metric]  # every installed metric
     caveats: Sequence[Caveat]
     not_applicable: Sequence[NotApplicable]
-    verified: Collection[str]  # labels
-    facts: Mapping[str, Mapping[str, Any]]  # label → mode, uses_map, training
+    verified: Collection[str]  # entries
+    facts: Facts  # entry → mode, uses_map, training
 
     @property
     def names(self) -> list[str]:
@@ -120,16 +127,14 @@ def stored_values(
     metrics = _installed_metrics(notify)
     tables = _tables(folders, metrics, recompute)
     gaps = dict.fromkeys(gap for folder in folders for gap in _not_applicable(folder))
-    facts = dict[str, Mapping[str, Any]]()
-    for folder, rows in zip(folders, tables, strict=True):
-        facts |= _facts(folder, labels_of(rows))
+    facts = facts_in(folders, tables)
     return StoredValues(
         results=_joined(folders, tables),
         metrics=metrics,
         caveats=[*table_caveats(folders, tables), *metric_caveats(tables, metrics)],
         not_applicable=list(gaps),
-        verified=marked(folders, tables, verified),
-        facts=facts,
+        verified=entries_of_all(marked(folders, tables, verified), facts),
+        facts=facts_of_entries(facts),
     )
 
 
@@ -150,7 +155,8 @@ def comparison(
     held = _held(results, known)
     names = [name for name in choose(held, metrics or COMPARED) if name in known]
     gaps = [gap for folder in folders for gap in _not_applicable(folder)]
-    return duel(results, known, names, *pair, gaps), known
+    trained = {name for folder in folders for name in trained_in(folder)}
+    return duel(results, known, names, *pair, gaps, trained), known
 
 
 def curve(
@@ -275,27 +281,12 @@ def _held(results: pa.Table, metrics: Mapping[str, Metric]) -> list[str]:
     return [*(name for name in metrics if name in held), *sorted(held - set(metrics))]
 
 
-def _facts(folder: RunFolder, labels: Collection[str]) -> dict[str, Mapping[str, Any]]:
-    """The mode, training (decisions, seconds) and use of maps of each navigator."""
-    found: dict[str, Mapping[str, Any]] = {}
-    for entry in folder.manifest.suite.get("navigators", ()):
-        if entry["label"] not in labels:
-            continue
-        facts: dict[str, Any] = {
-            "mode": entry.get("mode", IN_PROCESS), "uses_map": entry.get("uses_map") is not False,
-        }  # fmt: skip
-        if "training" in entry:
-            facts["training"] = entry["training"]["decisions"], entry["training"]["seconds"]
-        found[entry["label"]] = facts
-    return found
-
-
 def _not_applicable(folder: RunFolder) -> Iterator[NotApplicable]:
     entries = folder.manifest.suite.get("navigators", ())
     asked = {entry["label"]: int(entry.get("rehearsal", 0)) for entry in entries}
     for cell in folder.manifest.cells:
         if cell["reason"]:
             yield NotApplicable(
-                cell["navigator"], cell["scenario"], cell["track"], cell["reason"],
+                entry_of(cell["navigator"]), cell["scenario"], cell["track"], cell["reason"],
                 asked.get(cell["navigator"], 0), perception_of(cell),
             )  # fmt: skip

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from benchnav.errors import UsageError
+from benchnav.navigation.plugin.trainings import entry_of
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -25,6 +26,16 @@ def require_one_navigator_per_label(tables: Mapping[str, pa.Table]) -> None:
     """
     for column, difference in _COLUMNS.items():
         _require_one(tables, column, difference)
+    labels = {
+        label for table in tables.values() for label in table["navigator"].unique().to_pylist()
+    }
+    for label in sorted(labels):
+        if entry_of(label) != label and entry_of(label) in labels:
+            raise UsageError(
+                f"The label {entry_of(label)!r} must stand for one navigator. It stands for one"
+                f" training and for an entry with several, such as {label!r}. Leave one out, or"
+                " give it a label of its own and run it again."
+            )
 
 
 def _require_one(tables: Mapping[str, pa.Table], column: str, difference: str) -> None:

@@ -1,7 +1,7 @@
 """One number of a leaderboard, with the data needed to judge it."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 ALL = "all"
@@ -10,6 +10,8 @@ ALL_INTERQUARTILE = "all (interquartile mean)"
 """Replaces a scenario: the interquartile mean over scenarios."""
 NO_MAP = "uses no map"
 """The note of a price that is 0 because the navigator uses no map."""
+OPTIONAL = {"optional": True}
+"""The metadata of a field that CSV and JSON leave out if no record has it."""
 
 
 @dataclass(frozen=True)
@@ -97,6 +99,10 @@ class Record:
     remark: str = ""  # the navigator's remarks, and their number of episodes; "" for none
     verified: bool = False  # its runs were verified here, and it is not a timing
     caveat: str = ""  # caveats about its runs; "" for none
+    trainings: int = field(default=1, metadata=OPTIONAL)  # with different seeds, if several
+    training_least: float = field(default=math.nan, metadata=OPTIONAL)  # mean of a training
+    training_most: float = field(default=math.nan, metadata=OPTIONAL)
+    training_deviation: float = field(default=math.nan, metadata=OPTIONAL)  # standard (n − 1)
 
     @property
     def price(self) -> Price | None:

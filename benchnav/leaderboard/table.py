@@ -34,6 +34,7 @@ from benchnav.leaderboard.statistics.interval import resample
 from benchnav.leaderboard.statistics.price import prices
 from benchnav.leaderboard.statistics.ranking import Standing, standings
 from benchnav.leaderboard.statistics.strata import Stratum, align, strata
+from benchnav.leaderboard.statistics.trainings import Spread, spread_of, with_entries
 from benchnav.metrics.metric import Metric
 from benchnav.runner.plan.installed_differences import Caveat
 
@@ -64,6 +65,8 @@ def leaderboard(
     use no map. If there are results of both sides of a price (`PRICES`), such as the tracks known
     and unknown, it is a record too. ``modes`` maps labels to the mode in which they ran;
     ``caveats`` are attached to the records that they are about.
+    The trainings of an entry are one navigator (`benchnav.navigation.plugin.trainings`), also in
+    the arguments about navigators.
     Raises UsageError if one label is used for two navigators, or has two values in one world.
     """
     require_one_navigator_per_label({"the results": results})
@@ -75,6 +78,7 @@ def leaderboard(
         records += _group(aligned, metrics)
         records += _missing(aligned, _belonging(aligned, found, not_applicable), metrics)
     records += prices(found, metrics, mapless, not_applicable)
+    results = with_entries(results)
     failed = faults(results)
     records = [with_fault(_with_training(record, training), failed) for record in records]
     texts = failures(results), remarks(results)
@@ -129,6 +133,7 @@ class _Body:
     found: Estimate  # (N·M,)
     places: list[list[Standing]]  # [metric][navigator]
     single: bool  # False for aggregates over scenarios
+    scenarios: Sequence[Stratum]
 
 
 def _group(group: list[Stratum], metrics: Mapping[str, Metric]) -> Iterator[Record]:
@@ -141,7 +146,7 @@ def _group(group: list[Stratum], metrics: Mapping[str, Metric]) -> Iterator[Reco
         same = np.zeros(len(s.seeds), dtype=np.int64)
         places = standings(s.value, s.attempted, same, s.metrics, metrics)
         yield from _records(
-            _Body(s.scenario, s, s.value, s.attempted, s.failed, s.cost, part, places, True),
+            _Body(s.scenario, s, s.value, s.attempted, s.failed, s.cost, part, places, True, [s]),
             metrics,
         )
     if len(group) < 2:
@@ -153,7 +158,7 @@ def _group(group: list[Stratum], metrics: Mapping[str, Metric]) -> Iterator[Reco
     stratum = np.repeat(np.arange(len(group)), [len(s.seeds) for s in group])
     places = standings(value, attempted, stratum, group[0].metrics, metrics)
     whole = mean_over(parts, samples, column)
-    body = _Body(ALL, group[0], value, attempted, failed, cost, whole, places, False)
+    body = _Body(ALL, group[0], value, attempted, failed, cost, whole, places, False, group)
     yield from _records(body, metrics)
     if len(group) >= MIDDLE_HALF:
         middle = interquartile_mean_over(samples)
@@ -171,7 +176,7 @@ def _sample(s: Stratum) -> Sample:
 
 
 def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:
-    s = body.stratum
+    s, middle = body.stratum, body.scenario == ALL_INTERQUARTILE
     defined = (~np.isnan(body.value)).sum(axis=0)
     for n, navigator in enumerate(s.navigators):
         episodes = int(body.attempted[:, n].sum())
@@ -206,7 +211,16 @@ def _records(body: _Body, metrics: Mapping[str, Metric]) -> Iterator[Record]:
                 rehearsal=s.rehearsal,
                 rehearsal_decisions=decisions,
                 rehearsal_seconds=seconds,
+                **_spread(spread_of(body.scenarios, navigator, name, middle)),
             )
+
+
+def _spread(found: Spread) -> dict[str, Any]:
+    """Return the fields of a record about the trainings of its navigator."""
+    return {
+        "trainings": found.count, "training_least": found.least, "training_most": found.most,
+        "training_deviation": found.deviation,
+    }  # fmt: skip
 
 
 def _mean_cost(body: _Body, navigator: int) -> tuple[float, float]:

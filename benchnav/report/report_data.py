@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -11,6 +11,7 @@ from benchnav.arena.world import World
 from benchnav.leaderboard.columns import choose
 from benchnav.leaderboard.from_runs import StoredValues
 from benchnav.leaderboard.record import Leaderboard
+from benchnav.navigation.plugin.trainings import entries_of, entry_of
 from benchnav.report.analysis.episode_summary import EpisodeSummary
 from benchnav.report.failed_episodes import Cell
 from benchnav.report.line_style import LineStyle, line_styles
@@ -52,14 +53,15 @@ class ReportData:
     values: StoredValues  # measured values of all metrics, definitions, caveats, n/a cells
     board: Leaderboard  # of `metrics`
     metrics: tuple[str, ...]  # on the board, the usual ones first
-    navigators: tuple[str, ...]  # labels, in the order of the suites
+    navigators: tuple[str, ...]  # entries, in the order of the suites
     scenarios: tuple[StoredScenario, ...]  # in the order of the suites
     tracks: tuple[str, ...]  # in the order of `TRACKS`
     perceptions: tuple[str, ...]  # in the order of `PERCEPTIONS`
-    styles: Mapping[str, LineStyle]  # label → colour, dash and mark
+    styles: Mapping[str, LineStyle]  # entry or label → colour, dash and mark
     summaries: tuple[EpisodeSummary, ...]  # of every stored episode
     replays: frozenset[Cell]  # whose first failed episode has a replay
-    navigator_configs: Mapping[str, Mapping[str, Any]]  # label → its entry in the manifest
+    navigator_configs: Mapping[str, Mapping[str, Any]]
+    """Entry → its navigator in the manifest; the first of several trainings."""
 
     @property
     def is_exact(self) -> bool:
@@ -110,13 +112,17 @@ def read_runs(
     entries = [e for folder in folders for e in folder.manifest.suite["navigators"]]
     held = set(values.results["navigator"].unique().to_pylist())
     held |= {cell.navigator for cell in values.not_applicable}
-    navigators = tuple(dict.fromkeys(e["label"] for e in entries if e["label"] in held))
+    labels = [e["label"] for e in entries if {e["label"], entry_of(e["label"])} & held]
+    navigators = entries_of(labels)
+    styles = line_styles(navigators)
     return ReportData(
         folders=tuple(folders), values=values, board=values.board(shown), metrics=shown,
         navigators=navigators, scenarios=_scenarios(folders, worlds), tracks=_tracks(folders),
         perceptions=_perceptions(folders),
-        styles=line_styles(navigators), summaries=tuple(summaries), replays=frozenset(replays),
-        navigator_configs={e["label"]: e for e in reversed(entries)},
+        styles={**{label: styles[entry_of(label)] for label in labels}, **styles},
+        summaries=tuple(replace(s, navigator=entry_of(s.navigator)) for s in summaries),
+        replays=frozenset(replays),
+        navigator_configs={entry_of(e["label"]): e for e in reversed(entries)},
     )  # fmt: skip
 
 

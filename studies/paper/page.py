@@ -49,7 +49,6 @@ def _head(evidence: Evidence) -> Iterator[str]:
         " weights. Success is arrival with no collision before it, per agent; every interval is"
         " 95 %,"
         " clustered by world, and differences are paired by world. `recurrent-ppo` is the method"
-        " as printed: predicted collisions enter its reward, but correct no command"
-        " (`foresight: false, patience: 0`)."
+        " as printed: predicted collisions enter its reward, but correct no command."
     )
     yield ""

@@ -16,7 +16,8 @@ from benchnav.scenario.catalogue import find
 from benchnav.testing.observations import briefings_of, observations_of
 from benchnav.testing.scenes import USUAL, scene
 
-LEARNED = ("recurrent-ppo", "recurrent-ppo-plus", "q-learning")
+LEARNED = ("recurrent-ppo", "recurrent-ppo-vo", "recurrent-ppo-plus", "q-learning")
+HYBRIDS = ("recurrent-ppo-vo", "recurrent-ppo-plus")
 
 
 def share(navigator, name, track, worlds):
@@ -30,7 +31,7 @@ def share(navigator, name, track, worlds):
 
 def shown_the_way(name):
     """The navigator as it drives where a planner knows the way: without detours."""
-    return {"type": name, "patience": 0} if "ppo" in name else name
+    return {"type": name, "patience": 0} if name in HYBRIDS else name
 
 
 def views(needs):

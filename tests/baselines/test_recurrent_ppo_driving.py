@@ -8,11 +8,11 @@ import pytest
 from benchnav_baselines.learned.recurrent_ppo import detour
 from benchnav_baselines.learned.recurrent_ppo.detour import Detours
 from benchnav_baselines.learned.recurrent_ppo.foresight import foresee
-from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED, PolicyPilot
 from benchnav_baselines.learned.recurrent_ppo.ray_memory import MEMORY, Sightings
 
 from benchnav.arena.solid import Kind
 from benchnav.envs.encoders.encoder import Bodies
+from benchnav.errors import PluginError
 from benchnav.navigation.navigator import Need
 from benchnav.navigation.plugin.configure import make
 from benchnav.plugins import NAVIGATORS
@@ -43,9 +43,12 @@ def begun(part, told):
     return part
 
 
-def standing(seen, time):
-    """The same view, later."""
-    return replace(seen, time=np.full(len(seen), time))
+def standing(seen, time, kind=Kind.DYNAMIC):
+    """The same view, later, with neighbours of one kind."""
+    kinds = np.full_like(seen.neighbours.kind, int(kind))
+    return replace(
+        seen, time=np.full(len(seen), time), neighbours=replace(seen.neighbours, kind=kinds)
+    )
 
 
 def test_sightings_agree_with_their_twin(shown):
@@ -107,7 +110,7 @@ def test_what_no_ray_met_changes_no_command(shown):
     )
     commands = []
     for view in (blind, alone):
-        driver = make(NAVIGATORS, "recurrent-ppo")
+        driver = make(NAVIGATORS, "recurrent-ppo-vo")
         driver.reset(told, np.arange(3))
         commands.append(driver.act(view))
     np.testing.assert_array_equal(*commands)
@@ -161,18 +164,54 @@ def test_a_second_detour_from_there_is_another_and_longer(shown):
     assert courses[:2] == pytest.approx([first, second])
 
 
+def test_a_crowd_prevents_a_detour_and_ends_one(shown):
+    told, views, bodies = shown
+    seen, dt = views[3], told[0].dt
+    away = seen.neighbours.position - seen.position[:, :, None]
+    slots = np.arange(away.shape[2]) < seen.neighbours.count[..., None]
+    near = (np.hypot(*np.moveaxis(away, -1, 0)) < detour.AROUND) & slots
+    crowded = seen.active & (near.sum(axis=-1) >= detour.CROWD)
+    assert crowded.any()
+    assert (seen.active & ~crowded).any()
+
+    def steered(mine, count, kind):
+        for k in range(count):
+            command = np.zeros((*seen.active.shape, 2))
+            mine.steer(standing(seen, k * dt, kind), bodies, command)
+        return (command != 0.0).any(axis=-1)
+
+    waits = round(1.0 / dt) + 1
+    mine = begun(Detours(patience=1.0), told)
+    np.testing.assert_array_equal(steered(mine, waits, Kind.AGENT), seen.active & ~crowded)
+    mine = begun(Detours(patience=1.0), told)
+    assert steered(mine, waits, Kind.DYNAMIC)[crowded].all()
+    assert not steered(mine, 1, Kind.AGENT)[crowded].any()
+
+
 def test_who_gets_on_is_left_alone(shown):
     told, views, bodies = shown
     mine = begun(Detours(patience=1.0), told)
     for k in range(30):
         moved = views[0].position + 0.3 * k
         command = np.full((*views[0].active.shape, 2), 0.125)
-        mine.steer(replace(views[0], position=moved), bodies, command)
+        mine.steer(replace(standing(views[0], 0.0), position=moved), bodies, command)
         assert (command == 0.125).all()
 
 
-def test_without_foresight_and_patience_it_is_the_policy_alone():
-    alone = PolicyPilot(SHIPPED / "recurrent-ppo.safetensors", foresight=False, hold=0.3)
-    assert alone.needs == {Need.RAYS}
-    driver = make(NAVIGATORS, "recurrent-ppo")
-    assert driver.required == SENSORS
+def test_the_names_say_what_drives():
+    """The paper's method is its policy alone; the hybrids can be it, too."""
+    assert make(NAVIGATORS, "recurrent-ppo").required == {Need.RAYS}
+    hybrid = make(NAVIGATORS, "recurrent-ppo-vo")
+    assert hybrid.required == SENSORS
+    assert hybrid.fingerprint == make(NAVIGATORS, "recurrent-ppo").fingerprint
+    alone = make(NAVIGATORS, {"type": "recurrent-ppo-vo", "foresight": False, "patience": 0})
+    assert alone.required == {Need.RAYS}
+
+
+def test_included_weights_have_names(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    plus = make(NAVIGATORS, "recurrent-ppo-plus").fingerprint
+    for name in ("recurrent-ppo-plus", "recurrent-ppo-plus.safetensors"):
+        assert make(NAVIGATORS, {"type": "recurrent-ppo", "weights": name}).fingerprint == plus
+    with pytest.raises(PluginError, match=r"mine\.safetensors"):
+        make(NAVIGATORS, {"type": "recurrent-ppo", "weights": "mine.safetensors"})

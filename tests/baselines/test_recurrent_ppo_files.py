@@ -8,12 +8,14 @@ import pytest
 import torch
 from benchnav_baselines.learned.recurrent_ppo.learning import checkpoint
 from benchnav_baselines.learned.recurrent_ppo.learning.checkpoint import Progress
+from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED
 from benchnav_baselines.learned.recurrent_ppo.weights import FORMAT, read_weights, write_weights
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from safetensors.numpy import save
 
 from benchnav.errors import PluginError, StoreError, UsageError
+from studies.ship_training import include
 
 ABOUT = {
     "format": "benchnav-actor-1",
@@ -228,3 +230,17 @@ def test_what_is_no_checkpoint_is_refused(tmp_path, metadata):
 def test_a_weight_without_two_axes_is_refused(path):
     write_weights(path, {**tensors_of(), "output.weight": np.zeros(10, np.float32)}, ABOUT)
     assert "weights must have two axes" in refused(path)
+
+
+def test_weights_in_half_precision_are_read_as_what_they_hold(tmp_path):
+    half = include(SHIPPED / "recurrent-ppo.safetensors", "recurrent-ppo", tmp_path)
+    assert half.name == "recurrent-ppo-seed-0.safetensors"
+    assert half.stat().st_size < 0.51 * (SHIPPED / "recurrent-ppo.safetensors").stat().st_size
+    (whole, about), (found, same) = (
+        read_weights(path) for path in (SHIPPED / "recurrent-ppo.safetensors", half)
+    )
+    assert about.pop("sha256") != same.pop("sha256")
+    assert about == same
+    for one, other in zip(whole.layers, found.layers, strict=True):
+        assert other.weight.dtype == np.float32
+        np.testing.assert_array_equal(one.weight.astype(np.float16), other.weight)

@@ -235,5 +235,6 @@ def test_a_reader_that_has_seen_enough_is_no_error():
 
 
 def test_show_says_what_a_learned_navigator_needs(call):
-    assert "  needs       edges, neighbours, rays\n" in call("show", "recurrent-ppo")[1]
+    assert "  needs       rays\n" in call("show", "recurrent-ppo")[1]
+    assert "  needs       edges, neighbours, rays\n" in call("show", "recurrent-ppo-vo")[1]
     assert "  needs       edges, neighbours\n" in call("show", "recurrent-ppo-plus")[1]

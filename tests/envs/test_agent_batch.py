@@ -330,7 +330,7 @@ def test_strict_success_is_what_the_runner_records(tensors, scenario, tmp_path):
     write_weights(path, tensors, {"encoder": "ego", "progress": {"decisions": 0, "seconds": 0.0}})
     drivers = find(scenario).driver_specs
     arrived = evaluate(Actor(tensors), batch_of(worlds, 12, drivers=drivers))
-    spec = {"type": "recurrent-ppo", "weights": str(path), "foresight": False, "patience": 0}
+    spec = {"type": "recurrent-ppo", "weights": str(path)}
     run = Assignment(scenario, "hash", "validation", "unknown", "own", spec, drivers)
     episodes = [e for batch in rollout(run, list(enumerate(worlds))) for e in batch]
     assert sorted(episode.identity.seed for episode in episodes) == list(range(12))

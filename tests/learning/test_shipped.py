@@ -26,8 +26,10 @@ def share(navigator, name):
     [
         ("q-learning", "leaders/static", 0.93),
         ("q-learning", "leaders/dynamic", 0.79),
-        ("recurrent-ppo", "leaders/static", 0.97),
-        ("recurrent-ppo", "leaders/dynamic", 0.94),
+        ("recurrent-ppo", "leaders/static", 0.95),
+        ("recurrent-ppo", "leaders/dynamic", 0.82),
+        ("recurrent-ppo-vo", "leaders/static", 0.97),
+        ("recurrent-ppo-vo", "leaders/dynamic", 0.94),
         ("recurrent-ppo-plus", "leaders/static", 0.96),
         ("recurrent-ppo-plus", "leaders/dynamic", 0.92),
     ],

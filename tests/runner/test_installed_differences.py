@@ -19,4 +19,4 @@ def test_a_suite_as_it_is_installed_differs_in_nothing(name):
 def test_other_seeds_and_parameters_of_a_pair_are_told():
     wanted = Selection(navigators=("orca", {"type": "none+dwa", "pause": 9.0}), seeds="3")
     (caveat,) = told(load_suite("standard", wanted))
-    assert "seeds 0:3, not 0:100; 2 of its 17 navigators." in caveat
+    assert "seeds 0:3, not 0:100; 2 of its 18 navigators." in caveat

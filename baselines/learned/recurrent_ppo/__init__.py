@@ -1,1 +1,1 @@
-"""RecurrentPPO with collision prediction: recipes, training, and the shipped navigators."""
+"""RecurrentPPO, alone or corrected: recipes, training, and the shipped navigators."""

@@ -5,7 +5,7 @@ from typing import ClassVar
 from benchnav.navigation import PluginConfig
 
 from ...common.policy_runner import PilotedController
-from .policy_at_work import PolicyConfig, pilot_of
+from .policy_at_work import CorrectedConfig, PolicyConfig, pilot_of
 
 
 class RecurrentPPOController(PilotedController):
@@ -19,7 +19,13 @@ class RecurrentPPOController(PilotedController):
         self.pilot = pilot_of(self.config, self.shipped)
 
 
-class RecurrentPPOPlusController(RecurrentPPOController):
-    """The policy of `recurrent-ppo-plus`, with the guide's target as its goal."""
+class RecurrentPPOVOController(RecurrentPPOController):
+    """The policy of `recurrent-ppo` with the correction of `recurrent-ppo-vo`."""
+
+    Config = CorrectedConfig
+
+
+class RecurrentPPOPlusController(RecurrentPPOVOController):
+    """The policy and the correction of `recurrent-ppo-plus`, without its detours."""
 
     shipped: ClassVar[str] = "recurrent-ppo-plus.safetensors"

@@ -2,14 +2,16 @@
 
 Foresight stops agents that would collide, and a policy that was never stopped in training may
 insist. After `patience` the agent drives where there is free space, preferably towards its goal,
-and then lets the policy try again from there.
+and then lets the policy try again from there. A crowd moves on by itself, and an agent that turns
+back in it drives into others: so an agent makes no detour while it perceives a crowd around it.
 """
 
 import math
 
 import numpy as np
 
-from benchnav.arrays import AnyArray, FloatArray, IntArray
+from benchnav.arena import Kind
+from benchnav.arrays import AnyArray, ByteArray, FloatArray, IntArray
 from benchnav.envs import Bodies
 from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel_without_allocation
@@ -22,8 +24,11 @@ NEAR = 2.0  # [m] distance within which a detour is near the last one
 ROOM = 3.0  # [m] of a clear way, beyond which more is no better
 STRIDE = 0.1  # [m] between tested positions on a way
 MARGIN = 0.05  # [m] of clearance beyond touching; twice as much beside agents and movers
+CROWD = 2  # other agents that are a crowd,
+AROUND = 3.0  # [m] within this distance
 COURSES = 24
 AGAIN = 2.0  # [m] of additional space that the last course needs to be chosen again
+_AGENT = int(Kind.AGENT)
 _X, _Y, _WAITED, _LEFT, _COURSE, _TRIES, _LAST_X, _LAST_Y = range(8)
 
 
@@ -67,7 +72,7 @@ class Detours:
             np.flatnonzero(observation.active), self.patience, flat(dt), flat(observation.position),
             flat(observation.heading), flat(observation.goal), flat(bodies.radius),
             flat(bodies.max_speed), flat(bodies.max_turn_rate),
-            flat(near.position), flat(near.radius), flat(near.count),
+            flat(near.position), flat(near.radius), flat(near.kind), flat(near.count),
             flat(edges.start), flat(edges.end), flat(edges.count), flat(state), flat(command),
         )  # fmt: skip
         self._kept.write("state", observation.rows, state)
@@ -77,11 +82,14 @@ class Detours:
 def _detour(
     indices: IntArray, patience: float, dt: FloatArray, position: FloatArray, heading: FloatArray,
     goal: FloatArray, radius: FloatArray, max_speed: FloatArray, max_turn: FloatArray,
-    other: FloatArray, other_radius: FloatArray, others: IntArray, first: FloatArray,
-    second: FloatArray, edges: IntArray, state: FloatArray, out: FloatArray,
+    other: FloatArray, other_radius: FloatArray, kind: ByteArray, others: IntArray,
+    first: FloatArray, second: FloatArray, edges: IntArray, state: FloatArray, out: FloatArray,
 ) -> None:  # fmt: skip
     for i in indices:
         x, y, s = position[i, 0], position[i, 1], state[i]
+        if _in_crowd(x, y, other[i], kind[i], others[i]):
+            s[_X], s[_Y], s[_WAITED], s[_LEFT] = x, y, 0.0, 0.0
+            continue
         if s[_LEFT] <= 0.0:
             if math.hypot(x - s[_X], y - s[_Y]) > PLACE:
                 s[_X], s[_Y], s[_WAITED] = x, y, 0.0
@@ -102,6 +110,15 @@ def _detour(
         error = (s[_COURSE] - heading[i] + math.pi) % (2.0 * math.pi) - math.pi
         out[i, 0] = max_speed[i] * max(0.0, math.cos(error))
         out[i, 1] = min(max(error / dt[i], -max_turn[i]), max_turn[i])
+
+
+@kernel_without_allocation
+def _in_crowd(x: float, y: float, other: FloatArray, kind: ByteArray, others: int) -> bool:
+    near = 0
+    for j in range(others):
+        if kind[j] == _AGENT and math.hypot(other[j, 0] - x, other[j, 1] - y) < AROUND:
+            near += 1
+    return near >= CROWD
 
 
 @kernel_without_allocation

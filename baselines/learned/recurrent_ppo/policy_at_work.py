@@ -23,22 +23,30 @@ from .ray_memory import Sightings
 from .weights import read_weights
 
 SHIPPED = Path(__file__).parent / "weights"
+SUFFIX = ".safetensors"
 _LIMITS = ("radius", "max_speed", "max_turn_rate")
 
 
 class PolicyConfig(PluginConfig):
-    """The choice of weights, and of foresight."""
+    """The choice of weights."""
 
     weights: str = Field(
-        "", description="weights file of `benchnav train`; empty: the included weights"
+        "",
+        description="weights file of `benchnav train`, or the name of included weights; empty: the"
+        " included ones of this name. A suite may list several, one for each training",
     )
+
+
+class CorrectedConfig(PolicyConfig):
+    """Parameters of a policy whose commands are corrected."""
+
     foresight: bool = Field(True, description="correct twists that would collide")
     hold: float = Field(
         0.9, ge=HELD, le=2, description="[s] longest time for which the prediction holds a twist"
     )
 
 
-class DriverConfig(PolicyConfig):
+class DriverConfig(CorrectedConfig):
     """The same, for an agent without a path to follow."""
 
     patience: float = Field(4.0, ge=0, description="[s] of standing before a detour; 0: no detours")
@@ -58,7 +66,13 @@ class PolicyPilot(Pilot):
     A policy with rays predicts collisions only with what its rays hit.
     """
 
-    def __init__(self, weights: Path, foresight: bool, hold: float, patience: float = 0.0) -> None:
+    def __init__(
+        self,
+        weights: Path,
+        foresight: bool = False,
+        hold: float = HELD,
+        patience: float = 0.0,
+    ) -> None:
         self._actor, self.about = _loaded(weights)
         self._encoder = encoder(self.about["encoder"])
         self._foresight, self._hold = foresight, hold
@@ -140,10 +154,17 @@ class PolicyPilot(Pilot):
         return values
 
 
-def pilot_of(config: Any, shipped: str) -> PolicyPilot:
-    """Return the pilot of a configuration; ``shipped`` are the weights if it names none."""
-    path = Path(config.weights) if config.weights else SHIPPED / shipped
-    return PolicyPilot(path, config.foresight, config.hold, getattr(config, "patience", 0.0))
+def pilot_of(config: PluginConfig, shipped: str) -> PolicyPilot:
+    """Return the pilot of a `PolicyConfig`; ``shipped`` are the weights if it names none."""
+    parameters = config.model_dump()
+    return PolicyPilot(_weights_file(parameters.pop("weights") or shipped), **parameters)
+
+
+def _weights_file(name: str) -> Path:
+    """Return the included file of this name, or else the path."""
+    included = SHIPPED / Path(name).with_suffix(SUFFIX).name
+    is_name = Path(name).name == name and Path(name).suffix in ("", SUFFIX)
+    return included if is_name and included.is_file() else Path(name)
 
 
 @lru_cache(maxsize=8)

@@ -40,8 +40,23 @@ def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
     name = about.get("encoder")
     if name not in ENCODERS:
         raise PluginError(f"{path}: made for the encoder {name!r}, which does not exist.")
-    actor = _fitting(path, file.tensors, encoder(name).size, name)
+    actor = _fitting(path, _widened(file.tensors), encoder(name).size, name)
     return actor, about
+
+
+def write_half(source: Path, target: Path) -> None:
+    """Write the weights of one file to another as float16, in half the size."""
+    file = read_tensors(source)
+    half = {name: tensor.astype(np.float16) for name, tensor in file.tensors.items()}
+    write_tensors(target, half, file.about)
+
+
+def _widened(tensors: Mapping[str, Any]) -> dict[str, Any]:
+    """Return float16 tensors as float32, which is exact, and others as they are."""
+    return {
+        name: tensor.astype(np.float32) if tensor.dtype == np.float16 else tensor
+        for name, tensor in tensors.items()
+    }
 
 
 def _fitting(path: Path, tensors: Mapping[str, Float32Array], size: int, name: str) -> Actor:

@@ -24,7 +24,7 @@ class GuidedCrowdConfig(PluginConfig):
         5, ge=1, le=100, description="rehearsals of the leaders before each episode; charged"
     )
     leader: str | dict[str, Any] = Field(
-        "recurrent-ppo",
+        "recurrent-ppo-vo",
         description="navigator of the leaders in rehearsals: name or {type: name, …}",
     )
     path: str | None = Field(

@@ -98,6 +98,20 @@ def training(r: Record) -> Cell:
     return Cell(f"{millions:.1f} M, {time}" if millions >= 0.1 else f"{millions:.2g} M, {time}")
 
 
+def trainings(r: Record) -> Cell:
+    """Return the range of the means of trainings, ``0.884–0.893 (3)``; empty for one training."""
+    if r.trainings < 2 or math.isnan(r.training_least):
+        return Cell(f"({r.trainings})" if r.trainings > 1 else "")
+    size, name = prefixed(r.unit, max(abs(r.training_least), abs(r.training_most)))
+    least, _, most = figures(
+        r.training_least / size, r.training_least / size, r.training_most / size,
+        None if r.unit else 1.0,
+    )  # fmt: skip
+    unit = f" {name}" if name else ""
+    ends = least if least == most else f"{least}–{most}"
+    return Cell(f"{ends}{unit} ({r.trainings})")
+
+
 def rehearsal(r: Record) -> Cell:
     """Return the cost of rehearsals per world, ``812 decisions, 3.2 ms``; empty without."""
     if math.isnan(r.rehearsal_seconds):

@@ -33,6 +33,11 @@ LEGEND = (
     "A failed episode counts as the worst: success 0, collided 1.",
 )
 
+TRAININGS = (
+    "trainings: the least and the most successful of (n) trainings with different seeds, by the"
+    " column before. The value is their mean; its interval and ranks hold for these trainings."
+)
+
 
 def sections(
     board: Leaderboard, metrics: Sequence[str] | None, columns: Sequence[str] | None = None
@@ -77,7 +82,8 @@ def legend(board: Leaderboard) -> tuple[str, ...]:
     caveats = tuple(f"Caveat: {text}" for text in board.caveats)
     modes = _modes(board)
     mode = (f"mode: {modes[0]} for all entries.",) if len(modes) == 1 and modes[0] else ()
-    return (*LEGEND, *mode, *prices, *caveats)
+    several = (TRAININGS,) if any(r.trainings > 1 for r in board.records) else ()
+    return (*LEGEND, *several, *mode, *prices, *caveats)
 
 
 def _modes(board: Leaderboard) -> list[str]:
@@ -176,6 +182,8 @@ class _Table:
                 continue
             if self.middle:
                 yield MIDDLE_HALF
+            if any(r.trainings > 1 for r in records):
+                yield "trainings"
             if any(not math.isnan(r.training_decisions) for r in records):
                 yield "training"
             if self.rehearsed:

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from benchnav.errors import UsageError
 from benchnav.leaderboard.record import ALL
@@ -12,6 +12,7 @@ from benchnav.leaderboard.rendering.digits import signed as with_sign
 from benchnav.leaderboard.rendering.long_format import as_csv, as_json
 from benchnav.leaderboard.statistics.comparison import Comparison
 from benchnav.leaderboard.statistics.head_to_head import Duel
+from benchnav.leaderboard.statistics.trainings import Spread
 from benchnav.metrics.metric import Metric
 from benchnav.scenario.condition import described
 from benchnav.text.plural import counted
@@ -24,6 +25,10 @@ VERBS = {
 }  # fmt: skip
 """The verbs of rates of events of an agent; all other metrics are "higher" or "lower"."""
 
+TRAININGS = (
+    " A value of an entry with several trainings is their mean; the last interval of a line is over"
+    " worlds and trainings. An entry that was trained once is assumed to vary as the other one."
+)
 ARRIVALS = "among agents that arrive"
 
 
@@ -56,7 +61,9 @@ def _block(found: Sequence[Comparison], metric: Metric) -> list[str]:
     for c in found:
         where = place(c, role=len(roles) > 1, split=splits != {"test"})
         lines.append(f"- {escape.markdown(f'{where}: {sentence(c, metric)}')}")
-    return [*lines, ""]
+    widest = [c for c in found if c.scenario == ALL] or found
+    several = (text for c in widest[:1] for text in training_sentences(c, metric))
+    return [*lines, *(f"- {escape.markdown(text)}" for text in several), ""]
 
 
 def outcome(found: Sequence[Comparison]) -> str:
@@ -77,7 +84,49 @@ def place(c: Comparison, *, role: bool, split: bool) -> str:
 
 
 def sentence(c: Comparison, metric: Metric) -> str:
-    """Return the sentence of one comparison."""
+    """Return the sentence of one comparison, and of its trainings if an entry has several."""
+    more = "" if math.isnan(c.training_low) else f" {over_trainings(c, metric)}"
+    return f"{_sentence(c, metric)}{more}"
+
+
+def over_trainings(c: Comparison, metric: Metric) -> str:
+    """Return the sentence about the interval over worlds and trainings, which must be known."""
+    bounds = [c.training_low, c.training_high]
+    value, ends, unit = _figures(metric, c.difference, bounds, plus=True)
+    verdict = "With other trainings"
+    if c.verdict not in ("tie", "too few worlds", "not as equals"):
+        holds = c.training_low > 0.0 or c.training_high < 0.0
+        verdict = "It also holds for other trainings" if holds else "Other trainings may reverse it"
+    return f"{verdict}: {value}{unit}{ends}."
+
+
+def training_sentences(c: Comparison, metric: Metric) -> Iterator[str]:
+    """Yield how much two trainings of the same recipe differ, for entries with several."""
+    sides = (
+        (c.first, c.first_trainings, c.first_deviation),
+        (c.second, c.second_trainings, c.second_deviation),
+    )
+    for name, count, deviation in sides:
+        if count < 2 or math.isnan(deviation):
+            continue
+        apart = Spread(count, deviation=deviation).of_two
+        spread = f"the standard deviation of {count} trainings is {_size(deviation, metric)}"
+        if apart < metric.high - metric.low:
+            yield (
+                f"One training seed: two trainings of {name} differ by up to"
+                f" {_size(apart, metric)} (95 %; {spread})."
+            )
+        else:
+            yield f"One training seed: {spread} for {name}; more trainings would show its worth."
+
+
+def _size(value: float, metric: Metric) -> str:
+    """Return a difference with two figures and its unit."""
+    size, unit = scaled(metric, value)
+    return f"{float(f'{value / size:.2g}'):g}{f' {unit}' if unit else ''}"
+
+
+def _sentence(c: Comparison, metric: Metric) -> str:
     if not c.worlds:
         return "no world in which both have a value."
     if c.verdict == "tie":
@@ -147,6 +196,7 @@ def _chance(c: Comparison) -> str:
 
 def _explained(duel: Duel) -> str:
     family = max(c.family for c in duel.comparisons)
+    several = any(not math.isnan(c.training_low) for c in duel.comparisons)
     return (
         "[low, high]: 95 % interval of the mean difference over the worlds of both. By chance: how"
         " often a difference as large would be seen if the true one were 0, by the t-test of the"
@@ -154,4 +204,5 @@ def _explained(duel: Duel) -> str:
         f" {counted(family, 'comparison')} above as one family. Rarer than once in"
         " 20 it is called a difference. Intervals are not adjusted: one may exclude 0 in a tie."
         " Scenarios are fixed: other seeds may differ, not other scenarios."
+        f"{TRAININGS if several else ''}"
     )

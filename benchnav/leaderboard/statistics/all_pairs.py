@@ -6,7 +6,7 @@ Each has the numbers of `benchnav.leaderboard.statistics.head_to_head.duel`.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, groupby
 from typing import TYPE_CHECKING
@@ -19,10 +19,12 @@ from benchnav.leaderboard.statistics.difference import Moments, difference
 from benchnav.leaderboard.statistics.estimate import columns_of
 from benchnav.leaderboard.statistics.head_to_head import Duel, duel
 from benchnav.leaderboard.statistics.not_comparable import absences
+from benchnav.leaderboard.statistics.over_trainings import with_trainings
 from benchnav.leaderboard.statistics.paired import differences, side_by_side
 from benchnav.leaderboard.statistics.significance import pairs
 from benchnav.leaderboard.statistics.strata import Stratum, align, strata
 from benchnav.metrics.metric import Metric
+from benchnav.navigation.plugin.trainings import entries_of
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -43,8 +45,9 @@ def duels(
     metrics: Mapping[str, Metric],
     names: Sequence[str],
     gaps: Sequence[NotApplicable] = (),
+    trained: Collection[str] = (),
 ) -> Iterator[Duel]:
-    """Yield the comparison of every two navigators by the metrics ``names``, in sorted order.
+    """Yield the comparison of every two entries by the metrics ``names``, in sorted order.
 
     Two that share no world have no comparisons. The arguments are those of `duel`.
     """
@@ -52,18 +55,19 @@ def duels(
     import pyarrow.compute as pc
 
     rows = results.filter(pc.is_in(results["metric"], value_set=pa.array(names, pa.string())))
-    navigators = sorted(rows["navigator"].unique().to_pylist())
+    navigators = sorted(entries_of(rows["navigator"].unique().to_pylist()))
     every = strata(rows, metrics, mixed=True)
     found = _all_comparisons(every, [metrics[name] for name in names])
     uniform = _holds_every_metric(rows, names)
     order = {name: place for place, name in enumerate(names)}
     for pair in combinations(navigators, 2):
         if pair in found and (not uniform or _failed_together(every, pair)):
-            yield duel(rows, metrics, names, *pair, gaps)
+            yield duel(rows, metrics, names, *pair, gaps, trained)
             continue
         comparisons = found[pair].comparisons if pair in found else []
         comparisons.sort(key=lambda c: (order[c.metric], *_place(c)))  # stable
         notes = absences(_strata_of(every, pair), *pair, gaps)
+        comparisons = list(with_trainings(comparisons, every, metrics, trained))
         yield Duel(*pair, as_family(comparisons, metrics), tuple(notes))
 
 
@@ -75,7 +79,7 @@ def notes_by_condition(
 ) -> dict[Pair, list[list[str]]]:
     """Return for every two navigators the notes of `Duel` on each (track, perception) alone."""
     every = strata(results, metrics, mixed=True)
-    navigators = sorted(results["navigator"].unique().to_pylist())
+    navigators = sorted(entries_of(results["navigator"].unique().to_pylist()))
     found: dict[Pair, list[list[str]]] = {}
     for pair in combinations(navigators, 2):
         shared = _strata_of(every, pair)

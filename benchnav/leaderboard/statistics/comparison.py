@@ -2,11 +2,12 @@
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
+from benchnav.leaderboard.record import OPTIONAL
 from benchnav.leaderboard.statistics.difference import least_p
 from benchnav.leaderboard.statistics.interval import ALPHA
 from benchnav.leaderboard.statistics.significance import holm
@@ -43,6 +44,12 @@ class Comparison:
     adjusted: float = math.nan  # p after Holm's correction, over the family
     family: int = 0  # number of comparisons in the family
     verdict: Verdict = "tie"  # about the first
+    first_trainings: int = field(default=1, metadata=OPTIONAL)
+    first_deviation: float = field(default=math.nan, metadata=OPTIONAL)  # standard, of trainings
+    second_trainings: int = field(default=1, metadata=OPTIONAL)
+    second_deviation: float = field(default=math.nan, metadata=OPTIONAL)
+    training_low: float = field(default=math.nan, metadata=OPTIONAL)  # 95 %, over worlds
+    training_high: float = field(default=math.nan, metadata=OPTIONAL)  # and trainings
 
 
 def as_family(found: Sequence[Comparison], metrics: Mapping[str, Metric]) -> tuple[Comparison, ...]:

@@ -16,6 +16,7 @@ from benchnav.leaderboard.statistics.interval import resample
 from benchnav.leaderboard.statistics.strata import strata
 from benchnav.metrics.metric import Metric
 from benchnav.metrics.success import success, success_by_horizon, success_time
+from benchnav.navigation.plugin.trainings import entry_of
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -80,7 +81,7 @@ class Attempt:
 
 
 Key = tuple[str, str, str, str, str, str, float, float, int, str]
-Worlds = dict[int, FloatArray]  # seed → success times
+Worlds = dict[int, dict[str, FloatArray]]  # seed → label of each training → success times
 
 
 def attempts_of(episode: Episode) -> Iterator[Attempt]:
@@ -114,9 +115,9 @@ def curves_of(attempts: Iterable[Attempt], points: int = POINTS) -> tuple[Point,
     for a in attempts:
         key = (
             a.split, a.track, a.perception, a.scenario, a.role, a.scenario_hash, a.horizon, a.dt,
-            a.rehearsal, a.navigator,
+            a.rehearsal, entry_of(a.navigator),
         )  # fmt: skip
-        curves.setdefault(key, {})[a.seed] = a.times
+        curves.setdefault(key, {}).setdefault(a.seed, {})[a.navigator] = a.times
     return tuple(p for key in sorted(curves) for p in _horizon_curve(key, curves[key], points))
 
 
@@ -128,7 +129,7 @@ def _times(horizon: float, points: int) -> FloatArray:
 
 def _horizon_curve(key: Key, worlds: Worlds, points: int) -> Iterator[Point]:
     split, track, perception, scenario, role, digest, horizon, dt, rehearsal, navigator = key
-    times = [worlds[seed] for seed in sorted(worlds)]
+    times = [np.concatenate([*worlds[seed].values()]) for seed in sorted(worlds)]
     every = np.array([success_by_horizon(each, _times(horizon, points)) for each in times])
     value, places = np.unique(every, axis=1, return_inverse=True)  # few times differ
     agents = np.repeat([[float(len(each))] for each in times], value.shape[1], axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -17,9 +17,11 @@ from benchnav.leaderboard.statistics.comparison import Comparison, as_family
 from benchnav.leaderboard.statistics.difference import Moments, difference
 from benchnav.leaderboard.statistics.estimate import columns_of
 from benchnav.leaderboard.statistics.not_comparable import absences
+from benchnav.leaderboard.statistics.over_trainings import with_trainings
 from benchnav.leaderboard.statistics.paired import differences, side_by_side
 from benchnav.leaderboard.statistics.strata import Stratum, strata
 from benchnav.metrics.metric import Metric
+from benchnav.navigation.plugin.trainings import entry_of, labels_of_entry
 
 if TYPE_CHECKING:
     import pyarrow as pa
@@ -42,22 +44,24 @@ def duel(
     first: str,
     second: str,
     gaps: Sequence[NotApplicable] = (),
+    trained: Collection[str] = (),
 ) -> Duel:
     """Compare ``first`` − ``second`` by the metrics ``names``, wherever both were run.
 
     Each scenario, track, perception and role is compared on its own. If both were run in several
     scenarios under one condition, also compare over all of these with equal weights. All
-    comparisons form one family. ``gaps`` are cells that could not be run.
+    comparisons form one family. ``gaps`` are cells that could not be run, ``trained`` the
+    navigators that learned. Each name is that of an entry, or the label of one of its trainings.
     Raises UsageError if one of the two is not in ``results``, or they share no world.
     """
-    _require(results, first, second)
+    labels = _labels(results, first, second)
     import pyarrow.compute as pc
 
     chosen = pc.and_(
-        pc.is_in(results["navigator"], value_set=_strings(first, second)),
+        pc.is_in(results["navigator"], value_set=_strings(*labels)),
         pc.is_in(results["metric"], value_set=_strings(*names)),
     )
-    found = strata(results.filter(chosen), metrics, mixed=True)
+    found = strata(results.filter(chosen), metrics, mixed=True, apart=(first, second))
     met = [s for s in found if len(s.navigators) == 2 and s.attempted.all(axis=1).any()]
     notes = absences(found, first, second, gaps)
     if not met:
@@ -71,11 +75,14 @@ def duel(
         every += _over_all(list(group), first, second, chosen)
     order = {name: place for place, name in enumerate(names)}
     every.sort(key=lambda c: (order[c.metric], c.split, c.track, c.perception, c.role))  # stable
+    every = list(with_trainings(every, met, metrics, trained))
     return Duel(first, second, as_family(every, metrics), tuple(notes))
 
 
-def _require(results: pa.Table, first: str, second: str) -> None:
-    known = sorted(results["navigator"].unique().to_pylist())
+def _labels(results: pa.Table, first: str, second: str) -> tuple[str, ...]:
+    """Return the labels of both entries. Raises UsageError for an unknown or a repeated one."""
+    labels = results["navigator"].unique().to_pylist()
+    known = sorted({*labels, *map(entry_of, labels)})
     for name in (first, second):
         if name not in known:
             raise UsageError(
@@ -84,6 +91,12 @@ def _require(results: pa.Table, first: str, second: str) -> None:
             )
     if first == second:
         raise UsageError(f"Two different navigators can be compared. Got {first!r} twice.")
+    if first in (second, entry_of(second)) or second == entry_of(first):
+        raise UsageError(
+            "A training can be compared with another training or with another entry. Got"
+            f" {first!r} and {second!r}, one of which includes the other."
+        )
+    return (*labels_of_entry(first, labels), *labels_of_entry(second, labels))
 
 
 def _strings(*values: str) -> pa.Array:

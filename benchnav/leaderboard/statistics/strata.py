@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from benchnav.arrays import AnyArray, BoolArray, FloatArray, IntArray
 from benchnav.errors import UsageError
+from benchnav.leaderboard.statistics.trainings import pooled, trainings_of
 from benchnav.metrics.metric import Metric
 
 if TYPE_CHECKING:
@@ -47,6 +48,8 @@ class Stratum:
     failed: BoolArray  # (S, N) the navigator failed
     granted: IntArray  # (N,) rehearsals
     cost: FloatArray  # (S, N, 2) decisions and seconds [s] of rehearsals; NaN if not attempted
+    trainings: Mapping[str, FloatArray] = field(default_factory=dict)
+    """(S, K, M) values of the K trainings of navigators that have several."""
 
     def rng(self, purpose: str) -> np.random.Generator:
         """Return a generator of this scenario, equal in every condition and table."""
@@ -55,11 +58,17 @@ class Stratum:
         return np.random.default_rng(list(sha256(key.encode()).digest()))
 
 
-def strata(results: pa.Table, metrics: Mapping[str, Metric], mixed: bool = False) -> list[Stratum]:
+def strata(
+    results: pa.Table,
+    metrics: Mapping[str, Metric],
+    mixed: bool = False,
+    apart: Collection[str] = (),
+) -> list[Stratum]:
     """Return every stratum, sorted by its key, for any order of the rows (RESULTS).
 
     ``mixed`` combines entries with different numbers of rehearsals: they may be
-    compared in texts that name the numbers, and are never ranked.
+    compared in texts that name the numbers, and are never ranked. The trainings of an entry become
+    one navigator, except the labels ``apart``.
 
     Raises UsageError if one navigator has two values in one world.
     """
@@ -80,7 +89,8 @@ def strata(results: pa.Table, metrics: Mapping[str, Metric], mixed: bool = False
     order = np.argsort(codes, kind="stable")
     ends = np.flatnonzero(np.diff(codes[order])) + 1
     parts = np.split(order, ends) if rows else []
-    found = [_stratum(part, columns, numbers, metrics) for part in parts]
+    several = trainings_of(columns["navigator"][1], apart)
+    found = [pooled(_stratum(part, columns, numbers, metrics), several, metrics) for part in parts]
     return sorted(found, key=lambda s: tuple(getattr(s, name) for name in (*KEYS, GRANT)))
 
 
@@ -220,10 +230,15 @@ def align(group: list[Stratum]) -> list[Stratum]:
         granted = np.zeros(len(navigators), np.int64)
         cost = np.full((*shape[:2], s.cost.shape[2]), np.nan)
         granted[n], cost[:, n] = s.granted, s.cost
+        trainings = {}
+        for name, values in s.trainings.items():
+            trainings[name] = np.full((*values.shape[:2], len(metrics)), np.nan)
+            trainings[name][:, :, m] = values
         aligned.append(
             replace(
                 s, navigators=navigators, metrics=metrics, value=value, agents=agents,
                 attempted=attempted, failed=failed, granted=granted, cost=cost,
+                trainings=trainings,
             )
         )  # fmt: skip
     return aligned

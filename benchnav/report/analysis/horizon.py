@@ -16,7 +16,7 @@ class HorizonCurves:
         self._tracks: dict[tuple[str, str, str], set[str]] = {}  # by navigator, stored condition
         for s in found:
             for attempt in s.attempts:
-                key = attempt.navigator, attempt.track, attempt.perception
+                key = s.navigator, attempt.track, attempt.perception
                 self._tracks.setdefault(key, set()).update(s.tracks)
 
     def panels(self, view: View) -> list[Sequence[Point]]:

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 
+from benchnav.navigation.plugin.trainings import entry_of, labels_of_entry
 from benchnav.report.failed_episodes import Cell, Failures
 from benchnav.report.line_style import LineStyle
 from benchnav.report.page import FAILURES, Page, replay_path
@@ -38,7 +39,8 @@ def pages(
         key=lambda f: (
             order[f.scenario],
             data.conditions.index((f.track, f.perception)),
-            place[f.navigator],
+            place[entry_of(f.navigator)],
+            f.navigator,
         ),
     )
     rows = [_row(data, f, replays) for f in ordered]
@@ -51,10 +53,18 @@ def pages(
             ("family", "Family", sorted({r.family for r in rows}), None),
             ("track", "Track", list(dict.fromkeys(r.found.track for r in rows)), None),
             ("perception", "Perception", sorted({r.found.perception for r in rows}), None),
-            ("navigator", "Navigator", list(data.navigators), None),
+            ("navigator", "Navigator", _named(data, rows), None),
         ],
     )  # fmt: skip
     yield Page(FAILURES, "Failures", body, FAILURES, has_tables=True)
+
+
+def _named(data: ReportData, rows: Sequence[Row]) -> list[str]:
+    """Return the navigators to choose from, with each training of an entry."""
+    labels = sorted({row.found.navigator for row in rows})
+    return [
+        label for entry in data.navigators for label in labels_of_entry(entry, labels) or [entry]
+    ]
 
 
 def _row(data: ReportData, f: Failures, replays: Collection[Cell]) -> Row:

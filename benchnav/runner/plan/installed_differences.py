@@ -11,6 +11,7 @@ from typing import Any
 from benchnav.config.yaml_reader import read_yaml, validate
 from benchnav.errors import BenchnavError, UnknownPluginError
 from benchnav.navigation.hierarchy.composition import HIERARCHICAL, is_pair, parameters_of
+from benchnav.navigation.plugin.trainings import each_training
 from benchnav.plugins import NAVIGATORS
 from benchnav.runner.plan.contestant import label_of
 from benchnav.runner.plan.limits import Limits
@@ -127,7 +128,11 @@ def _numbers(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
 def _members(manifest: Manifest, here: SuiteFile) -> Iterator[str]:
     """Yield scenarios, tracks, perceptions and navigators that are missing, added or changed."""
     suite = manifest.suite
-    own = {label_of(spec): spec for spec in here.navigators}
+    own = {
+        label_of(training): training
+        for spec in here.navigators
+        for training in each_training(spec, label_of(spec), here.name)
+    }
     entries = {str(e["label"]): e["config"] for e in suite.get("navigators", ())}
     changed = {label for label in own if label in entries and not _fits(own[label], entries[label])}
     for what, run, installed in (

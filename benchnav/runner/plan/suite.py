@@ -16,6 +16,7 @@ from benchnav.errors import (
 from benchnav.generation.build import sensing_of
 from benchnav.navigation.plugin.background_navigators import check_drivers
 from benchnav.navigation.plugin.configure import Spec
+from benchnav.navigation.plugin.trainings import each_training, entry_of
 from benchnav.runner.plan.contestant import Contestant, ContestantFactory, label_of, resolved
 from benchnav.runner.plan.job import Job
 from benchnav.runner.plan.labels import labelled
@@ -49,7 +50,7 @@ class Block:
 
     scenarios: tuple[str, ...]  # identities
     tracks: tuple[str, ...]
-    navigators: tuple[str, ...]  # labels
+    navigators: tuple[str, ...]  # labels, or entries that stand for all their trainings
     perceptions: tuple[str, ...] = (EXACT,)
 
     def fields(self) -> dict[str, Any]:
@@ -60,11 +61,12 @@ class Block:
         }  # fmt: skip
 
     def __contains__(self, job: Job) -> bool:
+        label = job.contestant.label
         return (
             job.scenario.identity in self.scenarios
             and job.track in self.tracks
             and job.perception in self.perceptions
-            and job.contestant.label in self.navigators
+            and not {label, entry_of(label)}.isdisjoint(self.navigators)
         )
 
 
@@ -169,10 +171,12 @@ def _selected(
     factory = ContestantFactory(
         tuple(dict.fromkeys(map(sensing_of, scenarios))), selection.isolate, patience(timeout)
     )
+    places = ["navigators" if i is None else document.where(("navigators", i)) for i, _ in wanted]
     contestants = factory.create_all(
         [
-            (spec, "navigators" if i is None else document.where(("navigators", i)))
-            for i, spec in wanted
+            (training, where)
+            for (_, spec), where in zip(wanted, places, strict=True)
+            for training in each_training(spec, label_of(spec), where)
         ]
     )
     tracks = tuple(selection.tracks or file.tracks)
@@ -185,7 +189,7 @@ def _selected(
         ("scenarios", [s.identity for s in scenarios], selection.scenarios),
         ("tracks", tracks, selection.tracks),
         ("perception", perceptions, selection.perceptions),
-        ("navigators", [e.label for e in contestants], selection.navigators),
+        ("navigators", [label_of(spec) for _, spec in wanted], selection.navigators),
     ):
         _refuse_twice(key, names, selected, document)
     seeds = _seeds(selection.seeds or str(file.seeds))
@@ -214,7 +218,9 @@ def _blocks(file: SuiteFile, suite: Suite, document: Document, folder: Path) -> 
         tuple(s.identity for s in suite.scenarios if s.identity not in identities.values()),
         tuple(track for track in suite.tracks if track not in file.tracks),
         tuple(
-            contestant.label for contestant in suite.contestants if contestant.label not in labels
+            contestant.label
+            for contestant in suite.contestants
+            if entry_of(contestant.label) not in labels
         ),
         tuple(each for each in suite.perceptions if each not in file.perception),
     )
