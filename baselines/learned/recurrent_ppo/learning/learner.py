@@ -116,6 +116,11 @@ def enter(learner: Learner, stage: Stage, progress: float) -> None:
         log_std.data.fill_(_between(stage.log_std, progress))
 
 
+def set_discount(learner: Learner, gamma: float) -> None:
+    """Set the discount of rewards."""
+    learner.gamma = buffer_of(learner).gamma = gamma
+
+
 def _between(ends: tuple[float, float], share: float) -> float:
     first, last = ends
     return first + (last - first) * min(share, 1.0)

@@ -55,6 +55,7 @@ class Stage(_Part):
     batch: int = Field(1024, ge=16, le=10**6, description="decisions of a minibatch")
     epochs: int = Field(4, ge=1, le=100)
     entropy: float = Field(0.0, ge=0, le=1, description="weight of the entropy bonus")
+    gamma: Share | None = Field(None, description="discount; the recipe's, if not given")
     log_std: tuple[LogStd, LogStd] | None = Field(
         None, description="log standard deviation at its start and end; if not given, it is learned"
     )
@@ -145,6 +146,10 @@ class Recipe(_Part):
                 )
             _refuse_twice(stage.courses or (), ("stages", i, "courses"))
         return self
+
+    def gamma_of(self, stage: Stage) -> float:
+        """Return the discount of a stage."""
+        return self.gamma if stage.gamma is None else stage.gamma
 
     def courses_of(self, stage: Stage) -> tuple[Course, ...]:
         """Return the training scenarios of a stage."""
