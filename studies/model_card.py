@@ -32,7 +32,8 @@ from benchnav.scenario.catalogue import find
 
 SCENARIOS = (
     "leaders/static", "leaders/static-corner", "leaders/moved", "leaders/dynamic",
-    "leaders/dynamic-corner", "corridor/bidirectional", "crowd/circle-crossing", "office/rooms",
+    "leaders/dynamic-corner", "corridor/bidirectional", "crowd/circle-crossing",
+    "bottleneck/door", "circle/antipodal", "office/rooms",
 )  # fmt: skip
 CHUNK = 50  # worlds of a task
 KINDS = (Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.DYNAMIC)

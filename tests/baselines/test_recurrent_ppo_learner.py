@@ -66,6 +66,20 @@ def rolled_out(layers=1, size=8, dense=(), rollouts=3, sequence=8, bfloat16=Fals
     return learner
 
 
+def test_a_stage_that_gives_the_noise_sets_it_and_learns_it_no_more():
+    recipe = recipe_of(lstm_layers=1, lstm_size=4)
+    env = make_env(recipe, training_pools(recipe, recipe.stages[0]))
+    env.enter(recipe.stages[0].reward, 0)
+    learner = make_learner(recipe, env, 0, "cpu")
+    given = recipe.stages[0].model_copy(update={"log_std": (-0.5, -1.5)})
+    for progress, expected in ((0.0, -0.5), (0.5, -1.0), (1.0, -1.5), (1.2, -1.5)):
+        enter(learner, given, progress)
+        np.testing.assert_allclose(learner.policy.log_std.detach(), expected)
+    assert not learner.policy.log_std.requires_grad
+    enter(learner, recipe.stages[0], 0.0)
+    assert learner.policy.log_std.requires_grad
+
+
 def stock_of(learner, monkeypatch):
     """The stock policy with the same weights, and the stock buffer with the same transitions."""
     ours, policy = learner.rollout_buffer, learner.policy

@@ -33,7 +33,7 @@ sequence: 8
 network: {lstm_layers: 1, lstm_size: 8}
 stages:
   - {decisions: 300, learning_rate: [1.0e-3, 1.0e-4], batch: 32, epochs: 1}
-  - {decisions: 150, batch: 32, epochs: 1}
+  - {decisions: 150, batch: 32, epochs: 1, log_std: [-0.5, -1.0]}
 checkpoint: 150
 validation: {worlds: 1}
 trainer: recurrent-ppo

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from benchnav.envs.encoders.catalogue import encoder
+from benchnav.envs.encoders.catalogue import ENCODERS, encoder
 
 PAGE = (Path(__file__).parents[2] / "docs" / "environments.md").read_text("utf-8")
-REPEATED = re.compile(r"^(ray|scan|other)(\d+)\.")
+REPEATED = re.compile(r"^(ray|scan|other|pan)(\d+)\.")
 HEAD = ("number", "unit", "range", "what it is")
 
 
@@ -42,14 +42,24 @@ def part(numbers, first, last):
 
 @pytest.mark.parametrize(
     ("name", "first", "last"),
-    [("ego", 0, 42), ("ego", 42, 48), ("paper", 42, 48), ("ego", 48, 62), ("surround", 0, 80)],
+    [
+        ("ego", 0, 42),
+        ("ego", 42, 48),
+        ("paper", 42, 48),
+        ("ego", 48, 62),
+        ("near", 5, 6),
+        ("near", 42, 48),
+        ("near", 48, 62),
+        ("surround", 0, 80),
+        ("panorama", 64, 160),
+    ],
 )
 def test_every_number_is_listed(name, first, last):
     expected = table(part(encoder(name).numbers, first, last))
     assert expected in PAGE, f"the page must hold, for {name}:\n{expected}"
 
 
-@pytest.mark.parametrize("name", ["paper", "paper-static", "ego", "ego-static", "surround"])
+@pytest.mark.parametrize("name", ENCODERS)
 def test_sizes_are_true(name):
     assert f"| `{name}` | {encoder(name).size} |" in re.sub(" +", " ", PAGE)
 
@@ -59,7 +69,7 @@ def test_paper_and_ego_differ_in_six_numbers():
     assert [k for k in range(62) if paper[k] != ego[k]] == list(range(42, 48))
 
 
-@pytest.mark.parametrize("name", ["ego", "surround"])
+@pytest.mark.parametrize("name", ["ego", "near", "surround", "panorama"])
 def test_what_repeats_is_alike(name):
     kept = {}
     for n in encoder(name).numbers:

@@ -123,7 +123,15 @@ def test_agrees_with_its_twin_in_imagined_views(name, seed):
 
 @pytest.mark.parametrize(
     ("name", "width"),
-    [("paper", 62), ("ego", 62), ("paper-static", 48), ("ego-static", 48), ("surround", 80)],
+    [
+        ("paper", 62),
+        ("ego", 62),
+        ("near", 62),
+        ("paper-static", 48),
+        ("ego-static", 48),
+        ("surround", 80),
+        ("panorama", 160),
+    ],
 )
 def test_widths(name, width):
     chosen = encoder(name)
@@ -156,7 +164,7 @@ def test_what_is_out_of_range_is_clipped(name):
 
 
 @pytest.mark.parametrize("angle", [0.0, 1.0, -2.5, math.pi / 2])
-@pytest.mark.parametrize("name", ["ego", "ego-static", "surround"])
+@pytest.mark.parametrize("name", ["ego", "ego-static", "near", "surround", "panorama"])
 def test_an_own_frame_is_blind_to_where_the_world_lies(name, angle):
     seen, bodies = imagined(1)
     there = moved(seen, angle, np.array([3.0, -4.0]))

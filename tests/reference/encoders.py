@@ -51,6 +51,23 @@ def paper(seen, at, own, movers):
     return numbers
 
 
+def nearness(length):
+    return math.exp(-length) + math.exp(-length / 4) if length < 8 else 0
+
+
+def near(seen, at):
+    """The numbers of `paper`, with each length over 8 m replaced."""
+    away = math.hypot(*(seen.goal[at] - seen.position[at]))
+
+    def own(seen, at):
+        return [math.exp(-away / 2), away / 10, *relative(seen, at)[2:]]
+
+    numbers = paper(seen, at, own, True)
+    for k in [*range(5, 42, 6), *range(49, 62, 2)]:
+        numbers[k] = nearness(8 * numbers[k])
+    return numbers
+
+
 def distance_to_edges(points, start, end):
     """(N, E) of points (N, 2)."""
     along, offset = end - start, points[:, None] - start
@@ -114,6 +131,30 @@ def other(seen, at, radius, k):
     ]  # fmt: skip
 
 
+def direction(seen, at, radius, k):
+    """The first other whose disc, grown by the own one, the half-line from the agent meets."""
+    others, angle = seen.neighbours, seen.heading[at] + math.radians(15 * k)
+    ways = []
+    for j in range(others.count[at]):
+        ahead, left = in_frame(angle, others.position[at][j] - seen.position[at])
+        reach = radius + others.radius[at][j]
+        if ahead > 0 and abs(left) < reach:
+            ways.append((max(ahead - math.sqrt(reach**2 - left**2), 0), j))
+    way, first = min(ways, default=(8, -1))
+    if way >= 8:
+        return [0] * 4
+    velocity = others.velocity[at][first] - seen.velocity[at]
+    mover = int(others.kind[at][first] == Kind.DYNAMIC)
+    return [math.exp(-way / 2), *np.array(in_frame(angle, velocity)) / 2, mover]
+
+
+def panorama(seen, at, bodies):
+    numbers = surround(seen, at, bodies)[: 32 + 4 * 8]
+    for k in range(24):
+        numbers += direction(seen, at, bodies.radius[at], k)
+    return numbers
+
+
 def surround(seen, at, bodies):
     numbers = relative(seen, at)
     numbers.append(math.exp(-math.hypot(*(seen.goal[at] - seen.position[at])) / 2))
@@ -128,5 +169,9 @@ def encode(name, seen, at, bodies):
     """What the encoder ``name`` says of the agent ``at`` (row, column), before clipping."""
     if name == "surround":
         return surround(seen, at, bodies)
+    if name == "panorama":
+        return panorama(seen, at, bodies)
+    if name == "near":
+        return near(seen, at)
     own = absolute if name.startswith("paper") else relative
     return paper(seen, at, own, not name.endswith("-static"))

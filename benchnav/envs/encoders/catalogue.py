@@ -1,11 +1,13 @@
 """Encoders by name."""
 
 from benchnav.envs.encoders.encoder import Encoder
+from benchnav.envs.encoders.near import NearEncoder
+from benchnav.envs.encoders.panorama import PanoramaEncoder
 from benchnav.envs.encoders.paper import EgoEncoder, PaperEncoder
 from benchnav.envs.encoders.surround import SurroundEncoder
 from benchnav.errors import UsageError, did_you_mean
 
-ENCODERS = ("paper", "paper-static", "ego", "ego-static", "surround")
+ENCODERS = ("paper", "paper-static", "ego", "ego-static", "near", "surround", "panorama")
 
 
 def encoder(name: str) -> Encoder:
@@ -20,5 +22,9 @@ def encoder(name: str) -> Encoder:
         )
     if name == "surround":
         return SurroundEncoder()
+    if name == "panorama":
+        return PanoramaEncoder()
+    if name == "near":
+        return NearEncoder()
     kind = PaperEncoder if name.startswith("paper") else EgoEncoder
     return kind(movers=not name.endswith("-static"))

@@ -40,22 +40,23 @@ class PaperEncoder(Encoder):
 
     name: ClassVar[str] = "paper"
     needs: ClassVar[frozenset[Need]] = frozenset({Need.RAYS})
+    fades: ClassVar[FloatArray] = np.empty(0)  # [m] of a nearness in place of lengths, see `near`
 
     def __init__(self, movers: bool = True) -> None:
         self.movers = movers
 
     @cached_property
     def numbers(self) -> tuple[Number, ...]:
-        rays = [number for ray in range(RAYS) for number in _ray_numbers(ray)]
-        movers = [number for ray in range(RAYS) for number in _mover_numbers(ray)]
+        rays = [number for ray in range(RAYS) for number in self._ray_numbers(ray)]
+        movers = [number for ray in range(RAYS) for number in self._mover_numbers(ray)]
         return (*rays, *self._own_numbers(), *(movers if self.movers else ()))
 
     def encode(self, seen: Observation, bodies: Bodies) -> Float32Array:
         rays, (low, high) = rays_of(seen, RAYS, self.name), self._ranges
         out = np.empty((*seen.active.shape, len(low)), np.float32)
         _write_numbers(
-            rays.kind, rays.distance, rays.approach, rays.goal, self._own_values(seen, bodies), low,
-            high, self.movers, out,
+            rays.kind, rays.distance, rays.approach, rays.goal, self._own_values(seen, bodies),
+            self.fades, low, high, self.movers, out,
         )  # fmt: skip
         return out
 
@@ -65,6 +66,22 @@ class PaperEncoder(Encoder):
             np.array([n.low for n in self.numbers], float),
             np.array([n.high for n in self.numbers], float),
         )
+
+    def _ray_numbers(self, ray: int) -> list[Number]:
+        flags = [
+            Number(f"ray{ray}.{kind.name.lower()}", "", 0, 1, f"it meets {_WORDS[kind]} first")
+            for kind in _ONE_HOT
+        ]
+        nothing = Number(f"ray{ray}.nothing", "", 0, 1, "it meets none of these within range")
+        return [*flags, nothing, self._length_number(f"ray{ray}.length", "its length")]
+
+    def _mover_numbers(self, ray: int) -> list[Number]:
+        what = f"speed towards the agent of the mover that it meets, over {SPEED:g} m/s"
+        speed = Number(f"ray{ray}.mover_speed", "m/s", -1.5, 1.5, what)
+        return [speed, self._length_number(f"ray{ray}.mover_distance", "the mover's distance")]
+
+    def _length_number(self, name: str, what: str) -> Number:
+        return Number(name, "m", 0, 1, f"{what} over {RANGE:g} m, 1 if none")
 
     def _own_numbers(self) -> tuple[Number, ...]:
         return (
@@ -125,32 +142,10 @@ def _write_own_frame(
             own[4], own[5] = ahead / distance, left / distance
 
 
-def _ray_numbers(ray: int) -> list[Number]:
-    flags = [
-        Number(f"ray{ray}.{kind.name.lower()}", "", 0, 1, f"it meets {_WORDS[kind]} first")
-        for kind in _ONE_HOT
-    ]
-    return [
-        *flags,
-        Number(f"ray{ray}.nothing", "", 0, 1, "it meets none of these within range"),
-        Number(f"ray{ray}.length", "m", 0, 1, f"its length over {RANGE:g} m"),
-    ]
-
-
-def _mover_numbers(ray: int) -> list[Number]:
-    return [
-        Number(
-            f"ray{ray}.mover_speed", "m/s", -1.5, 1.5,
-            f"speed towards the agent of the mover that it meets, over {SPEED:g} m/s",
-        ),
-        Number(f"ray{ray}.mover_distance", "m", 0, 1, f"its distance over {RANGE:g} m, 1 if none"),
-    ]  # fmt: skip
-
-
 @kernel_without_allocation
 def _write_numbers(
     kind: ByteArray, distance: FloatArray, approach: FloatArray, goal: FloatArray, own: FloatArray,
-    low: FloatArray, high: FloatArray, movers: bool, out: Float32Array,
+    fades: FloatArray, low: FloatArray, high: FloatArray, movers: bool, out: Float32Array,
 ) -> None:  # fmt: skip
     """Write the numbers of rays (B, A, R) and of the agents themselves (B, A, 6)."""
     rays = kind.shape[2]
@@ -167,13 +162,13 @@ def _write_numbers(
                 numbers[first + 3] = 1.0 if on_goal or hit == _GOAL else 0.0
                 numbers[first + 4] = 1.0 if mover or (hit == _NOTHING and not on_goal) else 0.0
                 length = goal[b, i, r] if on_goal else RANGE if mover else distance[b, i, r]
-                numbers[first + 5] = _clipped(length / RANGE, low, high, first + 5)
+                numbers[first + 5] = _clipped(_length_value(length, fades), low, high, first + 5)
                 if movers:
                     last = 6 * rays + 6 + 2 * r
                     speed = approach[b, i, r] if hit == _DYNAMIC else 0.0
                     numbers[last] = _clipped(speed / SPEED, low, high, last)
                     length = distance[b, i, r] if hit == _DYNAMIC else RANGE
-                    numbers[last + 1] = _clipped(length / RANGE, low, high, last + 1)
+                    numbers[last + 1] = _clipped(_length_value(length, fades), low, high, last + 1)
             for k in range(6):
                 numbers[6 * rays + k] = _clipped(own[b, i, k], low, high, 6 * rays + k)
 
@@ -181,3 +176,15 @@ def _write_numbers(
 @kernel_without_allocation
 def _clipped(value: float, low: FloatArray, high: FloatArray, k: int) -> float:
     return float(min(max(value, low[k]), high[k]))
+
+
+@kernel_without_allocation
+def _length_value(length: float, fades: FloatArray) -> float:
+    """Return the number of a length [m], of which `RANGE` says that there is nothing."""
+    if len(fades) == 0:
+        return length / RANGE
+    near = 0.0
+    if length < RANGE:
+        for fade in fades:
+            near += math.exp(-length / fade)
+    return near

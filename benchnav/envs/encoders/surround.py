@@ -27,7 +27,7 @@ OTHERS = 6
 RANGE = 8.0  # [m] of the scan
 FADE = 2.0  # [m] distance over which nearness falls by the factor e
 _EACH = 8  # numbers per other
-_MOVER = int(Kind.DYNAMIC)
+MOVER = int(Kind.DYNAMIC)
 
 
 class SurroundEncoder(Encoder):
@@ -35,9 +35,13 @@ class SurroundEncoder(Encoder):
 
     name: ClassVar[str] = "surround"
     needs: ClassVar[frozenset[Need]] = frozenset({Need.NEIGHBOURS, Need.EDGES})
+    others: ClassVar[int] = OTHERS
 
     @cached_property
     def numbers(self) -> tuple[Number, ...]:
+        return self._numbers()
+
+    def _numbers(self) -> tuple[Number, ...]:
         own = (
             Number("p_g.ahead", "m", -3, 3, "goal ahead of the agent over 10 m"),
             Number("p_g.left", "m", -3, 3, "goal to the left of the agent over 10 m"),
@@ -55,14 +59,14 @@ class SurroundEncoder(Encoder):
             )
             for k in range(DIRECTIONS)
         )  # fmt: skip
-        return (*own, *scan, *(n for k in range(OTHERS) for n in _other_numbers(k)))
+        return (*own, *scan, *(n for k in range(self.others) for n in _other_numbers(k)))
 
     def encode(self, seen: Observation, bodies: Bodies) -> Float32Array:
         assert seen.neighbours is not None  # noqa: S101 - declared in `needs`
         assert seen.edges is not None  # noqa: S101
         shape = seen.heading.shape
         scan = np.zeros((*shape, DIRECTIONS))
-        others = np.zeros((*shape, OTHERS * _EACH))
+        others = np.zeros((*shape, self.others * _EACH))
         agents = math.prod(shape)
         if agents:
             _scan(
@@ -73,12 +77,17 @@ class SurroundEncoder(Encoder):
             _others(
                 seen.position.reshape(agents, 2), seen.velocity.reshape(agents, 2),
                 seen.heading.reshape(agents), bodies.radius.reshape(agents),
-                *_neighbour_numbers(seen.neighbours, agents), others.reshape(agents, -1),
+                *neighbour_numbers(seen.neighbours, agents), others.reshape(agents, -1),
             )  # fmt: skip
         own = own_frame(seen)
         distance = np.linalg.norm(seen.goal - seen.position, axis=-1)
         more = np.stack([np.exp(-distance / FADE), bodies.max_speed / SPEED], axis=-1)
-        return within(self.numbers, np.concatenate([own, more, scan, others], axis=-1))
+        parts = [own, more, scan, others, *self._further(seen, bodies)]
+        return within(self.numbers, np.concatenate(parts, axis=-1))
+
+    def _further(self, seen: Observation, bodies: Bodies) -> list[FloatArray]:
+        """Return further numbers (B, A, …) of an encoder that has more."""
+        return []
 
 
 def _other_numbers(k: int) -> list[Number]:
@@ -101,9 +110,10 @@ def _flat(edges: Edges, agents: int) -> tuple[FloatArray, FloatArray, IntArray]:
     )  # fmt: skip
 
 
-def _neighbour_numbers(
+def neighbour_numbers(
     seen: Neighbours, agents: int
 ) -> tuple[FloatArray, FloatArray, FloatArray, ByteArray, IntArray]:
+    """Return position, velocity, radius, kind and count of the neighbours of ``agents`` agents."""
     return (
         seen.position.reshape(agents, -1, 2), seen.velocity.reshape(agents, -1, 2),
         seen.radius.reshape(agents, -1), seen.kind.reshape(agents, -1), seen.count.reshape(agents),
@@ -138,7 +148,7 @@ def _others(
 ) -> None:  # fmt: skip
     for i in range(len(position)):
         c, s = math.cos(heading[i]), math.sin(heading[i])
-        for k in range(min(count[i], OTHERS)):
+        for k in range(min(count[i], out.shape[1] // _EACH)):
             x = other_position[i, k, 0] - position[i, 0]
             y = other_position[i, k, 1] - position[i, 1]
             u = other_velocity[i, k, 0] - velocity[i, 0]
@@ -151,4 +161,4 @@ def _others(
             row[2], row[3] = max(1.0 - gap / 10.0, 0.0), math.exp(-gap)
             row[4], row[5] = (c * u + s * v) / SPEED, (c * v - s * u) / SPEED
             row[6] = probability(x, y, -u, -v, reach)
-            row[7] = 1.0 if kind[i, k] == _MOVER else 0.0
+            row[7] = 1.0 if kind[i, k] == MOVER else 0.0

@@ -105,11 +105,25 @@ def buffer_of(learner: Learner) -> Any:
 
 def enter(learner: Learner, stage: Stage, progress: float) -> None:
     """Apply the settings of a stage, at the share ``progress`` of its decisions."""
-    first, last = stage.learning_rate
-    rate = first + (last - first) * min(progress, 1.0)
+    rate = _between(stage.learning_rate, progress)
     learner.lr_schedule = lambda _: rate
     learner.batch_size, learner.n_epochs = stage.batch, stage.epochs
     learner.ent_coef = stage.entropy
+    log_std = learner.policy.log_std
+    log_std.requires_grad_(stage.log_std is None)
+    if stage.log_std is not None:
+        log_std.grad = None
+        log_std.data.fill_(_between(stage.log_std, progress))
+
+
+def set_discount(learner: Learner, gamma: float) -> None:
+    """Set the discount of rewards."""
+    learner.gamma = buffer_of(learner).gamma = gamma
+
+
+def _between(ends: tuple[float, float], share: float) -> float:
+    first, last = ends
+    return first + (last - first) * min(share, 1.0)
 
 
 def reseed(learner: Learner, rng: np.random.Generator) -> None:

@@ -15,6 +15,7 @@ from benchnav.navigation import Need
 Share = Annotated[float, Field(ge=0, le=1)]
 Precision = Literal["float32", "bfloat16"]
 Rate = Annotated[float, Field(gt=0, le=1)]
+LogStd = Annotated[float, Field(ge=-5, le=2)]
 
 
 class _Part(BaseModel):
@@ -47,13 +48,17 @@ class Validation(_Part):
 
 
 class Stage(_Part):
-    """A stretch of training under one reward; the learning rate falls linearly."""
+    """A stretch of training under one reward; learning rate and noise change linearly."""
 
     decisions: int = Field(ge=1, le=10**10, description="of agents in attempts")
     learning_rate: tuple[Rate, Rate] = Field((3e-4, 3e-4), description="at its start and end")
     batch: int = Field(1024, ge=16, le=10**6, description="decisions of a minibatch")
     epochs: int = Field(4, ge=1, le=100)
     entropy: float = Field(0.0, ge=0, le=1, description="weight of the entropy bonus")
+    gamma: Share | None = Field(None, description="discount; the recipe's, if not given")
+    log_std: tuple[LogStd, LogStd] | None = Field(
+        None, description="log standard deviation at its start and end; if not given, it is learned"
+    )
     reward: RewardWeights = RewardWeights()
     foresight: bool = Field(
         False, description="correct commands that would collide, as `recurrent-ppo-plus` does"
@@ -141,6 +146,10 @@ class Recipe(_Part):
                 )
             _refuse_twice(stage.courses or (), ("stages", i, "courses"))
         return self
+
+    def gamma_of(self, stage: Stage) -> float:
+        """Return the discount of a stage."""
+        return self.gamma if stage.gamma is None else stage.gamma
 
     def courses_of(self, stage: Stage) -> tuple[Course, ...]:
         """Return the training scenarios of a stage."""

@@ -39,6 +39,7 @@ from .learner import (
     make_learner,
     native_precision,
     reseed,
+    set_discount,
     set_precision,
 )
 from .learner_group import LearnerGroup, learner_group
@@ -163,6 +164,7 @@ class Training:
         env = self._enter(stage, int(rng.integers(2**31)))
         learner = self.learner
         reseed(learner, rng)
+        set_discount(learner, self.recipe.gamma_of(stage))
         learner._last_obs = None  # so that the worlds restart
         _, callback = learner._setup_learn(sys.maxsize, CallbackList([]))
         if isinstance(learner, SequencePPO):
