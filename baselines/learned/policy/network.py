@@ -39,7 +39,7 @@ def _elu(x: Float32Array) -> Float32Array:
 
 
 def _silu(x: Float32Array) -> Float32Array:
-    return x / (np.float32(1.0) + np.exp(-np.maximum(x, np.float32(-80.0))))
+    return (x / (np.float32(1.0) + np.exp(-np.maximum(x, np.float32(-80.0))))).astype(np.float32)
 
 
 ACTIVATIONS: Mapping[str, Callable[[Float32Array], Float32Array]] = {

@@ -18,14 +18,14 @@ class LiveRecurrentBuffer(RecurrentRolloutBuffer):
     env: Any = None
 
     def reset(self) -> None:
-        super().reset()
+        super().reset()  # type: ignore[no-untyped-call]
         self.live: BoolArray = np.zeros((self.buffer_size, self.n_envs), np.bool_)
 
     def add(self, *args: Any, **kwargs: Any) -> None:
         self.live[self.pos] = self.env.acted
         super().add(*args, **kwargs)
 
-    def get(
+    def get(  # type: ignore[override]
         self, batch_size: int | None = None
     ) -> Generator[RecurrentRolloutBufferSamples, None, None]:
         for samples in super().get(batch_size):

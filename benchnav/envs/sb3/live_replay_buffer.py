@@ -12,7 +12,7 @@ class LiveReplayBuffer(ReplayBuffer):
     """
 
     def __init__(self, *args: Any, n_envs: int = 1, **kwargs: Any) -> None:
-        super().__init__(*args, n_envs=1, **kwargs)
+        super().__init__(*args, **kwargs | {"n_envs": 1})
 
     def add(
         self, obs: Any, next_obs: Any, action: Any, reward: Any, done: Any,
