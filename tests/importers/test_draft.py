@@ -295,6 +295,15 @@ def test_remarks_on_cells_and_journeys(ros, tiny):
     assert max(len(line) for remark in remarks for line in remark.splitlines()) <= 80
 
 
+def test_a_map_of_walls_only_asks_which_shade_is_an_obstacle(ros):
+    image = ros.parent / "images" / "lab.pgm"
+    image.write_bytes(b"P5\n40 20\n255\n" + bytes(770) + bytes([254] * 30))
+    remarks = []
+    import_ros_map(ros, agents=1, remark=remarks.append)
+    assert remarks[1].startswith("96% of the known cells are blocked. If light pixels are obstacles")
+    assert max(len(line) for line in remarks[1].splitlines()) <= 80
+
+
 def test_the_image_counts_whatever_the_map_file_is_called(tmp_path):
     path = warehouse(tmp_path / "a", 10)
     write_scenario(import_ros_map(path.rename(path.with_name("map.YAML"))), tmp_path / "a.yaml")

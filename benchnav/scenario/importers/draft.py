@@ -22,6 +22,7 @@ _RADII = tuple(0.2 / 2**k for k in range(6))  # [m]
 _SPEED = 1.0  # [m/s]
 _MIN_SHARE = 0.25  # least distance of start and goal, as a share of the area's smaller side
 _PATIENCE = 3.0  # ratio of the horizon to the time of an undisturbed journey
+_MOSTLY = 0.95  # a share of blocked cells that is rare among maps
 _COMMON = {"", "map", "maps", "out", "s", "scenario", "scenarios"}  # names shared by many maps
 
 
@@ -118,6 +119,7 @@ def import_ros_map(
     occupancy = ros_map.read_map(path)
     demand_free(f"{path}:1", occupancy, unknown_is_free, "The option 'unknown-is-free'")
     _remark_cells(occupancy, unknown_is_free, remark)
+    _remark_shades(occupancy, remark)
     shape: Mapping = {"type": "occupancy", "file": str(path.resolve()), "format": "ros"}
     if unknown_is_free:
         shape["unknown_is_free"] = True
@@ -156,6 +158,16 @@ def _remark_cells(occupancy: Occupancy, unknown_is_free: bool, remark: Remark) -
             f"{occupancy.doubtful} free cells have the grey {ros_map.UNKNOWN_GREY},"
             " by which map_saver marks unknown cells.\n"
             "If they are unknown, set the map's free_thresh to 0.196 and import it again."
+        )
+
+
+def _remark_shades(occupancy: Occupancy, remark: Remark) -> None:
+    free, blocked, _ = occupancy.counts
+    if blocked > _MOSTLY * (free + blocked):
+        remark(
+            f"{blocked / (free + blocked):.0%} of the known cells are blocked. If light pixels are"
+            " obstacles, use\nthe option 'negate' for a picture, or `negate: 1` in the YAML file"
+            " of a ROS map."
         )
 
 
