@@ -117,8 +117,8 @@ def test_a_map_that_cannot_be_imported_is_refused_in_one_sentence(tmp_path, caps
     stdout, stderr = capsys.readouterr()
     assert stdout == ""
     assert stderr.endswith(
-        "none is free, 2 are blocked and 1798 are unknown. The option 'unknown-is-free' opens"
-        " unknown cells to agents.\n"
+        "none is free, 2 are blocked and 1798 are unknown. --unknown-is-free opens unknown"
+        " cells to agents.\n"
     )
     open_to_all = ["import", "ros-map", str(path), "--out", str(tmp_path / "s.yaml")]
     assert status([*open_to_all, "--unknown-is-free", "--name", "lab/hall"]) == 0

@@ -165,7 +165,7 @@ def _remark_shades(occupancy: Occupancy, remark: Remark) -> None:
     free, blocked, _ = occupancy.counts
     if blocked > _MOSTLY * (free + blocked):
         remark(
-            f"{blocked / (free + blocked):.0%} of the known cells are blocked. If light pixels are"
+            f"{100 * blocked / (free + blocked):.0f} % of the known cells are blocked. If light pixels are"
             " obstacles, use\nthe option 'negate' for a picture, or `negate: 1` in the YAML file"
             " of a ROS map."
         )
