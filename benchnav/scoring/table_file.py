@@ -195,6 +195,7 @@ def _parquet(path: Path, raw: bytes) -> tuple["pd.DataFrame", int | None]:
                 )
             batches.append(batch)
         table = pa.Table.from_batches(batches, file.schema_arrow)
+        table.validate(full=True)  # texts that are not UTF-8 fail later otherwise
         _demand_short(path, table, texts)
         return table.to_pandas(ignore_metadata=True), None
     except (pa.ArrowException, OSError, ValueError, OverflowError, KeyError) as error:

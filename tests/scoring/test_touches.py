@@ -17,6 +17,7 @@ from benchnav.scoring.touches import RELEASE, TOUCH, touches
 DT, FINE = 0.2, 400  # samples of a step
 POST = Solid(Kind.STATIC, center=(0.5, 0.2), radius=0.4)
 WALL = Solid(Kind.WALL, (np.array([[-2.0, 1.5], [2.0, 1.5], [2.0, 1.7], [-2.0, 1.7]]),))
+NO_MOVERS = np.empty((0, 6))
 NOTHING = Things(np.zeros((0, 5)), np.zeros(0, np.int64), np.zeros((0, 1, 2)), np.zeros(0, bool))
 
 
@@ -69,7 +70,7 @@ def test_contacts_are_those_of_a_dense_sampling(seed):
     place, first, last = tracks(seed)
     radius = np.random.default_rng(seed + 1).uniform(0.1, 0.4, len(place))
     stop = np.full(len(place), np.inf)
-    found = touches(place, first, last, DT, last * DT, radius, (WALL, POST), stop)
+    found = touches(place, first, last, DT, last * DT, radius, (WALL, POST), stop, NO_MOVERS)
     expected = {}
     for i in range(len(place)):
         for j in range(len(place)):
