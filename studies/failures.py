@@ -111,8 +111,8 @@ def drive(actor: Actor, encoding: str, worlds: Sequence[World]) -> list[Attempt]
 
 def _moment(simulation: Simulation, active: BoolArray) -> Moment:
     agents = np.tile(np.arange(simulation.A), (simulation.B, 1))
-    nobody = (None,) * simulation.B
-    rays = observe(simulation, agents, active, frozenset({"rays"}), nobody).rays
+    no_maps = (None,) * simulation.B
+    rays = observe(simulation, agents, active, frozenset({"rays"}), no_maps).rays
     assert rays is not None
     return Moment(
         simulation.position.copy(), simulation.heading.copy(), simulation.velocity.copy(),

@@ -162,7 +162,7 @@ def test_no_run_and_a_damaged_manifest_are_told_apart(tools, run):
     said = json.loads((run / MANIFEST).read_text())
     del said["sha256"]
     (run / MANIFEST).write_text(json.dumps({**said, "schema": 99}))
-    with pytest.raises(StoreError, match=r"schema must be at most 8\. Got 99"):
+    with pytest.raises(StoreError, match=r"schema must be at most 9\. Got 99"):
         load_manifest(run)
     (run / MANIFEST).write_text(json.dumps({**said, "suite": {**said["suite"], "name": "forged"}}))
     with pytest.raises(CorruptPartError, match="Its suite was changed"):

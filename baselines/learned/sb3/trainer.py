@@ -33,7 +33,7 @@ class Sb3Trainer(Trainer[recipe.Recipe]):
     ) -> None:
         if resume:
             raise UsageError(
-                "The trainer sb3 cannot resume: these algorithms do not save all of their state."
+                "This trainer cannot resume: these algorithms do not save all of their state."
                 " Train in a new folder; the policies of the checkpoints are kept."
             )
         if (out / POLICY).exists():
