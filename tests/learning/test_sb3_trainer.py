@@ -29,7 +29,7 @@ HYPERPARAMETERS = {
 def recipe(algorithm="PPO", **changes):
     network = {"dense": [8]} | ({"lstm_size": 8} if algorithm == "RecurrentPPO" else {})
     return {
-        "name": "tiny", "trainer": "stable-baselines3", "algorithm": algorithm, "network": network,
+        "name": "tiny", "trainer": "sb3-algorithm", "algorithm": algorithm, "network": network,
         "hyperparameters": HYPERPARAMETERS.get(algorithm, {}),
         "courses": [{"scenario": "leaders/static", "worlds": 3, "rows": 2}],
         "decisions": 120, "checkpoint": 60, "validation": {"worlds": 1}, **changes,

@@ -47,7 +47,7 @@ class Recipe(_Part):
     """Validated YAML of `benchnav train`."""
 
     name: Annotated[str, Field(pattern=r"^[a-z0-9][a-z0-9-]*$", max_length=60)]
-    trainer: Literal["stable-baselines3"]
+    trainer: Literal["sb3-algorithm"]
     description: str = Field("", max_length=5000)
     algorithm: str = Field(description=f"one of {', '.join(ALGORITHMS)}")
     hyperparameters: dict[str, Value] = Field(
