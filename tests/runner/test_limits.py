@@ -152,6 +152,7 @@ def test_a_metric_that_raises_costs_its_values_and_the_run_goes_on(suite_file, t
     assert why == {3: "", 4: fault}
     assert {r["missing"] for r in rows if r["metric"] != "tests_broken"} <= {
         "", "n/a: needs people",
+        "n/a: needs the undisturbed world: key `undisturbed` of the suite",
     }  # fmt: skip
 
 

@@ -2,7 +2,6 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
-from dataclasses import fields
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -45,6 +44,8 @@ class Exports(ABC):
         """Return a data frame with the columns and rows of the CSV file."""
         import pandas as pd
 
-        columns = [field.name for field in fields(self._record_type)]
+        from benchnav.leaderboard.rendering.long_format import column_names
+
+        columns = column_names(self._record_type, self.records)
         rows = [[getattr(record, name) for name in columns] for record in self.records]
         return pd.DataFrame(rows, columns=columns)

@@ -13,7 +13,7 @@ from benchnav.leaderboard.rendering import escape
 
 def as_json(records: Sequence[Any]) -> str:
     """Return a list of objects, one per line, from records of one dataclass."""
-    names = _names(records)
+    names = column_names(type(records[0]), records) if records else []
     lines = [json.dumps(_plain(record, names), allow_nan=False) for record in records]
     return "[\n" + ",\n".join(lines) + "\n]\n"
 
@@ -21,7 +21,7 @@ def as_json(records: Sequence[Any]) -> str:
 def as_csv(kind: type, records: Sequence[Any]) -> str:
     """Return a head line and a line for each record of the dataclass ``kind``."""
     out = io.StringIO()
-    names = _names(records) if records else [f.name for f in fields(kind) if not f.metadata]
+    names = column_names(kind, records)
     writer = csv.DictWriter(out, names, lineterminator="\n")
     writer.writeheader()
     for record in records:
@@ -32,11 +32,11 @@ def as_csv(kind: type, records: Sequence[Any]) -> str:
     return out.getvalue()
 
 
-def _names(records: Sequence[Any]) -> list[str]:
-    """Return the fields of the records; an optional one only if some record has it."""
+def column_names(kind: type, records: Sequence[Any]) -> list[str]:
+    """Return the fields of the dataclass ``kind``; an optional one only if some record has it."""
     return [
         f.name
-        for f in (fields(records[0]) if records else ())
+        for f in fields(kind)
         if "optional" not in f.metadata or any(_has(r, f.name, f.default) for r in records)
     ]
 
