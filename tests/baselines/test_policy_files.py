@@ -233,7 +233,7 @@ def test_a_file_that_does_not_fit_is_explained(ppo, tmp_path, given, message):
 @pytest.mark.parametrize(
     ("parameters", "message"),
     [
-        ({"encoder": ""}, "Encoders with 62 values: paper, ego."),
+        ({"encoder": ""}, "Encoders with 62 values: paper, ego, near."),
         ({"encoder": "egoo"}, "Did you mean 'ego'?"),
         ({"activation": "rellu"}, "Did you mean 'relu' or 'elu'?"),
         ({"low": (1.0, 1.0)}, "low must be below high."),

@@ -20,7 +20,9 @@ EXCEPTIONS = frozenset({
     "read_file", "granted", "read_yaml", "validate",
     # what trainers need of a scenario and of the simulator
     "RANGE", "RAYS", "Simulation", "Trainer", "TrainingReport", "build", "find", "noise_of",
-    "ray_angles", "sense",
+    "ray_angles", "sense", "Tally",
+    # processes that learn together
+    "end_with_parent", "exit_text", "without_main",
 })  # fmt: skip
 
 

@@ -264,7 +264,7 @@ def call(capfd, tmp_path):
         ("name: tiny", "name: Big Name", "recipe.yaml:1: name must match"),
         ("worlds: 4", "world: 4", "recipe.yaml:3: courses[0].world is not a known key"),
         ("batch: 32, epochs: 1}\n  -", "batch: 8}\n  -", "recipe.yaml:9: stages[0].batch must be"),
-        ("batch: 32, epochs: 1}\nch", "reward: {wall: 1}}\nch",
+        ("epochs: 1, log_std: [-0.5, -1.0]}", "reward: {wall: 1}}",
          "recipe.yaml:10: stages[1].reward.wall is not a known key. Did you mean 'walls'?"),
         ("lstm_layers: 1", "lstm_layers: 0", "recipe.yaml:7: network must have LSTM or dense"),
         ("leaders/static", "leaders/statik", "leaders/static"),

@@ -32,6 +32,16 @@ from benchnav.world.simulation import Simulation
 from tests.worlds import agents, back_and_forth, box, limited_world, random_world, walls, world
 
 
+def press_scene():
+    """A world in which a moving obstacle squeezes an agent against a wall."""
+    away = Law(LawKind.RELOCATE, np.array([0.0, 0.4]), np.array([[5.0, 5.0], [10.0, 10.0]]))
+    shelf = Body(box(Kind.STATIC, 0, 0, 1, 1), away)
+    press = back_and_forth(box(Kind.DYNAMIC, 0, 0, 0.5, 0.5), [15.2, 4], [19.2, 4], 1.0)
+    start = [[9.0, 10.0], [16.0, 10.0], [17.8, 4.0]]
+    crew = agents(start, [[18.0, 10.0], [2.0, 10.0], [25.0, 4.0]])
+    return world(crew, [walls(20.0)], [press, shelf], steps=25)
+
+
 def scenes():
     """Worlds in which everything happens that a kernel does."""
     yield limited_world(3, steps=25)
@@ -39,12 +49,7 @@ def scenes():
         [(True, ContactRule.SLIDE), (False, ContactRule.STOP), (False, ContactRule.END)]
     ):
         yield random_world(seed, contact=contact, unicycle=unicycle, steps=25)
-    away = Law(LawKind.RELOCATE, np.array([0.0, 0.4]), np.array([[5.0, 5.0], [10.0, 10.0]]))
-    shelf = Body(box(Kind.STATIC, 0, 0, 1, 1), away)
-    press = back_and_forth(box(Kind.DYNAMIC, 0, 0, 0.5, 0.5), [15.2, 4], [19.2, 4], 1.0)
-    start = [[9.0, 10.0], [16.0, 10.0], [17.8, 4.0]]
-    crew = agents(start, [[18.0, 10.0], [2.0, 10.0], [25.0, 4.0]])
-    yield world(crew, [walls(20.0)], [press, shelf], steps=25)
+    yield press_scene()
     drawn = random_world(7, 6, steps=25)
     place = drawn.agents.start[[0, 1, 0, 3, 4, 4]]
     late = replace(drawn.agents, start=place, enters=np.array([0, 0, 0.2, 1.0, 2.1, 2.1]))

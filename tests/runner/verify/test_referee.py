@@ -10,7 +10,7 @@ from benchnav.arena.world import ContactRule
 from benchnav.verify.finding import Report
 from benchnav.verify.part_check import Pair
 from benchnav.verify.resimulation import resimulate
-from tests.runner.verify.faulty import play, scenes
+from tests.runner.verify.faulty import play, press_scene
 from tests.worlds import agents, disc, limited_world, random_world, walls, world
 
 pytest.importorskip("fcl")
@@ -50,8 +50,7 @@ def test_it_agrees_with_the_kernels(contact, unicycle):
 
 
 def test_squeezed_and_beside_what_is_re_placed():
-    *_, drawn = scenes()
-    pair = pair_of(drawn)
+    pair = pair_of(press_scene())
     assert (pair.again.contacts.kind == Kind.DYNAMIC).any()
     assert pair.again.contacts.penetration.max() > 0.1
     assert judged(pair) == []
@@ -93,8 +92,7 @@ def test_an_event_that_lasts_too_long(pair):
 
 
 def test_an_event_that_is_less_deep_than_it_was():
-    *_, drawn = scenes()
-    pair = pair_of(drawn)
+    pair = pair_of(press_scene())
     said = judged(pair, penetration=0.5 * pair.again.contacts.penetration)
     assert any("they overlap by" in text for text in said)
 

@@ -45,23 +45,27 @@ class LearnerGroup:
         return count * (self.rank + 1) // self.size - count * self.rank // self.size
 
     def average_gradients(self, policy: Any) -> None:
-        """Replace each gradient of ``policy`` by the mean over all processes, from now on."""
+        """Replace each gradient of ``policy`` by the mean over all processes, from now on.
+
+        A parameter that a stage sets itself, the noise of actions, has no gradient.
+        """
         if self.size == 1:
             return
-        parameters: list[Any] = [p for p in policy.parameters() if p.requires_grad]
-        missing = len(parameters)
+        parameters: list[Any] = list(policy.parameters())
+        ready = 0
 
         def average(_: torch.Tensor) -> None:
-            nonlocal missing
-            missing -= 1
-            if missing:
+            nonlocal ready
+            ready += 1
+            learned = [p for p in parameters if p.requires_grad]
+            if ready < len(learned):
                 return
-            missing = len(parameters)
-            flat = torch.cat([p.grad.flatten() for p in parameters])
+            ready = 0
+            flat = torch.cat([p.grad.flatten() for p in learned])
             dist.all_reduce(flat)
             flat /= self.size
             first = 0
-            for p in parameters:
+            for p in learned:
                 p.grad.copy_(flat[first : first + p.numel()].view_as(p))
                 first += p.numel()
 
