@@ -140,7 +140,12 @@ def speeds(pool, actions, **more):
     batch = batch_of(pool, 1, **more)
     batch.reset(np.zeros(1, np.int64))
     action = np.stack([np.asarray(actions, np.float32), np.zeros(len(actions), np.float32)], -1)
-    return batch._commands(action[None])[0, :, 0]
+    simulation, given = batch.simulation, []
+    simulation.step = lambda command, twist: (
+        given.append(command.copy()) or Simulation.step(simulation, command, twist)
+    )
+    batch.step(action[None])
+    return given[0][0, :, 0]
 
 
 def test_actions_reach_full_speed_backwards_for_bodies_that_can_reverse():

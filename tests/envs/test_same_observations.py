@@ -63,7 +63,8 @@ def assert_equal(a, b, rows=None):
 
 def step_of(batch, command):
     """Step the batch with twists (B, A, 2) instead of actions."""
-    batch._commands = lambda _: command.copy()
+    simulation = batch.simulation
+    simulation.step = lambda _, twist: Simulation.step(simulation, command.copy(), twist)
     return batch.step(np.zeros_like(command))
 
 
