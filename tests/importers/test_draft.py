@@ -300,7 +300,9 @@ def test_a_map_of_walls_only_asks_which_shade_is_an_obstacle(ros):
     image.write_bytes(b"P5\n40 20\n255\n" + bytes(770) + bytes([254] * 30))
     remarks = []
     import_ros_map(ros, agents=1, remark=remarks.append)
-    assert remarks[1].startswith("96 % of the known cells are blocked. If light pixels are obstacles")
+    assert remarks[1].startswith(
+        "96 % of the known cells are blocked. If light pixels are obstacles"
+    )
     assert max(len(line) for line in remarks[1].splitlines()) <= 80
 
 

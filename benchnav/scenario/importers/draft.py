@@ -163,11 +163,11 @@ def _remark_cells(occupancy: Occupancy, unknown_is_free: bool, remark: Remark) -
 
 def _remark_shades(occupancy: Occupancy, remark: Remark) -> None:
     free, blocked, _ = occupancy.counts
-    if blocked > _MOSTLY * (free + blocked):
+    share = blocked / max(free + blocked, 1)
+    if share > _MOSTLY:
         remark(
-            f"{100 * blocked / (free + blocked):.0f} % of the known cells are blocked. If light pixels are"
-            " obstacles, use\nthe option 'negate' for a picture, or `negate: 1` in the YAML file"
-            " of a ROS map."
+            f"{100 * share:.0f} % of the known cells are blocked. If light pixels are obstacles,"
+            " use\nthe option 'negate' for a picture, or `negate: 1` in the YAML file of a ROS map."
         )
 
 

@@ -56,7 +56,8 @@ def stream(tmp_path_factory):
 @pytest.fixture(scope="module")
 def episode(stream):
     (stem,) = Forger(stream).stems()
-    return next(from_table(pq.read_table(stem + EPISODES_FILE)))
+    found = from_table(pq.read_table(stem + EPISODES_FILE))
+    return next(each for each in found if each.identity.seed == 0)  # their order is salted
 
 
 def test_agents_enter_in_their_order_where_there_is_room(episode):
