@@ -29,7 +29,7 @@ def test_a_step_that_fails_says_all():
 
 def test_a_terminal_shows_what_it_does_now():
     reading, writing = pty.openpty()
-    slow = [*LOUD[:2], LOUD[2] + "; import sys, time; sys.stdout.flush(); time.sleep(2)"]
+    slow = [*LOUD[:2], LOUD[2] + "; import sys, time; sys.stdout.flush(); time.sleep(4)"]
     subprocess.run([*STEP, *slow], stdout=writing, check=True)
     os.close(writing)
     text = os.read(reading, 10_000).decode()
