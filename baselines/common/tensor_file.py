@@ -36,14 +36,20 @@ def write_tensors(path: Path, tensors: Mapping[str, AnyArray], about: Mapping[st
     part.replace(path)
 
 
-def read_tensors(path: Path) -> TensorFile:
-    """Read a file. Raises PluginError if it is missing, truncated, or something else."""
+def content_of(path: Path, limit: int) -> bytes:
+    """Return the bytes of a file. Raises PluginError if it cannot be read or has over ``limit``."""
     try:
-        data = read_file(path, MAX_BYTES)
+        data = read_file(path, limit)
     except OSError as error:
         raise PluginError(f"{path}: cannot be read: {error.strerror}.") from None
-    if len(data) > MAX_BYTES:
-        raise PluginError(f"{path}: must have at most {MAX_BYTES} bytes; it is larger.")
+    if len(data) > limit:
+        raise PluginError(f"{path}: must have at most {limit} bytes; it is larger.")
+    return data
+
+
+def read_tensors(path: Path) -> TensorFile:
+    """Read a file. Raises PluginError if it is missing, truncated, or something else."""
+    data = content_of(path, MAX_BYTES)
     try:
         tensors = load(data)
         header = json.loads(data[8 : 8 + int.from_bytes(data[:8], "little")])

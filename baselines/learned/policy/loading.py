@@ -13,8 +13,8 @@ from benchnav.arrays import FloatArray
 from benchnav.envs import ENCODERS, Encoder, encoder
 from benchnav.errors import BenchnavError, PluginError, UsageError, did_you_mean
 from benchnav.navigation import PluginConfig, Training
-from benchnav.system.plain_file import read_file
 
+from ...common.tensor_file import content_of
 from ..recurrent_ppo.actor import Actor
 from .facts import Box, facts_beside
 from .network import ACTIVATIONS, ActorNetwork, Network
@@ -72,7 +72,7 @@ def load_policy(config: PolicyConfig) -> Policy:
     """
     path = Path(config.file)
     facts, beside = facts_beside(path)
-    data = _content(path)
+    data = content_of(path, MAX_BYTES)
     low, high = config.low or facts.low, config.high or facts.high
     decisions = facts.decisions
     network: Network
@@ -98,16 +98,6 @@ def load_policy(config: PolicyConfig) -> Policy:
     digest = hashlib.sha256(hashlib.sha256(data).digest() + beside).hexdigest()
     training = Training(decisions, facts.seconds) if decisions else None
     return Policy(network, chosen, box[0], box[1], training, digest)
-
-
-def _content(path: Path) -> bytes:
-    try:
-        data = read_file(path, MAX_BYTES)
-    except OSError as error:
-        raise PluginError(f"{path}: cannot be read: {error.strerror}.") from None
-    if len(data) > MAX_BYTES:
-        raise PluginError(f"{path}: must have at most {MAX_BYTES} bytes; it is larger.")
-    return data
 
 
 def _read(path: Path, kind: str, reader: Callable[[bytes], T], data: bytes) -> T:

@@ -65,13 +65,6 @@ def within(numbers: tuple[Number, ...], values: FloatArray) -> Float32Array:
     return clipped
 
 
-def ahead_aside(heading: FloatArray, vector: FloatArray) -> FloatArray:
-    """Return ``vector`` (…, 2) in the frame of ``heading`` (…): x ahead, y to the left."""
-    c, s = np.cos(heading), np.sin(heading)
-    x, y = vector[..., 0], vector[..., 1]
-    return np.stack([c * x + s * y, c * y - s * x], axis=-1)
-
-
 def rays_of(seen: Observation, count: int, name: str) -> Rays:
     """Return the rays. Raises UsageError if their number is not ``count``."""
     if seen.rays is None or len(seen.rays.angle) != count:
