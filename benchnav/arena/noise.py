@@ -16,7 +16,7 @@ class RayNoise:
     relative_noise: float = 0.0  # r [1]
     quadratic_noise: float = 0.0  # q [1/m]
     dropout: float = 0.0  # probability that a ray returns nothing
-    approach_noise: float = 0.0  # [m/s] standard deviation of `approach`
+    approach_noise: float = 0.0  # [m/s] standard deviation of `approach` and `across`
     field_of_view: float = TWO_PI  # [rad] about the heading; a ray outside returns nothing
 
 

@@ -48,7 +48,7 @@ class AgentView:
             return None
         return Rays(
             sensed.angle, sensed.distance[at], sensed.kind[at], sensed.approach[at],
-            sensed.goal[at], sensed.radius[at],
+            sensed.goal[at], sensed.radius[at], sensed.across[at],
         )  # fmt: skip
 
     @property

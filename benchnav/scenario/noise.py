@@ -92,7 +92,9 @@ class RayErrors(_Sensor):
         0.0, "[m] at 1 m of a part that grows with the squared distance"
     )
     dropout: float = _probability(0.05, "a ray returns nothing")
-    approach_noise: float = _deviation(0.1, "[m/s] of the approach speed")
+    approach_noise: float = _deviation(
+        0.1, "[m/s] of the speeds towards the agent and across the ray"
+    )
     field_of_view: float = _view("rays return something")
 
 

@@ -38,7 +38,7 @@ def cast_rays(
     sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
     shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
     spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
-    goal: FloatArray, radius: FloatArray,
+    across: FloatArray, goal: FloatArray, radius: FloatArray,
 ) -> None:  # fmt: skip
     """Cast rays for rows low:high of the flattened (B, chosen agents); outputs are (B, An, R).
 
@@ -52,7 +52,7 @@ def cast_rays(
     _cast_in_rows(
         low, high, chosen, fan_x, fan_y, limit, circle, side, widest, most_shapes, sees, worlds,
         agents, bodies, shapes, capsules, start, item, hashed, spots, distance, kind, approach,
-        goal, radius, things, best, hit, np.empty(sight.TABLE),
+        across, goal, radius, things, best, hit, np.empty(sight.TABLE),
     )  # fmt: skip
 
 
@@ -63,8 +63,8 @@ def _cast_in_rows(
     sees: BoolArray, worlds: AnyArray, agents: AnyArray, bodies: AnyArray,
     shapes: AnyArray, capsules: AnyArray, start: IntArray, item: IntArray, hashed: IntArray,
     spots: AnyArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
-    goal: FloatArray, radius: FloatArray, things: FloatArray, best: FloatArray, hit: IntArray,
-    fixed: FloatArray,
+    across: FloatArray, goal: FloatArray, radius: FloatArray, things: FloatArray, best: FloatArray,
+    hit: IntArray, fixed: FloatArray,
 ) -> None:  # fmt: skip
     width = chosen.shape[1]
     rays = distance.shape[2]
@@ -102,9 +102,11 @@ def _cast_in_rows(
                         a.x, a.y, wx, wy, own, reach, world, capsules, start, item
                     )
                     hit_kind = hit_kind if on_map == _NOTHING else on_map
-                distance[b, k, r], kind[b, k, r], approach[b, k, r] = reach, hit_kind, 0.0
+                distance[b, k, r], kind[b, k, r] = reach, hit_kind
+                approach[b, k, r] = across[b, k, r] = 0.0
                 if hit_kind == _DYNAMIC:
-                    approach[b, k, r] = -(things[hit[r], VX] * dx + things[hit[r], VY] * dy)
+                    vx, vy = things[hit[r], VX], things[hit[r], VY]
+                    approach[b, k, r], across[b, k, r] = -(vx * dx + vy * dy), vy * dx - vx * dy
                 goal[b, k, r] = goal_distance(gx, gy, dx, dy, world.tolerance + own, reach)
 
 

@@ -42,10 +42,13 @@ class Rays(Rows):
     approach: FloatArray  # (B, A, R) [m/s] of the hit dynamic obstacle, towards the agent, else 0
     goal: FloatArray  # (B, A, R) [m] along the ray to the agent's goal; inf if missed or hidden
     radius: FloatArray = _ZERO  # (B, A) [m] of the disc that is cast along a ray; thin: 0
+    across: FloatArray = _ZERO  # (B, A, R) [m/s] of the same obstacle across the ray, to its left
 
     def __post_init__(self) -> None:
         if self.radius is None:
             object.__setattr__(self, "radius", np.zeros(self.distance.shape[:-1]))
+        if self.across is None:
+            object.__setattr__(self, "across", np.zeros(self.distance.shape))
 
 
 @dataclass(frozen=True, eq=False)

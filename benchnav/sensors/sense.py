@@ -109,14 +109,14 @@ def _rays(simulation: Simulation, chosen: IntArray, sensor: RaySensor, side: flo
     goal.fill(np.inf)
     out = Rays(
         angle.copy(), distance, np.zeros(shape, np.int8), np.zeros(shape), goal,
-        np.zeros(chosen.shape),
+        np.zeros(chosen.shape), np.zeros(shape),
     )  # fmt: skip
     s = simulation
     run_rows(
         cast_rays, chosen.size, chosen, fan_x, fan_y, float(sensor.range), int(sensor.circle),
         side, s.widest, s.most_shapes, s.sees, s.records, s.agents, s.bodies, s.shapes, s.capsules,
-        s.start, s.item, s.hashed, s.spots, out.distance, out.kind, out.approach, out.goal,
-        out.radius, least=LEAST,
+        s.start, s.item, s.hashed, s.spots, out.distance, out.kind, out.approach,
+        out.across, out.goal, out.radius, least=LEAST,
     )  # fmt: skip
     return out
 

@@ -46,6 +46,7 @@ def imagined(seed=0, B=2, A=3, rays=7):
         np.linspace(-math.pi / 2, math.pi / 2, rays), distance, kind,
         np.where(kind == Kind.DYNAMIC, rng.uniform(-2, 2, kind.shape), 0.0),
         np.where(rng.random(kind.shape) < 0.2, rng.uniform(0, 1, kind.shape) * distance, np.inf),
+        across=np.where(kind == Kind.DYNAMIC, rng.uniform(-4, 4, kind.shape), 0.0),
     )  # fmt: skip
     position = rng.uniform(-9, 9, (*shape, 2))
     neighbours = Neighbours(

@@ -56,7 +56,7 @@ def nearness(length):
 
 
 def near(seen, at):
-    """The numbers of `paper`, with each length over 8 m replaced."""
+    """The numbers of `paper`, with each length over 8 m and each flag for nothing replaced."""
     away = math.hypot(*(seen.goal[at] - seen.position[at]))
 
     def own(seen, at):
@@ -65,6 +65,8 @@ def near(seen, at):
     numbers = paper(seen, at, own, True)
     for k in [*range(5, 42, 6), *range(49, 62, 2)]:
         numbers[k] = nearness(8 * numbers[k])
+    for r in range(7):
+        numbers[6 * r + 4] = seen.rays.across[at][r] / 2
     return numbers
 
 

@@ -79,17 +79,18 @@ def corrected(noise, draws):
     )
 
 
-def ray(distance, kind, approach, angle, limit, noise, draws, r):
-    """(distance, kind, approach) of ray number r."""
+def ray(distance, kind, approach, across, angle, limit, noise, draws, r, rays):
+    """(distance, kind, approach, across) of ray number r of ``rays``."""
     shift, faster = draws.normals(RAY, r)
     if kind != Kind.NOTHING:
         deviation = noise.noise + noise.relative_noise * distance
         distance += (deviation + noise.quadratic_noise * distance**2) * shift
         approach += noise.approach_noise * faster * (kind == Kind.DYNAMIC)
+        across += noise.approach_noise * draws.normals(RAY, rays + r)[0] * (kind == Kind.DYNAMIC)
     lost = draws.uniform(RAY, r) < noise.dropout or abs(angle) > noise.field_of_view / 2
     if lost or distance >= limit:
-        return limit, int(Kind.NOTHING), 0.0
-    return max(distance, 0.0), kind, approach
+        return limit, int(Kind.NOTHING), 0.0, 0.0
+    return max(distance, 0.0), kind, approach, across
 
 
 def in_view(point, own, heading, view):

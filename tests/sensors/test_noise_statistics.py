@@ -62,6 +62,10 @@ def test_noise_of_the_approach_speed():
     errors = rays.approach[:, 0, ahead] - exact.approach[:, 0, ahead]
     assert errors.std() == pytest.approx(0.2, rel=0.1)
     assert (rays.approach[:, 0, ~ahead] == 0.0).all()
+    sideways = rays.across[:, 0, ahead] - exact.across[:, 0, ahead]
+    assert sideways.std() == pytest.approx(0.2, rel=0.1)
+    assert np.abs(np.corrcoef(errors.ravel(), sideways.ravel())[0, 1]) < 0.1
+    assert (rays.across[:, 0, ~ahead] == 0.0).all()
 
 
 @pytest.mark.parametrize("share", [0.3, 0.8])

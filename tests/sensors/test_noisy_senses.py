@@ -87,13 +87,14 @@ def test_the_readings_are_those_of_the_twin(crowds):
 
 def compare_rays(exact, rays, b, i, draws):
     for r, angle in enumerate(exact.angle):
-        d, kind, faster = twin.ray(
-            exact.distance[b, i, r], exact.kind[b, i, r], exact.approach[b, i, r], angle, 8.0,
-            ALL.rays, draws, r,
+        d, kind, faster, sideways = twin.ray(
+            exact.distance[b, i, r], exact.kind[b, i, r], exact.approach[b, i, r],
+            exact.across[b, i, r], angle, 8.0, ALL.rays, draws, r, len(exact.angle),
         )  # fmt: skip
         np.testing.assert_allclose(
-            (rays.distance[b, i, r], rays.approach[b, i, r]), (d, faster), atol=1e-6
-        )
+            (rays.distance[b, i, r], rays.approach[b, i, r], rays.across[b, i, r]),
+            (d, faster, sideways), atol=1e-6,
+        )  # fmt: skip
         assert rays.kind[b, i, r] == kind
 
 

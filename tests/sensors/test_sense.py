@@ -164,6 +164,17 @@ def test_a_mover_tells_how_fast_it_approaches():
     np.testing.assert_allclose(seen.velocity[0, 0, 0], [-1.5, 0.0])
 
 
+def test_a_mover_tells_how_fast_it_crosses():
+    mover = back_and_forth(box(Kind.DYNAMIC, 0, 0, 0.5, 0.5), [10, 4.8], [10, 9], 1.5)
+    crew = agents([6.0, 5.0], [1.0, 1.0])
+    simulation = Simulation([world(crew, bodies=[mover])])
+    rays, _, _ = sense(simulation, everybody(simulation), ALL)
+    assert rays.kind[0, 0, 3] == Kind.DYNAMIC
+    assert rays.approach[0, 0, 3] == pytest.approx(0.0, abs=1e-9)
+    assert rays.across[0, 0, 3] == pytest.approx(1.5)  # to the left of the ray
+    assert (rays.across[0, 0, rays.kind[0, 0] != Kind.DYNAMIC] == 0.0).all()
+
+
 @pytest.mark.parametrize("seed", range(4))
 def test_neighbours_agree_with_sorting_everybody(seed):
     """Range, count, order and lines of sight, in a world of few and in a crowd."""

@@ -1,8 +1,10 @@
-"""The paper's 62 numbers with nearness in place of lengths.
+"""62 numbers as the paper's, with nearness in place of lengths and whole velocities of movers.
 
 The same objects, measured on a scale on which close things differ most: the numbers that decide
-about a collision vary by about 1 where lengths over 8 m vary by 0.1, so that a policy learns
-from them several times faster (docs/results/policy-failures.md).
+about a collision vary by about 1 where lengths over 8 m vary by 0.1. The flag for no object, which
+the others imply, makes room for the speed of a mover across the ray: without it, a mover that
+crosses looks like one that stands. A policy learns from them several times faster
+(docs/results/policy-failures.md).
 """
 
 from typing import ClassVar
@@ -38,6 +40,10 @@ class NearEncoder(EgoEncoder):
         distance = np.linalg.norm(seen.goal - seen.position, axis=-1)[..., None]
         goal = [np.exp(-distance / GOAL_FADE), distance / SPAN]
         return np.concatenate([*goal, own_frame(seen)[..., 2:]], axis=-1)
+
+    def _fifth_number(self, ray: int) -> Number:
+        what = f"speed of the mover that it meets across the ray, to its left, over {SPEED:g} m/s"
+        return Number(f"ray{ray}.mover_across", "m/s", -1.5, 1.5, what)
 
     def _length_number(self, name: str, what: str) -> Number:
         parts = " + ".join(f"exp(-d / {fade:g} m)" for fade in FADES)

@@ -55,8 +55,8 @@ class PaperEncoder(Encoder):
         rays, (low, high) = rays_of(seen, RAYS, self.name), self._ranges
         out = np.empty((*seen.active.shape, len(low)), np.float32)
         _write_numbers(
-            rays.kind, rays.distance, rays.approach, rays.goal, self._own_values(seen, bodies),
-            self.fades, low, high, self.movers, out,
+            rays.kind, rays.distance, rays.approach, rays.across, rays.goal,
+            self._own_values(seen, bodies), self.fades, low, high, self.movers, out,
         )  # fmt: skip
         return out
 
@@ -72,8 +72,11 @@ class PaperEncoder(Encoder):
             Number(f"ray{ray}.{kind.name.lower()}", "", 0, 1, f"it meets {_WORDS[kind]} first")
             for kind in _ONE_HOT
         ]
-        nothing = Number(f"ray{ray}.nothing", "", 0, 1, "it meets none of these within range")
-        return [*flags, nothing, self._length_number(f"ray{ray}.length", "its length")]
+        length = self._length_number(f"ray{ray}.length", "its length")
+        return [*flags, self._fifth_number(ray), length]
+
+    def _fifth_number(self, ray: int) -> Number:
+        return Number(f"ray{ray}.nothing", "", 0, 1, "it meets none of these within range")
 
     def _mover_numbers(self, ray: int) -> list[Number]:
         what = f"speed towards the agent of the mover that it meets, over {SPEED:g} m/s"
@@ -144,11 +147,11 @@ def _write_own_frame(
 
 @kernel_without_allocation
 def _write_numbers(
-    kind: ByteArray, distance: FloatArray, approach: FloatArray, goal: FloatArray, own: FloatArray,
-    fades: FloatArray, low: FloatArray, high: FloatArray, movers: bool, out: Float32Array,
+    kind: ByteArray, distance: FloatArray, approach: FloatArray, across: FloatArray,
+    goal: FloatArray, own: FloatArray, fades: FloatArray, low: FloatArray, high: FloatArray, movers: bool, out: Float32Array,
 ) -> None:  # fmt: skip
     """Write the numbers of rays (B, A, R) and of the agents themselves (B, A, 6)."""
-    rays = kind.shape[2]
+    rays, near = kind.shape[2], len(fades) > 0
     for b in range(kind.shape[0]):
         for i in range(kind.shape[1]):
             numbers = out[b, i]
@@ -160,7 +163,11 @@ def _write_numbers(
                 numbers[first + 1] = 1.0 if hit == _WALL and not on_goal else 0.0
                 numbers[first + 2] = 1.0 if hit == _STATIC and not on_goal else 0.0
                 numbers[first + 3] = 1.0 if on_goal or hit == _GOAL else 0.0
-                numbers[first + 4] = 1.0 if mover or (hit == _NOTHING and not on_goal) else 0.0
+                if near:
+                    speed = across[b, i, r] if hit == _DYNAMIC else 0.0
+                    numbers[first + 4] = _clipped(speed / SPEED, low, high, first + 4)
+                else:
+                    numbers[first + 4] = 1.0 if mover or (hit == _NOTHING and not on_goal) else 0.0
                 length = goal[b, i, r] if on_goal else RANGE if mover else distance[b, i, r]
                 numbers[first + 5] = _clipped(_length_value(length, fades), low, high, first + 5)
                 if movers:

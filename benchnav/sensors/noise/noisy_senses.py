@@ -109,7 +109,7 @@ class NoisySenses:
             disturb_rays, chosen.size, chosen, out.angle, fan_x, fan_y, float(sensor.range),
             int(sensor.circle), n.noise, n.relative_noise, n.quadratic_noise, n.dropout,
             n.approach_noise, n.field_of_view, s.records, s.agents, self._keys, self.pose_error,
-            out.distance, out.kind, out.approach, out.goal, least=LEAST,
+            out.distance, out.kind, out.approach, out.across, out.goal, least=LEAST,
         )  # fmt: skip
 
     def _disturb_neighbours(self, chosen: IntArray, out: Neighbours, identity: IntArray) -> None:

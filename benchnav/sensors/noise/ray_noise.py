@@ -19,7 +19,7 @@ def disturb_rays(
     limit: float, circle: int, noise: float, relative: float, quadratic: float, dropout: float,
     approach_noise: float, view: float, worlds: AnyArray, agents: AnyArray, keys: AnyArray,
     error: FloatArray, distance: FloatArray, kind: ByteArray, approach: FloatArray,
-    goal: FloatArray,
+    across: FloatArray, goal: FloatArray,
 ) -> None:  # fmt: skip
     """Add noise to the readings of rows low:high of the flattened (B, chosen agents).
 
@@ -46,9 +46,12 @@ def disturb_rays(
                 d = max(d + (noise + relative * d + quadratic * d * d) * shift, 0.0)
                 if kind[b, k, r] == _DYNAMIC and approach_noise > 0.0:
                     approach[b, k, r] += approach_noise * faster
+                    sideways, _ = draw(keys[b, 0], keys[b, 1], step, i, RAY, len(angle) + r)
+                    across[b, k, r] += approach_noise * two_normals(sideways)[0]
                 outside = abs(angle[r]) > 0.5 * view
                 if outside or d >= limit or uniform(second) < dropout:
-                    d, kind[b, k, r], approach[b, k, r] = limit, _NOTHING, 0.0
+                    d, kind[b, k, r] = limit, _NOTHING
+                    approach[b, k, r] = across[b, k, r] = 0.0
                 distance[b, k, r] = d
             goal[b, k, r] = goal_distance(gx, gy, fan_x[r], fan_y[r], worlds[b].tolerance + own, d)
 
