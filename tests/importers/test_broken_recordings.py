@@ -6,7 +6,7 @@ import resource
 import warnings
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from benchnav import import_recording
@@ -18,10 +18,17 @@ JUNK = ["nan", "inf", "-inf", "1e400", "1e300", "-1", "0", "", "x", "NaN", "9" *
 LONGEST = 1500  # characters of a message
 
 
+class Originals(dict):
+    """The bytes of the undamaged files by format; Hypothesis does not print them."""
+
+    def __repr__(self):
+        return "originals"
+
+
 @pytest.fixture(scope="module")
 def originals(tmp_path_factory):
     folder = tmp_path_factory.mktemp("originals")
-    return {name: write(folder).read_bytes() for name, (write, _) in WRITERS.items()}
+    return Originals({name: write(folder).read_bytes() for name, (write, _) in WRITERS.items()})
 
 
 def refused(path, out, **options):
@@ -81,6 +88,7 @@ def damaged(content, kind, seed):
     name=st.sampled_from(sorted(WRITERS)), harm=damage(),
     format=st.sampled_from([None, "same", *FORMATS]),
 )  # fmt: skip
+@example(name="jupedsim", harm=("token", 90418077), format=None)  # all columns are floats
 def test_damaged_files(originals, tmp_path_factory, name, harm, format):
     folder = tmp_path_factory.getbasetemp() / "damaged"
     folder.mkdir(exist_ok=True)

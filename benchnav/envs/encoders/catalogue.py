@@ -2,12 +2,13 @@
 
 from benchnav.envs.encoders.encoder import Encoder
 from benchnav.envs.encoders.near import NearEncoder
+from benchnav.envs.encoders.outlook import OutlookEncoder
 from benchnav.envs.encoders.panorama import PanoramaEncoder
 from benchnav.envs.encoders.paper import EgoEncoder, PaperEncoder
 from benchnav.envs.encoders.surround import SurroundEncoder
 from benchnav.errors import UsageError, did_you_mean
 
-ENCODERS = ("paper", "paper-static", "ego", "ego-static", "near", "surround", "panorama")
+ENCODERS = ("paper", "paper-static", "ego", "ego-static", "near", "surround", "panorama", "outlook")
 
 
 def encoder(name: str) -> Encoder:
@@ -24,6 +25,8 @@ def encoder(name: str) -> Encoder:
         return SurroundEncoder()
     if name == "panorama":
         return PanoramaEncoder()
+    if name == "outlook":
+        return OutlookEncoder()
     if name == "near":
         return NearEncoder()
     kind = PaperEncoder if name.startswith("paper") else EgoEncoder

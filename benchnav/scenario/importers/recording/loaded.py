@@ -102,7 +102,7 @@ def _load_with_pedpy(path: Path, format: str, rate: float | None, scale: float |
             warnings.simplefilter("ignore")
             data, area = _LOADERS[format](path, rate, scale)
             frame = data.data
-            values = frame[["frame", "id", "x", "y"]].to_numpy(np.float64)
+            values = frame[["frame", "id", "x", "y"]].to_numpy(np.float64, copy=True)
             found = float(data.frame_rate)
     except BenchnavError:
         raise
