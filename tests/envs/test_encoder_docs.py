@@ -8,7 +8,7 @@ import pytest
 from benchnav.envs.encoders.catalogue import ENCODERS, encoder
 
 PAGE = (Path(__file__).parents[2] / "docs" / "environments.md").read_text("utf-8")
-REPEATED = re.compile(r"^(ray|scan|other|pan)(\d+)\.")
+REPEATED = re.compile(r"^(ray|scan|other|pan|soon)(\d+)\.")
 HEAD = ("number", "unit", "range", "what it is")
 
 
@@ -47,11 +47,12 @@ def part(numbers, first, last):
         ("ego", 42, 48),
         ("paper", 42, 48),
         ("ego", 48, 62),
-        ("near", 5, 6),
+        ("near", 4, 6),
         ("near", 42, 48),
         ("near", 48, 62),
         ("surround", 0, 80),
         ("panorama", 64, 160),
+        ("outlook", 160, 210),
     ],
 )
 def test_every_number_is_listed(name, first, last):
@@ -69,7 +70,7 @@ def test_paper_and_ego_differ_in_six_numbers():
     assert [k for k in range(62) if paper[k] != ego[k]] == list(range(42, 48))
 
 
-@pytest.mark.parametrize("name", ["ego", "near", "surround", "panorama"])
+@pytest.mark.parametrize("name", ["ego", "near", "surround", "panorama", "outlook"])
 def test_what_repeats_is_alike(name):
     kept = {}
     for n in encoder(name).numbers:

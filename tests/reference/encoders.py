@@ -157,6 +157,36 @@ def panorama(seen, at, bodies):
     return numbers
 
 
+def meeting(offset, velocity, reach):
+    """[s] until two discs touch, from the roots of a polynomial; inf if they never do."""
+    if offset @ velocity >= 0:
+        return math.inf
+    if offset @ offset <= reach**2:
+        return 0.0
+    roots = np.roots([velocity @ velocity, 2 * offset @ velocity, offset @ offset - reach**2])
+    return min(roots.real) if np.isreal(roots).all() else math.inf
+
+
+def outlook(seen, at, bodies):
+    near, angles = seen.neighbours, seen.heading[at] + np.radians(15 * np.arange(24))
+    ways = [
+        share * bodies.max_speed[at] * np.array([math.cos(angle), math.sin(angle)])
+        for angle in angles
+        for share in (1, 0.5)
+    ]
+    numbers = panorama(seen, at, bodies)
+    for way in [*ways, np.zeros(2), seen.velocity[at]]:
+        times = [
+            meeting(
+                seen.position[at] - near.position[at][j], way - near.velocity[at][j],
+                bodies.radius[at] + near.radius[at][j],
+            )
+            for j in range(near.count[at])
+        ]  # fmt: skip
+        numbers.append(math.exp(-min(times, default=math.inf) / 1.5))
+    return numbers
+
+
 def surround(seen, at, bodies):
     numbers = relative(seen, at)
     numbers.append(math.exp(-math.hypot(*(seen.goal[at] - seen.position[at])) / 2))
@@ -173,6 +203,8 @@ def encode(name, seen, at, bodies):
         return surround(seen, at, bodies)
     if name == "panorama":
         return panorama(seen, at, bodies)
+    if name == "outlook":
+        return outlook(seen, at, bodies)
     if name == "near":
         return near(seen, at)
     own = absolute if name.startswith("paper") else relative

@@ -19,6 +19,7 @@ from benchnav.kernels import kernel
 from benchnav.navigation.observation import Observation
 
 SHARES = (1.0, 0.5)  # of the top speed, in each direction
+_WORDS = {"full": "its top speed", "half": "half its top speed"}
 SOON = 1.5  # [s] in which the number falls by the factor e
 _SIZE = len(SHARES) * DIRECTIONS + 2
 
@@ -32,11 +33,11 @@ class OutlookEncoder(PanoramaEncoder):
         soon = f"exp(-time until it meets another / {SOON:g} s)"
         ways = [
             Number(
-                f"soon{k}.{share:g}", "s", 0, 1,
-                f"{soon} at {share:g} of its top speed, {k * 360 / DIRECTIONS:g}° to the left",
+                f"soon{k}.{name}", "s", 0, 1,
+                f"{soon} at {speed}, {k * 360 / DIRECTIONS:g}° to the left",
             )
             for k in range(DIRECTIONS)
-            for share in SHARES
+            for name, speed in _WORDS.items()
         ]  # fmt: skip
         stay = Number("soon.standing", "s", 0, 1, f"{soon} if it stands")
         keep = Number("soon.as_now", "s", 0, 1, f"{soon} at its own velocity")

@@ -148,7 +148,8 @@ def _write_own_frame(
 @kernel_without_allocation
 def _write_numbers(
     kind: ByteArray, distance: FloatArray, approach: FloatArray, across: FloatArray,
-    goal: FloatArray, own: FloatArray, fades: FloatArray, low: FloatArray, high: FloatArray, movers: bool, out: Float32Array,
+    goal: FloatArray, own: FloatArray, fades: FloatArray, low: FloatArray, high: FloatArray,
+    movers: bool, out: Float32Array,
 ) -> None:  # fmt: skip
     """Write the numbers of rays (B, A, R) and of the agents themselves (B, A, 6)."""
     rays, near = kind.shape[2], len(fades) > 0
