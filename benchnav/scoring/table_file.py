@@ -14,6 +14,7 @@ from benchnav.arrays import FloatArray, IntArray
 from benchnav.config.document import shown
 from benchnav.errors import TrajectoryError, UsageError, did_you_mean
 from benchnav.system.plain_file import read_file
+from benchnav.text.plural import listed
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -245,25 +246,26 @@ def _found(path: Path, held: list[str], columns: Columns) -> dict[str, str]:
     for name, theirs in columns.items():
         if theirs not in held:
             raise TrajectoryError(
-                f"{path}:1: there must be a column {theirs!r}; the file has {_listed(held)}."
+                f"{path}:1: there must be a column {theirs!r}; the file has {_first_names(held)}."
                 f"{did_you_mean(theirs, map(str, held))}"
             )
         found[name] = theirs
-    for name in ("id", "x", "y"):
-        if name not in found:
-            raise TrajectoryError(
-                f"{path}:1: there must be a column {name}; the file has {_listed(held)}."
-                f" The option 'column' names it: {name}=NAME."
-            )
+    missing = [name for name in ("id", "x", "y") if name not in found]
     if "time" not in found and "frame" not in found:
+        missing.append("time")
+    if missing:
+        one = len(missing) == 1
+        named = ["time [s] or frame" if name == "time" else name for name in missing]
         raise TrajectoryError(
-            f"{path}:1: there must be a column time [s], or frame; the file has {_listed(held)}."
-            " The option 'column' names it: time=NAME."
+            f"{path}:1: there must be {'a column' if one else 'columns'} {listed(named)};"
+            f" the file has {_first_names(held)}."
+            f" The option 'column' names {'it' if one else 'each'}:"
+            f" {', '.join(f'{name}=NAME' for name in missing)}."
         )
     return found
 
 
-def _listed(names: list[str]) -> str:
+def _first_names(names: list[str]) -> str:
     few = ", ".join(shown(str(name)) for name in names[:10])
     return few if len(names) <= 10 else f"{few} and {len(names) - 10} more"
 

@@ -101,6 +101,10 @@ def test_a_broken_parquet_file_is_refused_in_a_sentence(tmp_path, data):
         (b"time,id,x,y\n0,a,0,0\n0.1,a,1e300,0\n", r":3: x must be a number up to 1e\+07"),
         (b"time,id,x,y\n0,a,0,0\n0,a,1,0\n", r":3: an id must have one row at a time; id a has"),
         (b"time,id,x\n0,a,0\n", r"there must be a column y; the file has time, id, x"),
+        (
+            b"t_ms,who,x\n0,a,0\n",
+            r"must be columns id, y and time \[s\] or frame; the",
+        ),
         ("time,id,x,y\n0,é,0,0\n".encode("latin-1"), r":2: the text must be encoded in UTF-8"),
         ("time,id,x,y\n0,a,0,0\n".encode("utf-16"), r":1: the text must be encoded in UTF-8"),
         (b"time,id,x,y\n0,a,0,0\n0.1,a,0\n0.2,a,0,0,0,0\n", r"each line must have as many cells"),
