@@ -13,7 +13,7 @@ import shapely
 from benchnav import import_recording
 from benchnav.arena.body import absent
 from benchnav.cli.main import status
-from benchnav.errors import BenchnavError, MapError, ScenarioError, UsageError
+from benchnav.errors import BenchnavError, BenchnavError, MapError, ScenarioError, UsageError
 from benchnav.generation.build import build
 from benchnav.generation.recorded_people import read_people
 from benchnav.scenario.load import load_scenario
@@ -209,8 +209,13 @@ def test_walls_are_a_hull_wkt_or_an_image(tmp_path):
         "polygon", *["polyline"] * 4
     ]  # fmt: skip
     Image.fromarray(np.full((40, 40), 255, np.uint8)).save(tmp_path / "map.png")
-    (wall,) = walls(walls=tmp_path / "map.png", wall_cell=0.5, wall_origin=(-5, -5))
+    place = {"wall_cell": 0.5, "wall_origin": (-5, -5)}
+    (wall,) = walls(walls=tmp_path / "map.png", **place)
     assert wall.shape.type == "occupancy"
+    Image.fromarray(np.zeros((40, 40), np.uint8)).save(tmp_path / "dark.png")
+    assert walls(walls=tmp_path / "dark.png", **place, wall_negate=True)
+    with pytest.raises(BenchnavError):  # everybody stands in walls
+        walls(walls=tmp_path / "dark.png", **place)
     with pytest.raises(UsageError, match="'wall-cell', its metres per pixel"):
         walls(walls=tmp_path / "map.png")
     (tmp_path / "bad.wkt").write_text("POLYGON ((0 0, 1")

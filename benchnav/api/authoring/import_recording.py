@@ -30,6 +30,7 @@ def import_recording(
     walls: "str | PathLike[str] | None" = None,
     wall_cell: float | None = None,
     wall_origin: tuple[float, float] | None = None,
+    wall_negate: bool = False,
     person_radius: float = 0.2,
     radius: float | None = None,
     speed: float = 1.5,
@@ -59,6 +60,7 @@ def import_recording(
             None: the recording's own walkable area, or none.
         wall_cell: metres per pixel of an image of walls.
         wall_origin: of its lower left corner [m].
+        wall_negate: whether its light pixels are walls.
         person_radius: of a person [m].
         radius: of the robot [m]; None: that of a person.
         speed: of the robot, at most [m/s].
@@ -77,7 +79,8 @@ def import_recording(
         columns=None if columns is None else tuple(columns), gaps=gaps,
         replace=str(replace), driver=_driver(react),
         walls=None if walls is None else str(walls), wall_cell=wall_cell, wall_origin=wall_origin,
-        person_radius=person_radius, radius=radius, speed=speed, horizon=horizon,
+        wall_negate=wall_negate, person_radius=person_radius, radius=radius, speed=speed,
+        horizon=horizon,
     )  # fmt: skip
     if columns is not None and sorted(c for c in columns if c != "_") != ["frame", "id", "x", "y"]:
         raise UsageError(

@@ -79,6 +79,9 @@ def recording(
             help="Lower left corner [m] of an image of walls.",
         ),
     ] = None,
+    wall_negate: Annotated[
+        bool, typer.Option("--wall-negate", help="Light pixels of an image are walls.")
+    ] = False,
     person_radius: Annotated[
         float, typer.Option(metavar="M", help="Radius [m] of a person.")
     ] = 0.2,

@@ -50,6 +50,7 @@ class Request:
     walls: str | None = None  # "none", "hull" or a file; None: the recording's own, or none
     wall_cell: float | None = None  # [m] of a pixel of an image of walls
     wall_origin: tuple[float, float] | None = None  # [m] its lower left corner
+    wall_negate: bool = False  # whether light pixels of an image are walls
     person_radius: float = 0.2  # [m]
     radius: float | None = None  # [m] of the robot; None: that of a person
     speed: float = 1.5  # [m/s] of the robot, at most
@@ -201,7 +202,9 @@ def _walls(
     if given is not None and given not in ("none", "hull"):
         path = Path(given)
         if is_image(path):
-            path = ros_map_of(path, request.wall_cell, request.wall_origin, scratch)
+            path = ros_map_of(
+                path, request.wall_cell, request.wall_origin, request.wall_negate, scratch
+            )
         if path.suffix in (".yaml", ".yml"):
             x0, y0, x1, y1 = ros_map.read_map(path).bounds
             shape = {"type": "occupancy", "file": str(path.resolve()), "format": "ros"}

@@ -119,14 +119,15 @@ def _distinct(points: FloatArray) -> FloatArray:
 
 
 def ros_map_of(
-    image: Path, cell: float | None, origin: tuple[float, float] | None, folder: Path
+    image: Path, cell: float | None, origin: tuple[float, float] | None, negate: bool, folder: Path
 ) -> Path:
     """Write the YAML file of a ROS map for an image into ``folder``, and return its path.
 
     Args:
-        image: free space is light.
+        image: a picture, in which free space is light.
         cell: metres per pixel.
         origin: of the image's lower left corner [m].
+        negate: whether free space is dark instead.
         folder: temporary.
 
     Raises UsageError if the cell or the origin is missing.
@@ -141,8 +142,8 @@ def ros_map_of(
     if not 0.0 < cell <= 1e4 or not max(map(abs, origin)) <= FAR:
         raise UsageError("The metres per pixel must be > 0, and the origin two numbers [m].")
     fields = {
-        "image": str(image.resolve()), "resolution": cell, "origin": [*origin, 0.0], "negate": 0,
-        "occupied_thresh": 0.65, "free_thresh": 0.196,
+        "image": str(image.resolve()), "resolution": cell, "origin": [*origin, 0.0],
+        "negate": int(negate), "occupied_thresh": 0.65, "free_thresh": 0.196,
     }  # fmt: skip
     path = folder / f"{image.stem}.yaml"
     path.write_text(yaml.safe_dump(fields, sort_keys=False, default_flow_style=None))
