@@ -132,7 +132,7 @@ def test_agrees_with_its_twin_in_imagined_views(name, seed):
         ("ego-static", 48),
         ("surround", 80),
         ("panorama", 160),
-        ("outlook", 260),
+        ("outlook", 210),
     ],
 )
 def test_widths(name, width):

@@ -174,20 +174,16 @@ def outlook(seen, at, bodies):
         for angle in angles
         for share in (1, 0.5)
     ]
-    ways += [np.zeros(2), seen.velocity[at]]
-    everybody = range(near.count[at])
-    movers = [j for j in everybody if near.kind[at][j] == Kind.DYNAMIC]
     numbers = panorama(seen, at, bodies)
-    for others, sense in ((everybody, 1), (movers, -1)):
-        for way in ways:
-            times = [
-                meeting(
-                    seen.position[at] - near.position[at][j], way - sense * near.velocity[at][j],
-                    bodies.radius[at] + near.radius[at][j],
-                )
-                for j in others
-            ]  # fmt: skip
-            numbers.append(math.exp(-min(times, default=math.inf) / 1.5))
+    for way in [*ways, np.zeros(2), seen.velocity[at]]:
+        times = [
+            meeting(
+                seen.position[at] - near.position[at][j], way - near.velocity[at][j],
+                bodies.radius[at] + near.radius[at][j],
+            )
+            for j in range(near.count[at])
+        ]  # fmt: skip
+        numbers.append(math.exp(-min(times, default=math.inf) / 1.5))
     return numbers
 
 
