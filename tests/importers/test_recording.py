@@ -13,7 +13,7 @@ import shapely
 from benchnav import import_recording
 from benchnav.arena.body import absent
 from benchnav.cli.main import status
-from benchnav.errors import BenchnavError, BenchnavError, MapError, ScenarioError, UsageError
+from benchnav.errors import BenchnavError, MapError, ScenarioError, UsageError
 from benchnav.generation.build import build
 from benchnav.generation.recorded_people import read_people
 from benchnav.scenario.load import load_scenario
