@@ -78,6 +78,25 @@ def test_sightings_agree_with_their_twin(shown):
     assert hidden > 10
 
 
+def test_without_rays_all_in_sight_are_met_and_hidden_movers_remembered(shown):
+    told, views, _ = shown
+    mine = begun(Sightings(rays=False), told)
+    kept, remembered = {}, 0
+    for seen in views:
+        found = mine.limit(seen)
+        for b, a in np.argwhere(seen.active):
+            kept[b, a] = slow_sightings.seen_others(seen, told[b].dt, kept.get((b, a), []), b, a)
+            near, count = found.neighbours, found.neighbours.count[b, a]
+            assert count == len(kept[b, a])
+            for n, (kind, place, velocity, size, _) in enumerate(kept[b, a]):
+                assert (near.kind[b, a, n], near.radius[b, a, n]) == (kind, size)
+                np.testing.assert_allclose(near.position[b, a, n], place, atol=1e-9)
+                np.testing.assert_allclose(near.velocity[b, a, n], velocity, atol=1e-9)
+            remembered += sum(one[-1] > 0 for one in kept[b, a])
+        assert found.edges is seen.edges
+    assert remembered > 3
+
+
 def test_who_is_not_met_again_is_forgotten(shown):
     told, views, _ = shown
     mine = begun(Sightings(), told)

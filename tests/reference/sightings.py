@@ -35,6 +35,20 @@ def others(seen, radius, dt, before, b, a):
     return (met + lost)[: s.MAX_OTHERS]
 
 
+def seen_others(seen, dt, before, b, a):
+    """As `others`, of an agent without rays: all in sight are met, and only movers remembered."""
+    near = seen.neighbours
+    met = [
+        (near.kind[b, a, n], near.position[b, a, n], near.velocity[b, a, n],
+         near.radius[b, a, n], 0.0)
+        for n in range(near.count[b, a])
+    ]  # fmt: skip
+    kept = [(k, p + dt * v, v, r, age + dt) for k, p, v, r, age in before if k == Kind.DYNAMIC]
+    kept = [one for one in kept if one[4] <= s.MEMORY + 1e-9]
+    lost = [o for o in kept if all(o[0] != m[0] or math.dist(o[1], m[1]) > s.SAME for m in met)]
+    return (met + lost)[: s.MAX_OTHERS]
+
+
 def edges(seen, radius, b, a):
     """[(start, end)] on which a ray came to rest."""
     fixed = [Point(place) for kind, place in ends(seen, b, a) if kind in (Kind.WALL, Kind.STATIC)]

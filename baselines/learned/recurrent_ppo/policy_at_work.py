@@ -62,7 +62,7 @@ class PolicyPilot(Pilot):
         hold: [s] largest duration of a twist.
         patience: [s] of standing before a detour; 0: no detours.
 
-    A policy with rays predicts collisions only with what its rays hit.
+    A policy with rays predicts collisions only with what its rays hit; all remember hidden movers.
     """
 
     def __init__(
@@ -75,7 +75,7 @@ class PolicyPilot(Pilot):
         self._actor, self.about = _loaded(weights)
         self._encoder = encoder(self.about["encoder"])
         self._foresight, self._hold = foresight, hold
-        self._sightings = Sightings() if Need.RAYS in self._encoder.needs else None
+        self._sightings = Sightings(rays=Need.RAYS in self._encoder.needs)
         self._detours = Detours(patience) if patience else None
         self._kept = RowTable()
 
@@ -128,10 +128,9 @@ class PolicyPilot(Pilot):
     def _corrected(
         self, observation: Observation, bodies: Bodies, command: FloatArray, tolerance: FloatArray
     ) -> FloatArray:
-        if observation.neighbours is None or observation.edges is None:
+        if self._detours is None and not self._foresight:
             return command
-        if self._sightings is not None:
-            observation = self._sightings.limit(observation)
+        observation = self._sightings.limit(observation)
         if self._detours is not None:
             self._detours.steer(observation, bodies, command)
         if not self._foresight:

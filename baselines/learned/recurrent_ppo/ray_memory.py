@@ -1,9 +1,10 @@
-"""The objects that rays hit, and their memory: the input of foresight for agents with rays.
+"""What an agent has perceived lately: the input of foresight.
 
 The disc of a thick ray stops at an object: an agent or obstacle at that place counts as hit, and
 so does an edge. Agents and movers are reported with their velocity (as Eq. 22 of the paper
 uses it) and remembered for a while as if they kept it, because seven rays lose sight of objects
-that pass between them.
+that pass between them. An agent without rays perceives all that is in sight, and remembers movers
+that obstacles hide; other agents may have arrived meanwhile.
 """
 
 import math
@@ -23,13 +24,14 @@ SAME = 0.8  # [m] within which a remembered object and a hit object are the same
 MAX_OTHERS = 16  # agents and movers that an agent remembers
 _X, _Y, _U, _V, _RADIUS, _KIND, _AGE = range(7)
 
-_WALL, _STATIC = int(Kind.WALL), int(Kind.STATIC)
+_WALL, _STATIC, _MOVER = int(Kind.WALL), int(Kind.STATIC), int(Kind.DYNAMIC)
 
 
 class Sightings:
-    """The objects that each agent has hit with its rays."""
+    """The objects that each agent has hit with its rays; without rays, all that it has seen."""
 
-    def __init__(self) -> None:
+    def __init__(self, rays: bool = True) -> None:
+        self._rays = rays
         self._kept = RowTable()
 
     def reset(self, row: int, briefing: Briefing) -> None:
@@ -39,40 +41,44 @@ class Sightings:
         self._kept.put(row, met=empty, dt=np.full(len(briefing), briefing.dt))
 
     def limit(self, observation: Observation) -> Observation:
-        """Return the observation with only those neighbours and edges that the rays (B, A) hit.
+        """Return the observation with others that are met or remembered, and edges that rays hit.
 
         Args:
-            observation: with rays, neighbours and edges.
+            observation: with neighbours, edges, and rays (if it is about them).
         """
         rays, near, edges = observation.rays, observation.neighbours, observation.edges
-        assert rays is not None  # noqa: S101 - declared by the pilot
-        assert near is not None  # noqa: S101
+        assert near is not None  # noqa: S101 - declared by the pilot
         assert edges is not None  # noqa: S101
-        agents = observation.active.shape[1]
-        met = self._kept.take("met", observation.rows, agents)
-        touched = np.zeros(edges.start.shape[:3], dtype=np.bool_)
-
-        def flat(array: AnyArray) -> AnyArray:
-            return array.reshape(-1, *array.shape[2:])
-
         indices = np.flatnonzero(observation.active)
-        position, heading, reach = (
-            flat(observation.position),
-            flat(observation.heading),
-            flat(rays.radius),
-        )
-        distance, kinds = flat(rays.distance), flat(rays.kind)
-        _meet(
-            indices, position, heading, reach, rays.angle, distance, kinds, flat(near.position),
-            flat(near.velocity), flat(near.radius), flat(near.kind), flat(near.count),
-            flat(self._kept.take("dt", observation.rows, agents)), flat(met),
+        agents = observation.active.shape[1]
+        dt = _flat(self._kept.take("dt", observation.rows, agents))
+        met = self._kept.take("met", observation.rows, agents)
+        others = (
+            _flat(near.position), _flat(near.velocity), _flat(near.radius), _flat(near.kind),
+            _flat(near.count),
         )  # fmt: skip
-        _touch(
-            indices, position, heading, reach, rays.angle, distance, kinds, flat(edges.start),
-            flat(edges.end), flat(edges.count), flat(touched),
-        )  # fmt: skip
+        perceived = np.ones(near.radius.shape, np.bool_)
+        if self._rays:
+            assert rays is not None  # noqa: S101
+            ends = (
+                _flat(observation.position), _flat(observation.heading), _flat(rays.radius),
+                rays.angle, _flat(rays.distance), _flat(rays.kind),
+            )  # fmt: skip
+            touched = np.zeros(edges.start.shape[:3], dtype=np.bool_)
+            _hit(indices, *ends, *others, _flat(perceived))
+            _touch(
+                indices, *ends, _flat(edges.start), _flat(edges.end), _flat(edges.count),
+                _flat(touched),
+            )  # fmt: skip
+            edges = _chosen(edges, touched)
+        _remember(indices, *others, _flat(perceived), not self._rays, dt, _flat(met))
         self._kept.write("met", observation.rows, met)
-        return replace(observation, neighbours=_others(met), edges=_chosen(edges, touched))
+        return replace(observation, neighbours=_others(met), edges=edges)
+
+
+def _flat(array: AnyArray) -> AnyArray:
+    """Return (B · A, …) of (B, A, …)."""
+    return array.reshape(-1, *array.shape[2:])
 
 
 def _others(met: FloatArray) -> Neighbours:
@@ -93,36 +99,56 @@ def _chosen(edges: Edges, which: BoolArray) -> Edges:
     )  # fmt: skip
 
 
-@kernel
-def _meet(
+@kernel_without_allocation
+def _hit(
     indices: IntArray, position: FloatArray, heading: FloatArray, radius: FloatArray,
     angle: FloatArray, distance: FloatArray, ray_kind: ByteArray, other: FloatArray,
     velocity: FloatArray, other_radius: FloatArray, kind: ByteArray, others: IntArray,
-    dt: FloatArray, met: FloatArray,
+    perceived: BoolArray,
 ) -> None:  # fmt: skip
-    """Update the memory ``met`` (N, MAX_OTHERS, 7): objects hit now come first."""
+    """Set ``perceived`` (N, K): the others at which a ray's disc stopped."""
     for i in indices:
-        old = met[i].copy()
-        met[i, :, _AGE] = math.inf
-        n = 0
         for j in range(others[i]):
+            perceived[i, j] = False
             for r in range(len(angle)):
-                if ray_kind[i, r] != kind[i, j] or n == MAX_OTHERS:
+                if ray_kind[i, r] != kind[i, j]:
                     continue
                 course = heading[i] + angle[r]
                 dx = position[i, 0] + distance[i, r] * math.cos(course) - other[i, j, 0]
                 dy = position[i, 1] + distance[i, r] * math.sin(course) - other[i, j, 1]
                 if math.hypot(dx, dy) <= radius[i] + other_radius[i, j] + SLACK:
-                    met[i, n, _X], met[i, n, _Y] = other[i, j, 0], other[i, j, 1]
-                    met[i, n, _U], met[i, n, _V] = velocity[i, j, 0], velocity[i, j, 1]
-                    met[i, n, _RADIUS], met[i, n, _KIND] = other_radius[i, j], kind[i, j]
-                    met[i, n, _AGE] = 0.0
-                    n += 1
+                    perceived[i, j] = True
                     break
+
+
+@kernel
+def _remember(
+    indices: IntArray, other: FloatArray, velocity: FloatArray, other_radius: FloatArray,
+    kind: ByteArray, others: IntArray, perceived: BoolArray, movers_only: bool, dt: FloatArray,
+    met: FloatArray,
+) -> None:  # fmt: skip
+    """Update the memory ``met`` (N, MAX_OTHERS, 7): what is perceived now comes first.
+
+    ``movers_only``: agents are forgotten at once.
+    """
+    for i in indices:
+        old = met[i].copy()
+        met[i, :, _AGE] = math.inf
+        n = 0
+        for j in range(others[i]):
+            if n == MAX_OTHERS or not perceived[i, j]:
+                continue
+            met[i, n, _X], met[i, n, _Y] = other[i, j, 0], other[i, j, 1]
+            met[i, n, _U], met[i, n, _V] = velocity[i, j, 0], velocity[i, j, 1]
+            met[i, n, _RADIUS], met[i, n, _KIND] = other_radius[i, j], kind[i, j]
+            met[i, n, _AGE] = 0.0
+            n += 1
         fresh = n
         for m in range(MAX_OTHERS):
             age = old[m, _AGE] + dt[i]
             if n == MAX_OTHERS or age > MEMORY + 1e-9:
+                continue
+            if movers_only and old[m, _KIND] != _MOVER:
                 continue
             x, y = old[m, _X] + dt[i] * old[m, _U], old[m, _Y] + dt[i] * old[m, _V]
             known = False
