@@ -8,7 +8,7 @@ import pytest
 from benchnav_baselines.learned.recurrent_ppo import detour
 from benchnav_baselines.learned.recurrent_ppo.detour import Detours
 from benchnav_baselines.learned.recurrent_ppo.foresight import foresee
-from benchnav_baselines.learned.recurrent_ppo.ray_memory import MEMORY, Sightings
+from benchnav_baselines.learned.recurrent_ppo.sightings import MEMORY, Sightings
 
 from benchnav.arena.solid import Kind
 from benchnav.envs.encoders.encoder import Bodies

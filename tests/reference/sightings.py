@@ -1,9 +1,9 @@
-"""The slow, obvious twin of `benchnav_baselines.learned.recurrent_ppo.ray_memory`."""
+"""The slow, obvious twin of `benchnav_baselines.learned.recurrent_ppo.sightings`."""
 
 import math
 
 import numpy as np
-from benchnav_baselines.learned.recurrent_ppo import ray_memory as s
+from benchnav_baselines.learned.recurrent_ppo import sightings as s
 from shapely import LineString, Point
 
 from benchnav.arena.solid import Kind

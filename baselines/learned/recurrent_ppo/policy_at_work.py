@@ -18,7 +18,7 @@ from ...common.ray_fit import why_rays_do_not_fit
 from .actor import Actor
 from .detour import Detours
 from .foresight import HELD, foresee
-from .ray_memory import Sightings
+from .sightings import Sightings
 from .weights import read_weights
 
 SHIPPED = Path(__file__).parent / "weights"
