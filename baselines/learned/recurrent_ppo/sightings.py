@@ -1,4 +1,4 @@
-"""What an agent has perceived lately: the input of foresight.
+"""Objects that an agent has perceived lately: the input of foresight.
 
 The disc of a thick ray stops at an object: an agent or obstacle at that place counts as hit, and
 so does an edge. Agents and movers are reported with their velocity (as Eq. 22 of the paper
