@@ -135,5 +135,5 @@ def test_alone_as_a_controller_it_drives_like_the_navigator(name):
 
 @pytest.mark.slow
 def test_a_plan_leads_a_policy_through_a_maze():
-    assert share("recurrent-ppo-plus", "maze/grid", "known", 8) < 0.2
+    assert share("recurrent-ppo-plus", "maze/grid", "known", 8) < 0.4
     assert share("visibility+recurrent-ppo-plus", "maze/grid", "known", 8) > 0.8
