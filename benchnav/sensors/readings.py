@@ -42,7 +42,7 @@ class Rays(Rows):
     approach: FloatArray  # (B, A, R) [m/s] of the hit dynamic obstacle, towards the agent, else 0
     goal: FloatArray  # (B, A, R) [m] along the ray to the agent's goal; inf if missed or hidden
     radius: FloatArray = _ZERO  # (B, A) [m] of the disc that is cast along a ray; thin: 0
-    across: FloatArray = _ZERO  # (B, A, R) [m/s] of it across the ray, to its left, else 0
+    across: FloatArray = _ZERO  # (B, A, R) [m/s] of the hit dynamic obstacle to the left, else 0
 
     def __post_init__(self) -> None:
         if self.radius is None:
