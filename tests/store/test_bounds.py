@@ -2,6 +2,8 @@
 
 import io
 import json
+import subprocess
+import sys
 import time
 from zipfile import ZIP_STORED, ZipFile
 
@@ -27,6 +29,7 @@ from benchnav.store.runs.reading import (
 )
 from benchnav.store.runs.run_folder import RunFolder
 from benchnav.store.runs.spans import count, twice, union, without
+from tests.store import changed_footers
 from tests.store.hostile import resealed
 
 SCHEMA = pa.schema([("n", pa.int64()), ("text", pa.string()), ("list", pa.list_(pa.string()))])
@@ -40,6 +43,19 @@ def written(table, **options):
 
 def table_of(rows, text="a"):
     return pa.table({"n": [1] * rows, "text": [text] * rows, "list": [[text]] * rows}, SCHEMA)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [(1, 2, 4, 16, 255), pytest.param(range(1, 256), marks=[pytest.mark.soak, pytest.mark.slow])],
+)
+def test_a_changed_footer_is_refused_and_never_ends_the_process(changes):
+    done = subprocess.run(
+        [sys.executable, changed_footers.__file__, *map(str, changes)],
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr[-2000:]
+    assert int(done.stdout) > 500 * len(changes)
 
 
 @pytest.mark.parametrize(

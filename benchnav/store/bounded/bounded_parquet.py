@@ -14,6 +14,7 @@ import pyarrow.parquet as pq
 
 from benchnav.navigation.command_check import short
 from benchnav.store.bounded import page_headers
+from benchnav.store.bounded.footer import require_readable
 from benchnav.store.bounded.page_headers import Page
 
 FREE = 256 << 20  # [bytes] decoded size that is allowed for any file
@@ -81,6 +82,7 @@ def _decode(
     expected = pa.schema([f for f in schema if f.name in names or f.name not in later])
     _require_columns(found, expected)
     leaves = [leaf for field in expected for leaf in _leaves(field)]
+    require_readable(content, file.metadata.schema)
     _require_bound(content, file.metadata, leaves)
     texts = [leaf.path for leaf in leaves if leaf.text]
     table = _open(content, texts, file.metadata).read(use_threads=False)

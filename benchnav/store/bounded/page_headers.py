@@ -16,9 +16,9 @@ _OF_KIND = {DATA: (5, 1, 2), DICTIONARY: (7, 1, 2), DATA_V2: (8, 1, 4)}
 _MAX_DEPTH = 4  # nested structures: page, data page, statistics
 _MAX_INTEGER = 10  # bytes of an integer
 _MAX_FIELDS = 64  # of a structure; the decoder reads larger field numbers as other ones
-_TRUE, _FALSE, _BYTE, _INT16, _INT32, _INT64, _DOUBLE, _TEXT = range(1, 9)  # kinds of fields
-_STRUCTURE = 12
-_KINDS = {*range(_TRUE, _TEXT + 1), _STRUCTURE}
+TRUE, FALSE, BYTE, INT16, INT32, INT64, DOUBLE, TEXT = range(1, 9)  # kinds of fields
+STRUCTURE = 12
+_KINDS = {*range(TRUE, TEXT + 1), STRUCTURE}
 
 
 @dataclass(frozen=True)
@@ -69,12 +69,12 @@ def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], in
         if delta:
             name += delta
         else:
-            name, at = _integer(data, at)
+            name, at = integer(data, at)
         if not 0 < name < _MAX_FIELDS or kind not in _KINDS:
             raise ValueError("the header of a page has a field that no page has")
-        if kind == _INT32:
-            fields[name], at = _integer(data, at)
-        elif kind == _STRUCTURE:
+        if kind == INT32:
+            fields[name], at = integer(data, at)
+        elif kind == STRUCTURE:
             fields[name], at = _structure(data, at, deep - 1)
         else:
             at = _after(data, at, kind)
@@ -83,22 +83,24 @@ def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], in
 
 def _after(data: memoryview, at: int, kind: int) -> int:
     """Return the end of a value that is skipped."""
-    if kind in (_TRUE, _FALSE):
+    if kind in (TRUE, FALSE):
         return at
-    if kind == _BYTE:
+    if kind == BYTE:
         return at + 1
-    if kind == _DOUBLE:
+    if kind == DOUBLE:
         return at + 8
-    value, at = _unsigned(data, at)
-    return at + value if kind == _TEXT else at
+    value, at = unsigned(data, at)
+    return at + value if kind == TEXT else at
 
 
-def _integer(data: memoryview, at: int) -> tuple[int, int]:
-    value, at = _unsigned(data, at)
+def integer(data: memoryview, at: int) -> tuple[int, int]:
+    """Return a signed integer, and its end."""
+    value, at = unsigned(data, at)
     return (value >> 1) ^ -(value & 1), at
 
 
-def _unsigned(data: memoryview, at: int) -> tuple[int, int]:
+def unsigned(data: memoryview, at: int) -> tuple[int, int]:
+    """Return an unsigned integer, and its end. Raises ValueError if it is too long."""
     byte = data[at]
     if byte < 128:
         return byte, at + 1
