@@ -56,7 +56,7 @@ def test_sightings_agree_with_their_twin(shown):
     mine = begun(Sightings(), told)
     kept, remembered, hidden = {}, 0, 0
     for seen in views:
-        found = mine.limit(seen)
+        found = mine.recall(seen)
         for b, a in np.argwhere(seen.active):
             radius, dt = bodies.radius[b, a], told[b].dt
             kept[b, a] = slow_sightings.others(seen, radius, dt, kept.get((b, a), []), b, a)
@@ -83,7 +83,7 @@ def test_without_rays_all_in_sight_are_met_and_hidden_movers_remembered(shown):
     mine = begun(Sightings(rays=False), told)
     kept, remembered = {}, 0
     for seen in views:
-        found = mine.limit(seen)
+        found = mine.recall(seen)
         for b, a in np.argwhere(seen.active):
             kept[b, a] = slow_sightings.seen_others(seen, told[b].dt, kept.get((b, a), []), b, a)
             near, count = found.neighbours, found.neighbours.count[b, a]
@@ -100,13 +100,13 @@ def test_without_rays_all_in_sight_are_met_and_hidden_movers_remembered(shown):
 def test_who_is_not_met_again_is_forgotten(shown):
     told, views, _ = shown
     mine = begun(Sightings(), told)
-    before = mine.limit(views[0]).neighbours.count.sum()
+    before = mine.recall(views[0]).neighbours.count.sum()
     assert before > 0
     blind = replace(views[0], rays=replace(views[0].rays, kind=np.zeros_like(views[0].rays.kind)))
     for _ in range(math.floor(MEMORY / told[0].dt)):
-        count = mine.limit(blind).neighbours.count.sum()
+        count = mine.recall(blind).neighbours.count.sum()
     assert count == before
-    assert mine.limit(blind).neighbours.count.sum() == 0
+    assert mine.recall(blind).neighbours.count.sum() == 0
 
 
 def test_what_no_ray_met_changes_no_command(shown):

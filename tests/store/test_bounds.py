@@ -14,6 +14,7 @@ import pytest
 
 from benchnav.errors import CorruptPartError, StoreError
 from benchnav.store.bounded import bounded_json, bounded_parquet
+from benchnav.store.bounded.footer import require_readable
 from benchnav.store.packs.unpack import opened
 from benchnav.store.parts.part import RESULTS_FILE, SEAL, Part
 from benchnav.store.parts.part_writer import PartWriter
@@ -43,6 +44,13 @@ def written(table, **options):
 
 def table_of(rows, text="a"):
     return pa.table({"n": [1] * rows, "text": [text] * rows, "list": [[text]] * rows}, SCHEMA)
+
+
+def test_lists_in_lists_are_refused_before_they_are_too_deep():
+    lists = bytes([0x49]) + bytes([0x19]) * 100_000  # field 4; each list holds one list
+    content = lists + len(lists).to_bytes(4, "little") + b"PAR1"
+    with pytest.raises(ValueError, match="nested too deep"):
+        require_readable(content, None)
 
 
 @pytest.mark.parametrize(

@@ -130,7 +130,7 @@ class PolicyPilot(Pilot):
     ) -> FloatArray:
         if self._detours is None and not self._foresight:
             return command
-        observation = self._sightings.limit(observation)
+        observation = self._sightings.recall(observation)
         if self._detours is not None:
             self._detours.steer(observation, bodies, command)
         if not self._foresight:

@@ -40,7 +40,7 @@ class Sightings:
         empty[..., _AGE] = math.inf
         self._kept.put(row, met=empty, dt=np.full(len(briefing), briefing.dt))
 
-    def limit(self, observation: Observation) -> Observation:
+    def recall(self, observation: Observation) -> Observation:
         """Return the observation with others that are met or remembered, and edges that rays hit.
 
         Args:

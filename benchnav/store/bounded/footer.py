@@ -8,20 +8,21 @@ from typing import Any
 
 import pyarrow.parquet as pq
 
-from benchnav.store.bounded.page_headers import (
+from benchnav.store.bounded.compact_protocol import (
     BYTE,
     DOUBLE,
     FALSE,
     INT16,
     INT64,
+    LIST,
     STRUCTURE,
     TEXT,
     TRUE,
+    field_head,
     integer,
     unsigned,
 )
 
-_LIST = 9  # kind of a field
 _GROUPS, _COLUMNS, _COLUMN, _KEYS, _ENCRYPTED, _SIZES = 4, 1, 3, 8, 9, 16  # fields
 _CODEC, _CODECS = 4, range(8)  # field of a column, and the values that it may have
 _SPELLED, _REPETITIONS, _DEFINITIONS = 1, 2, 3  # fields of the size statistics of a column
@@ -61,17 +62,10 @@ def _require_sizes(sizes: dict[int, Any], column: pq.ColumnSchema) -> None:
 
 def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], int]:
     """Return the fields of a structure in Thrift's compact protocol, and its end."""
-    if not deep:
-        raise ValueError("has a footer that is nested too deep")
     fields: dict[int, Any] = {}
     name = 0
-    while head := data[at]:
-        kind, delta = head & 15, head >> 4
-        at += 1
-        if delta:
-            name += delta
-        else:
-            name, at = integer(data, at)
+    while data[at]:
+        name, kind, at = field_head(data, at, name)
         if kind in (TRUE, FALSE):
             fields[name] = kind == TRUE
         else:
@@ -80,9 +74,12 @@ def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], in
 
 
 def _value(data: memoryview, at: int, kind: int, deep: int) -> tuple[Any, int]:
+    """Return a value, None for those that nobody reads, and its end; ``deep``: nestings left."""
+    if not deep:
+        raise ValueError("has a footer that is nested too deep")
     if kind == STRUCTURE:
         return _structure(data, at, deep - 1)
-    if kind == _LIST:
+    if kind == LIST:
         return _list(data, at, deep - 1)
     if kind in (TRUE, FALSE, BYTE):  # in a list, a truth value takes a byte
         return None, at + 1

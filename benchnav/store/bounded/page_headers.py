@@ -8,16 +8,26 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
 
+from benchnav.store.bounded.compact_protocol import (
+    BYTE,
+    DOUBLE,
+    FALSE,
+    INT32,
+    STRUCTURE,
+    TEXT,
+    TRUE,
+    field_head,
+    integer,
+    unsigned,
+)
+
 DATA, DICTIONARY, DATA_V2 = 0, 2, 3  # kinds of pages
 PLAIN, PLAIN_DICTIONARY, RLE, RLE_DICTIONARY = 0, 2, 3, 8  # encodings
 _KIND, _RAW, _PACKED = 1, 2, 3  # fields of a header
 _OF_KIND = {DATA: (5, 1, 2), DICTIONARY: (7, 1, 2), DATA_V2: (8, 1, 4)}
 """Kind of page → field with its own header, and the fields of count and encoding in it."""
 _MAX_DEPTH = 4  # nested structures: page, data page, statistics
-_MAX_INTEGER = 10  # bytes of an integer
 _MAX_FIELDS = 64  # of a structure; the decoder reads larger field numbers as other ones
-TRUE, FALSE, BYTE, INT16, INT32, INT64, DOUBLE, TEXT = range(1, 9)  # kinds of fields
-STRUCTURE = 12
 _KINDS = {*range(TRUE, TEXT + 1), STRUCTURE}
 
 
@@ -63,13 +73,8 @@ def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], in
         raise ValueError("the header of a page is nested too deep")
     fields: dict[int, Any] = {}
     name = 0
-    while head := data[at]:
-        kind, delta = head & 15, head >> 4
-        at += 1
-        if delta:
-            name += delta
-        else:
-            name, at = integer(data, at)
+    while data[at]:
+        name, kind, at = field_head(data, at, name)
         if not 0 < name < _MAX_FIELDS or kind not in _KINDS:
             raise ValueError("the header of a page has a field that no page has")
         if kind == INT32:
@@ -91,23 +96,3 @@ def _after(data: memoryview, at: int, kind: int) -> int:
         return at + 8
     value, at = unsigned(data, at)
     return at + value if kind == TEXT else at
-
-
-def integer(data: memoryview, at: int) -> tuple[int, int]:
-    """Return a signed integer, and its end."""
-    value, at = unsigned(data, at)
-    return (value >> 1) ^ -(value & 1), at
-
-
-def unsigned(data: memoryview, at: int) -> tuple[int, int]:
-    """Return an unsigned integer, and its end. Raises ValueError if it is too long."""
-    byte = data[at]
-    if byte < 128:
-        return byte, at + 1
-    value = byte & 127
-    for k in range(1, _MAX_INTEGER):
-        byte = data[at + k]
-        value |= (byte & 127) << 7 * k
-        if byte < 128:
-            return value, at + k + 1
-    raise ValueError("the header of a page holds a number that is too long")
