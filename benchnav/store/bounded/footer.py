@@ -74,7 +74,7 @@ def _structure(data: memoryview, at: int, deep: int) -> tuple[dict[int, Any], in
 
 
 def _value(data: memoryview, at: int, kind: int, deep: int) -> tuple[Any, int]:
-    """Return a value, None for those that nobody reads, and its end; ``deep``: nestings left."""
+    """Return a value, None if it is not needed, and its end; ``deep``: nestings left."""
     if not deep:
         raise ValueError("has a footer that is nested too deep")
     if kind == STRUCTURE:
