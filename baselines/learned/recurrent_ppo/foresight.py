@@ -2,10 +2,10 @@
 
 Static obstacles are predicted to stay, and all others to keep their velocity (the assumption of
 velocity obstacles, Eq. 22), agents for a shorter time; a dynamic obstacle may also turn back at
-once, with a lower weight. A twist is held for a while, 0.3 s or longer where that is safer, and then the
-course is kept. A twist of a small lattice replaces the learned one if the sum of its
-danger and of its difference is smaller. The constants were tuned by hand: some 90 settings,
-each on 20 to 1,500 validation worlds of `leaders/…`, `corridor/bidirectional` and
+once, with a lower weight. A twist is held for a while, 0.3 s or longer where that is safer, and
+then the course is kept. A twist of a small lattice replaces the learned one if the sum of its
+danger and of its difference is smaller. The constants were tuned by hand: some 90 settings, each
+on 20 to 1,500 validation worlds of `leaders/…`, `corridor/bidirectional` and
 `crowd/circle-crossing`.
 """
 
