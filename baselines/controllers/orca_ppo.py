@@ -24,6 +24,7 @@ from benchnav.navigation import (
 from ..common.policy_runner import TURN_ON_THE_SPOT
 from ..common.twist_conversion import as_velocity
 from ..learned.recurrent_ppo.controller import RecurrentPPOPlusController
+from ..learned.recurrent_ppo.detour import in_crowd
 from ..learned.recurrent_ppo.policy_at_work import CorrectedConfig
 from .orca.avoidance import OrcaConfig
 from .orca.controller import OrcaController
@@ -58,7 +59,8 @@ class OrcaPpo(Controller):
     policy of `recurrent-ppo-plus`, which learned on unicycles among obstacles that
     never yield, drives unicycles and differential drives, and every agent that has just sensed a
     dynamic obstacle; ORCA drives all others. The policy is better with goals than with waypoints,
-    and avoids obstacles itself: unless the path is a detour, its target is the goal.
+    and avoids obstacles itself: unless the path is a detour, its target is the goal. It also
+    learned in crowds, and drives there too unless the path is a detour.
     """
 
     Config = OrcaPpoConfig
@@ -100,13 +102,16 @@ class OrcaPpo(Controller):
     def steer(self, observation: Observation, guide: Guide) -> FloatArray:
         rows, agents = observation.rows, observation.active.shape[1]
         turning, dt = (self._kept.take(name, rows, agents) for name in ("turning", "dt"))
-        learned = observation.active & (turning | self._wary(observation))
+        direct = self._direct(observation, guide)
+        crowded = direct & in_crowd(observation)
+        learned = observation.active & (turning | self._wary(observation) | crowded)
         velocity = np.zeros((*learned.shape, 2))
         other = observation.active & ~learned
         if other.any():
             velocity = self._orca.steer(replace(observation, active=other), guide)
         if learned.any():
-            shown = self._goals_if_direct(observation, guide)
+            target = np.where(direct[..., None], observation.goal, guide.target)
+            shown = replace(guide, target=target)
             twist = self._policy.steer(replace(observation, active=learned), shown)
             as_velocity(learned, turning, observation.heading, dt, twist, velocity)
         return velocity
@@ -125,9 +130,9 @@ class OrcaPpo(Controller):
         wary: BoolArray = time <= until
         return wary
 
-    def _goals_if_direct(self, observation: Observation, guide: Guide) -> Guide:
-        """Return the guide with goals as targets, except on detours."""
+    def _direct(self, observation: Observation, guide: Guide) -> BoolArray:
+        """Whether the path of each agent (B, A) is no detour."""
         way = observation.goal - observation.position
         straight = np.sqrt(np.sum(way * way, axis=-1))
-        direct = guide.remaining - straight <= self.config.detour
-        return replace(guide, target=np.where(direct[..., None], observation.goal, guide.target))
+        direct: BoolArray = guide.remaining - straight <= self.config.detour
+        return direct

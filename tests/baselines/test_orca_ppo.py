@@ -51,6 +51,15 @@ def with_a_mover(one):
     return replace(one, neighbours=replace(one.neighbours, kind=kind, count=count))
 
 
+def in_a_crowd(one):
+    """Whether two agents or more are within 3 m of each agent (B, A); there are no movers."""
+    crowded = np.zeros(one.active.shape, np.bool_)
+    for b, a in np.argwhere(one.active):
+        others = one.neighbours.position[b, a, : one.neighbours.count[b, a]]
+        crowded[b, a] = sum(np.hypot(*(other - one.position[b, a])) < 3.0 for other in others) > 1
+    return crowded
+
+
 def alone(one):
     return replace(one, neighbours=replace(one.neighbours, count=np.zeros_like(one.active, int)))
 
@@ -85,9 +94,29 @@ def test_holonomic_bodies_among_agents_are_driven_by_orca():
     orca = orca_of(controller)
     started(controller, told)
     for one in map(without_movers, seen):
-        guide = towards(one, one.position + 0.5, 0.0)
+        guide = towards(one, one.position + 0.5, 0.6)
         given, wanted = controller.steer(one, guide), orca.steer(one, guide)
         np.testing.assert_array_equal(given[one.active], wanted[one.active])
+
+
+def test_in_a_crowd_the_policy_drives_unless_the_path_is_a_detour():
+    controller, told, seen = views(Dynamics.HOLONOMIC)
+    orca = orca_of(controller)
+    started(controller, told)
+    policy = started(make(CONTROLLERS, "recurrent-ppo-plus"), told)
+    crowded_once = alone_once = False
+    for one in map(without_movers, seen):
+        crowded = in_a_crowd(one)
+        guide = towards(one, one.goal, 0.0)
+        given, wanted = controller.steer(one, guide), orca.steer(one, guide)
+        learned = replace(one, active=one.active & crowded)
+        twist = as_told(policy.steer(learned, guide), learned, told, Dynamics.HOLONOMIC)
+        for who, answer in ((one.active & crowded, twist), (one.active & ~crowded, wanted)):
+            np.testing.assert_array_equal(given[who], answer[who])
+        crowded_once |= bool((one.active & crowded).any())
+        alone_once |= bool((one.active & ~crowded).any())
+    assert crowded_once
+    assert alone_once
 
 
 @pytest.mark.parametrize(("more", "goal"), [(0.0, True), (0.4, True), (0.6, False)])
