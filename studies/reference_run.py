@@ -3,12 +3,12 @@
 Executes the suite `standard` with ten seeds into the folder RUN (one that was broken off goes
 on), packs it beside itself, and writes into docs/leaderboard:
 
-* ``standard-1.md``: the page, with the tables over all scenarios;
-* ``standard-1.csv``: every record of the leaderboard, by the metrics of the page;
-* ``standard-1.json``: salt, hashes, versions, the pack's sha256, the digest of every episode;
-* ``standard-1-report.tar.xz``: its report with a few replays, without the files of libraries;
+* ``standard-2.md``: the page, with the tables over all scenarios;
+* ``standard-2.csv``: every record of the leaderboard, by the metrics of the page;
+* ``standard-2.json``: salt, hashes, versions, the pack's sha256, the digest of every episode;
+* ``standard-2-report.tar.xz``: its report with a few replays, without the files of libraries;
   the documentation site shows it;
-* ``standard-1-sample.bnrun``: a few of its scenarios with one seed, verified here and in CI.
+* ``standard-2-sample.bnrun``: a few of its scenarios with one seed, verified here and in CI.
 """
 
 import argparse
