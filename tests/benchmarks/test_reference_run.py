@@ -48,6 +48,7 @@ def test_it_is_of_the_suite_that_ships(said):
     assert set(flat(said["digests"])) == jobs
     assert all(len(values) == 10 for values in flat(said["digests"]).values())
     assert said["verified"].startswith("0 findings")
+    assert said["sample"].startswith("0 findings")
     assert said["episodes"] == 10 * len(jobs)
 
 
