@@ -37,7 +37,6 @@ SCENARIOS = (
 )  # fmt: skip
 CHUNK = 50  # worlds of a task
 KINDS = (Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.DYNAMIC)
-LEADERS = tuple(name for name in SCENARIOS if name.startswith("leaders/"))
 KNOWLEDGE = Path("docs/learning/full_knowledge.json")
 CURVES = Path("docs/learning/curves")
 COMPANIONS: Mapping[str, tuple[Spec, str]] = {
@@ -51,6 +50,11 @@ COMPANIONS: Mapping[str, tuple[Spec, str]] = {
     ),
 }
 """Navigator → another one with its weights, and its description."""
+ALONE: Mapping[str, dict[str, Any]] = {
+    "recurrent-ppo": {},
+    "recurrent-ppo-plus": {"foresight": False, "patience": 0},
+}
+"""Navigator → the parameters with which its policy drives alone."""
 
 
 @dataclass(frozen=True)
@@ -151,7 +155,8 @@ def card(navigator: str, rows: list[Row], other: list[Row], seeds: dict[int, lis
     lines += [_line(row, known.get(row.scenario)) for row in rows]
     lines += ["", *_companion(COMPANIONS[navigator][1], other)]
     if seeds:
-        lines += ["", *_seeds({progress["seed"]: rows, **seeds})]
+        alone = other if ALONE[navigator] else rows
+        lines += ["", *_seeds({progress["seed"]: alone, **seeds})]
     lines += ["", *_stages(about["recipe"], progress["seed"])]
     return "\n".join([*lines, ""])
 
@@ -169,14 +174,14 @@ def _companion(title: str, rows: list[Row]) -> Iterator[str]:
 
 
 def _seeds(seeds: dict[int, list[Row]]) -> Iterator[str]:
-    """Success of each seed of the training."""
-    yield "Success % of the same recipe, trained with other seeds:"
+    """Success of the policy of each seed of the training."""
+    yield "Success % of the policy alone, by the seed of the training:"
     yield ""
-    yield f"| seed | {' | '.join(LEADERS)} |"
-    yield "|---|" + "---|" * len(LEADERS)
-    for seed, rows in sorted(seeds.items()):
-        found = {row.scenario: _rate(row) for row in rows}
-        yield f"| {seed} | {' | '.join(found[name] for name in LEADERS)} |"
+    yield "| scenario | " + " | ".join(f"seed {seed}" for seed in sorted(seeds)) + " |"
+    yield "|---|" + "---|" * len(seeds)
+    for k, row in enumerate(next(iter(seeds.values()))):
+        rates = " | ".join(_rate(seeds[seed][k]) for seed in sorted(seeds))
+        yield f"| {row.scenario} | {rates} |"
 
 
 def _rate(row: Row) -> str:
@@ -229,7 +234,7 @@ def main() -> None:
         "--seed", type=Path, action="append", default=[],
         help="weights that another seed gave; may be given again",
     )  # fmt: skip
-    parser.add_argument("--out", type=Path, help="the card; and the numbers as JSON beside it")
+    parser.add_argument("--out", type=Path, help="the card")
     options = parser.parse_args()
 
     def measured(names: Sequence[str], spec: Spec) -> list[Row]:
@@ -239,12 +244,13 @@ def main() -> None:
             print(spec, rows[-1], flush=True)
         return rows
 
-    specs = [{"type": options.navigator, "weights": str(path)} for path in options.seed]
+    scenarios = options.scenario or SCENARIOS
+    alone = {"type": options.navigator, **ALONE[options.navigator]}
+    specs = [{**alone, "weights": str(path)} for path in options.seed]
     seeds = {
-        make(NAVIGATORS, spec).pilot.about["progress"]["seed"]: measured(LEADERS, spec)
+        make(NAVIGATORS, spec).pilot.about["progress"]["seed"]: measured(scenarios, spec)
         for spec in specs
     }
-    scenarios = options.scenario or SCENARIOS
     rows = measured(scenarios, options.navigator)
     companion = measured(scenarios, COMPANIONS[options.navigator][0])
     text = card(options.navigator, rows, companion, seeds)
