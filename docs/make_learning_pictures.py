@@ -29,9 +29,9 @@ ABLATIONS = {
     "ablation-reference": "reference",
     "ablation-no-lstm": "no LSTM",
     "ablation-no-prediction": "no collision probability",
-    "ablation-ego-encoder": "lengths over 8 m (ego)",
     "ablation-paper-encoder": "absolute positions (paper)",
     "ablation-table-1": "Table 1 per decision",
+    "ablation-static-first": "static first",
 }
 COLOURS = ("#1f6feb", "#d1495b", "#2a9d8f", "#8e5aa8", "#e07a3f", "#6b7280")
 TEAMS = ("#1f6feb", "#d1495b", "#2a9d8f", "#8e5aa8")
@@ -51,16 +51,16 @@ def ablations() -> Figure:
         if not runs:
             continue
         rows = min(map(len, runs))
-        x = np.mean([[row["decisions"] for row in run[:rows]] for run in runs], axis=0) / 1e6
+        x = np.mean([[row["decisions"] for row in run[:rows]] for run in runs], axis=0) / 1e3
         for axes, key, factor in (
             (left, "arrived", 100.0), (right, "validation leaders/dynamic", 100.0),
         ):  # fmt: skip
             y = factor * np.array([[row[key] for row in run[:rows]] for run in runs])
             axes.plot(x, y.mean(0), color=colour, label=f"{label} ({len(runs)})")
             axes.fill_between(x, y.min(0), y.max(0), color=colour, alpha=0.12, lw=0)
-    left.set(title="while training, sampled actions", xlabel="million decisions",
+    left.set(title="while training, sampled actions", xlabel="thousand decisions",
              ylabel="strict success [%]")  # fmt: skip
-    right.set(title="validation worlds, deterministic", xlabel="million decisions")
+    right.set(title="validation worlds, deterministic", xlabel="thousand decisions")
     for axes in (left, right):
         axes.grid(alpha=0.3)
         axes.set_ylim(bottom=0)

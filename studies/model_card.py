@@ -39,22 +39,22 @@ CHUNK = 50  # worlds of a task
 KINDS = (Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.DYNAMIC)
 KNOWLEDGE = Path("docs/learning/full_knowledge.json")
 CURVES = Path("docs/learning/curves")
+ALONE: Mapping[str, dict[str, Any]] = {
+    "recurrent-ppo": {},
+    "recurrent-ppo-plus": {"foresight": False, "patience": 0},
+}
+"""Navigator → the parameters with which its policy drives alone."""
 COMPANIONS: Mapping[str, tuple[Spec, str]] = {
     "recurrent-ppo": (
         "recurrent-ppo-vo",
         "With velocity obstacles of what its rays hit, and detours (`recurrent-ppo-vo`):",
     ),
     "recurrent-ppo-plus": (
-        {"type": "recurrent-ppo-plus", "foresight": False, "patience": 0},
+        {"type": "recurrent-ppo-plus", **ALONE["recurrent-ppo-plus"]},
         "The policy alone, which nothing corrects (`foresight: false, patience: 0`):",
     ),
 }
 """Navigator → another one with its weights, and its description."""
-ALONE: Mapping[str, dict[str, Any]] = {
-    "recurrent-ppo": {},
-    "recurrent-ppo-plus": {"foresight": False, "patience": 0},
-}
-"""Navigator → the parameters with which its policy drives alone."""
 
 
 @dataclass(frozen=True)
@@ -251,6 +251,8 @@ def main() -> None:
         make(NAVIGATORS, spec).pilot.about["progress"]["seed"]: measured(scenarios, spec)
         for spec in specs
     }
+    if len(seeds) < len(specs):
+        raise SystemExit(f"Each of the {len(specs)} weights must have another seed.")
     rows = measured(scenarios, options.navigator)
     companion = measured(scenarios, COMPANIONS[options.navigator][0])
     text = card(options.navigator, rows, companion, seeds)

@@ -145,8 +145,8 @@ def page(run: RunFolder, summary: dict[str, Any], rows: list[dict[str, str]], no
                 ["salt", f"`{summary['salt']}`"],
                 ["pack", f"{packed['bytes'] / 1e6:.0f} MB, sha256 `{packed['sha256']}`"],
                 ["sha256 of its content", f"`{packed['content']}`"],
-                ["`benchnav verify`", f"of the run: {summary['verified']}"],
-                ["", f"of the sample: {summary['sample']}"],
+                ["`benchnav verify`", summary["verified"]],
+                ["`benchnav verify`, sample", summary["sample"]],
             ],
         ),
         f'The <a href="{name}-report/index.html">report of the run</a> (on the documentation site)'
@@ -249,14 +249,14 @@ def keep_sample(out: Path, every: dict[str, Any]) -> str:
                 for navigator, (first,) in navigators.items():
                     if every[scenario][track][navigator].split()[0] != first:
                         print(f"{scenario}, {track}, {navigator}: another episode than in the run")
-        verdict = verified(run)
+        verdict = verify_run(run)
         out.unlink(missing_ok=True)
         pack(run, out)
     return verdict
 
 
-def verified(run: RunFolder) -> str:
-    """Verify a run; return the verdict in words, and print what was found."""
+def verify_run(run: RunFolder) -> str:
+    """Return the verdict of `verify` as text; print the findings."""
     report = verify(run, Wanted(), progress=progress(quiet=False))
     for finding in report.few(20):
         print(finding)
@@ -280,7 +280,7 @@ def main() -> None:
     text, rows = records(run)
     name = f"{run.manifest.suite['name']}-{run.manifest.suite['version']}"
     options.out.mkdir(parents=True, exist_ok=True)
-    summary["verified"] = verified(run)
+    summary["verified"] = verify_run(run)
     summary["sample"] = keep_sample(options.out / f"{name}-sample{SUFFIX}", summary["digests"])
     keep_report(run, options.out / f"{name}-report.tar.xz")
     (options.out / f"{name}.csv").write_text(text, encoding="utf-8")
@@ -291,6 +291,8 @@ def main() -> None:
         page(run, summary, rows, options.note), encoding="utf-8"
     )
     print(options.out / f"{name}.md")
+    if not all(summary[key].startswith("0 findings") for key in ("verified", "sample")):
+        raise SystemExit("The run or its sample is not verified; see the findings above.")
 
 
 if __name__ == "__main__":

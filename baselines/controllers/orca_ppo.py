@@ -47,20 +47,20 @@ class OrcaPpoConfig(PluginConfig):
     detour: float = Field(
         0.5,
         ge=0,
-        description="[m] the policy drives to the goal if the path is at most this much longer than"
-        " the straight line, else to a waypoint",
+        description="[m] a path is a detour if it is longer than the straight line by more than"
+        " this; on a detour the policy drives to waypoints, and not because of a crowd",
     )
 
 
 class OrcaPpo(Controller):
     """Decides at each step which controller drives each agent.
 
-    ORCA assumes that a body can execute its commands, and that others avoid it too. Therefore the
-    policy of `recurrent-ppo-plus`, which learned on unicycles among obstacles that
-    never yield, drives unicycles and differential drives, and every agent that has just sensed a
-    dynamic obstacle; ORCA drives all others. The policy is better with goals than with waypoints,
-    and avoids obstacles itself: unless the path is a detour, its target is the goal. It also
-    learned in crowds, and drives there too unless the path is a detour.
+    ORCA assumes that a body can execute its commands, and that others avoid it too. The policy of
+    `recurrent-ppo-plus` learned on unicycles, among obstacles that never yield, and in crowds.
+    Therefore it drives unicycles and differential drives, agents that have just sensed a dynamic
+    obstacle, and agents in a crowd whose path is no detour. ORCA drives the others. The policy is
+    better with goals than with waypoints, and avoids obstacles itself: unless the path is a detour,
+    its target is the goal.
     """
 
     Config = OrcaPpoConfig

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from . import cast
-from .curves import EARLY, WITH, WITHOUT, budget, early_success, gains, last_success
+from .curves import WITH, WITHOUT, gains, last_success
 from .encounters import SPEED, TURN, Behaviour
 from .evidence import Difference, Evidence
 from .groups import cell as among_groups
@@ -169,26 +169,18 @@ def _local_stuck(m: Material) -> Finding:
 
 
 def _lstm(m: Material) -> Finding:
-    budgets = (
-        (early_success(WITH), early_success(WITHOUT)),
-        (last_success(WITH), last_success(WITHOUT)),
-    )
-    if all(min(with_) > max(without) for with_, without in budgets):
+    with_, without = last_success(WITH), last_success(WITHOUT)
+    if min(with_) > max(without):
         verdict = CONFIRMED
     else:
-        worse = all(max(with_) < min(without) for with_, without in budgets)
-        verdict = CONTRADICTED if worse else NOT
-    early, late = (
-        f"with {_percents(with_)} %, without {_percents(without)} %" for with_, without in budgets
-    )
+        verdict = CONTRADICTED if max(with_) < min(without) else NOT
     return verdict, (
-        f"success by seed after {EARLY / 1e6:.0f} million decisions: {early}; after"
-        f" {budget(WITH) / 1e6:.0f} million: {late}"
+        "success after 300,000 decisions by seed: with "
+        + ", ".join(f"{100 * x:.1f}" for x in with_)
+        + " %, without "
+        + ", ".join(f"{100 * x:.1f}" for x in without)
+        + " %; longer budgets are not compared"
     )
-
-
-def _percents(shares: list[float]) -> str:
-    return ", ".join(f"{100 * x:.1f}" for x in shares)
 
 
 def _curve(m: Material) -> Finding:

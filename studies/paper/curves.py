@@ -13,7 +13,6 @@ from .markdown import table
 CURVES = Path(__file__).parents[2] / "docs" / "learning" / "curves"
 WITH, WITHOUT, SHIPPED = "ablation-reference", "ablation-no-lstm", "dynamic"
 VALIDATION = "validation leaders/dynamic"
-EARLY = 1e6  # decisions
 
 
 def logs(name: str) -> list[list[dict[str, float]]]:
@@ -34,22 +33,9 @@ def gains() -> list[float]:
     return [float(gain) for gain in np.diff(at)]
 
 
-def early_success(name: str) -> list[float]:
-    """Success on validation worlds at the checkpoint after `EARLY` decisions, by seed."""
-    return [
-        float(next(row[VALIDATION] for row in log if row["decisions"] >= EARLY))
-        for log in logs(name)
-    ]
-
-
 def last_success(name: str) -> list[float]:
     """Success on validation worlds at the end of a recipe's budget, by seed."""
     return [float(log[-1][VALIDATION]) for log in logs(name)]
-
-
-def budget(name: str) -> float:
-    """The decisions of a recipe."""
-    return float(logs(name)[0][-1]["decisions"])
 
 
 def section() -> Iterator[str]:

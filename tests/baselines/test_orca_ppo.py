@@ -89,7 +89,7 @@ def as_told(twist, one, told, kind):
     return velocity
 
 
-def test_holonomic_bodies_among_agents_are_driven_by_orca():
+def test_holonomic_bodies_on_detours_are_driven_by_orca_among_agents():
     controller, told, seen = views(Dynamics.HOLONOMIC)
     orca = orca_of(controller)
     started(controller, told)
@@ -99,7 +99,7 @@ def test_holonomic_bodies_among_agents_are_driven_by_orca():
         np.testing.assert_array_equal(given[one.active], wanted[one.active])
 
 
-def test_in_a_crowd_the_policy_drives_unless_the_path_is_a_detour():
+def test_in_a_crowd_the_policy_drives_on_a_straight_way():
     controller, told, seen = views(Dynamics.HOLONOMIC)
     orca = orca_of(controller)
     started(controller, told)
@@ -111,8 +111,8 @@ def test_in_a_crowd_the_policy_drives_unless_the_path_is_a_detour():
         given, wanted = controller.steer(one, guide), orca.steer(one, guide)
         learned = replace(one, active=one.active & crowded)
         twist = as_told(policy.steer(learned, guide), learned, told, Dynamics.HOLONOMIC)
-        for who, answer in ((one.active & crowded, twist), (one.active & ~crowded, wanted)):
-            np.testing.assert_array_equal(given[who], answer[who])
+        for mask, expected in ((one.active & crowded, twist), (one.active & ~crowded, wanted)):
+            np.testing.assert_array_equal(given[mask], expected[mask])
         crowded_once |= bool((one.active & crowded).any())
         alone_once |= bool((one.active & ~crowded).any())
     assert crowded_once

@@ -32,7 +32,7 @@ def danger_held(twist, seen, bodies, tolerance, b, a, held):
         spot = spot + v * f.TICK * np.array([math.cos(way), math.sin(way)])
         heading += turn * f.TICK
         for n in range(near.count[b, a]):
-            if time > f.YIELDING and near.kind[b, a, n] == Kind.AGENT:
+            if time > f.AGENT_HORIZON + 1e-9 and near.kind[b, a, n] == Kind.AGENT:
                 continue
             mover = near.kind[b, a, n] == Kind.DYNAMIC
             reach = radius + near.radius[b, a, n] + f.MARGIN * (2 if mover else 1)

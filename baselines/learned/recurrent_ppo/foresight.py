@@ -1,11 +1,11 @@
 """Collision prediction: corrects a learned command that would collide.
 
 Static obstacles are predicted to stay, and all others to keep their velocity (the assumption of
-velocity obstacles, Eq. 22), agents for a shorter time; a dynamic obstacle may also turn back at
-once, with a lower weight. A twist is held for a while, 0.3 s or longer where that is safer, and
-then the course is kept. A twist of a small lattice replaces the learned one if the sum of its
-danger and of its difference is smaller. The constants were tuned by hand: some 90 settings, each
-on 20 to 1,500 validation worlds of `leaders/…`, `corridor/bidirectional` and
+velocity obstacles, Eq. 22). Agents are predicted for a shorter time. A dynamic obstacle may also
+turn back at once, with a lower weight. A twist is held for a while, 0.3 s or longer where that is
+safer, and then the course is kept. A twist of a small lattice replaces the learned one if the sum
+of its danger and of its difference is smaller. The constants were tuned by hand: some 90 settings,
+each on 20 to 1,500 validation worlds of `leaders/…`, `corridor/bidirectional` and
 `crowd/circle-crossing`.
 """
 
@@ -21,12 +21,12 @@ from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Observation
 
 HORIZON = 2.0  # [s] of prediction for dynamic obstacles
-YIELDING = 1.2  # [s] for agents: they avoid others too, and then keep no velocity
+AGENT_HORIZON = 1.1  # [s] for agents: most of them avoid others too, and then keep no velocity
 FIXED = 1.5  # [s] for static obstacles, and for obstacles that turn back
 HELD = 0.3  # [s] that a twist is held, once or several times, before the course is kept
 TICK = 0.1  # [s] between tested positions
 MARGIN = 0.05  # [m] of clearance beyond touching; twice as much from dynamic obstacles
-HIT = 4.0  # danger of a contact at the end of the horizon,
+HIT = 4.0  # danger of a contact at the end of the longest horizon,
 SOONER = 8.0  # and the additional danger of an immediate contact
 SLACK = 1e-6  # [m] for rounding, where objects out of reach are left out
 BACK = 4.0  # danger of an immediate contact with an obstacle that would have to turn back
@@ -180,7 +180,7 @@ def _danger_held(
         angle += turn * TICK
         for j in range(others):
             mover = kind[j] == _MOVER
-            if t > YIELDING and kind[j] == _AGENT:
+            if t > AGENT_HORIZON + 1e-9 and kind[j] == _AGENT:
                 continue
             reach = radius + other_radius[j] + (2.0 * MARGIN if mover else MARGIN)
             dx, dy = other[j, 0] - x, other[j, 1] - y
