@@ -1,14 +1,15 @@
 """The reference run of a suite, and what is kept of it: ``python -m studies.reference_run RUN``.
 
 Executes the suite `standard` with ten seeds into the folder RUN (one that was broken off goes
-on), verifies all of it, packs it beside itself, and writes into docs/leaderboard:
+on), verifies all of it, packs it beside itself, and writes into docs/leaderboard,
+by the version N of the suite:
 
-* ``standard-2.md``: the page, with the tables over all scenarios;
-* ``standard-2.csv``: every record of the leaderboard, by the metrics of the page;
-* ``standard-2.json``: salt, hashes, versions, the pack's sha256, the digest of every episode;
-* ``standard-2-report.tar.xz``: its report with a few replays, without the files of libraries;
+* ``standard-N.md``: the page, with the tables over all scenarios;
+* ``standard-N.csv``: every record of the leaderboard, by the metrics of the page;
+* ``standard-N.json``: salt, hashes, versions, the pack's sha256, the digest of every episode;
+* ``standard-N-report.tar.xz``: its report with a few replays, without the files of libraries;
   the documentation site shows it;
-* ``standard-2-sample.bnrun``: a few of its scenarios with one seed, verified here and in CI.
+* ``standard-N-sample.bnrun``: a few of its scenarios with one seed, verified here and in CI.
 """
 
 import argparse

@@ -51,6 +51,15 @@ def standing(seen, time, kind=Kind.DYNAMIC):
     )
 
 
+def assert_others(near, expected, b, a):
+    """Agent (b, a) is told of exactly the ``expected`` others."""
+    assert near.count[b, a] == len(expected)
+    for n, (kind, place, velocity, size, _) in enumerate(expected):
+        assert (near.kind[b, a, n], near.radius[b, a, n]) == (kind, size)
+        np.testing.assert_allclose(near.position[b, a, n], place, atol=1e-9)
+        np.testing.assert_allclose(near.velocity[b, a, n], velocity, atol=1e-9)
+
+
 def test_sightings_agree_with_their_twin(shown):
     told, views, bodies = shown
     mine = begun(Sightings(), told)
@@ -60,12 +69,7 @@ def test_sightings_agree_with_their_twin(shown):
         for b, a in np.argwhere(seen.active):
             radius, dt = bodies.radius[b, a], told[b].dt
             kept[b, a] = slow_sightings.others(seen, radius, dt, kept.get((b, a), []), b, a)
-            near, count = found.neighbours, found.neighbours.count[b, a]
-            assert count == len(kept[b, a])
-            for n, (kind, place, velocity, size, _) in enumerate(kept[b, a]):
-                assert (near.kind[b, a, n], near.radius[b, a, n]) == (kind, size)
-                np.testing.assert_allclose(near.position[b, a, n], place, atol=1e-9)
-                np.testing.assert_allclose(near.velocity[b, a, n], velocity, atol=1e-9)
+            assert_others(found.neighbours, kept[b, a], b, a)
             edges, E = found.edges, found.edges.count[b, a]
             pairs = list(zip(edges.start[b, a, :E], edges.end[b, a, :E], strict=True))
             np.testing.assert_array_equal(
@@ -86,12 +90,7 @@ def test_without_rays_all_in_sight_are_met_and_hidden_movers_remembered(shown):
         found = mine.recall(seen)
         for b, a in np.argwhere(seen.active):
             kept[b, a] = slow_sightings.seen_others(seen, told[b].dt, kept.get((b, a), []), b, a)
-            near, count = found.neighbours, found.neighbours.count[b, a]
-            assert count == len(kept[b, a])
-            for n, (kind, place, velocity, size, _) in enumerate(kept[b, a]):
-                assert (near.kind[b, a, n], near.radius[b, a, n]) == (kind, size)
-                np.testing.assert_allclose(near.position[b, a, n], place, atol=1e-9)
-                np.testing.assert_allclose(near.velocity[b, a, n], velocity, atol=1e-9)
+            assert_others(found.neighbours, kept[b, a], b, a)
             remembered += sum(one[-1] > 0 for one in kept[b, a])
         assert found.edges is seen.edges
     assert remembered > 3

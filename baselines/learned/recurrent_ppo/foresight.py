@@ -21,7 +21,7 @@ from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Observation
 
 HORIZON = 2.0  # [s] of prediction for dynamic obstacles
-AGENT_HORIZON = 1.1  # [s] for agents: most of them avoid others too, and then keep no velocity
+AGENT_HORIZON = 1.1  # [s] for agents: most of them avoid others too, and change their velocity
 FIXED = 1.5  # [s] for static obstacles, and for obstacles that turn back
 HELD = 0.3  # [s] that a twist is held, once or several times, before the course is kept
 TICK = 0.1  # [s] between tested positions
