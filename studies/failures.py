@@ -7,7 +7,7 @@ the same worlds without some of their parts. Without WEIGHTS: the included ones 
 """
 
 import argparse
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from benchnav_baselines.learned.recurrent_ppo.actor import Actor
 from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED
+from benchnav_baselines.learned.recurrent_ppo.sightings import memory_of
 from benchnav_baselines.learned.recurrent_ppo.weights import read_weights
 
 from benchnav.arena.body import Body
@@ -87,11 +88,14 @@ class Moment:
         return bool(((self.rays.kind[b, a] == Kind.DYNAMIC) & (gap < BODIES + 0.1)).any())
 
 
-def drive(actor: Actor, encoding: str, worlds: Sequence[World]) -> list[Attempt]:
-    """Return the attempts of all agents of ``worlds``, which share clock and sensing."""
+def drive(actor: Actor, about: Mapping[str, Any], worlds: Sequence[World]) -> list[Attempt]:
+    """Return the attempts of all agents of ``worlds``, which share clock and sensing.
+
+    ``about`` holds the facts of the actor's weights.
+    """
     batch = AgentBatch(
-        worlds, len(worlds), encoder(encoding), RewardWeights(), np.random.default_rng(0),
-        autoreset=Autoreset.DISABLED, reverse=False,
+        worlds, len(worlds), encoder(about["encoder"]), RewardWeights(), np.random.default_rng(0),
+        autoreset=Autoreset.DISABLED, reverse=False, memory=memory_of(about),
     )  # fmt: skip
     seen = batch.reset(np.arange(len(worlds)))
     state = np.zeros((batch.active.size, actor.state_size), np.float32)
@@ -257,7 +261,7 @@ def main() -> None:
     for name in SCENARIOS:
         worlds = [build(find(name), "validation", seed) for seed in range(options.worlds)]
         found[name] = {
-            how: drive(actor, about["encoder"], [change(world) for world in worlds])
+            how: drive(actor, about, [change(world) for world in worlds])
             for how, change in CHANGES.items()
         }
     print("\n".join(page(found)))

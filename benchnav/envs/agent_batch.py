@@ -9,6 +9,7 @@ starts again with the next world of the pool, unless the batch has no autoreset.
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from typing import Protocol
 
 import numpy as np
 
@@ -63,6 +64,16 @@ Correction = Callable[[Observation, Bodies, FloatArray, FloatArray], FloatArray]
 """(observation, bodies, twists (B, A, 2), goal tolerance (B, A) [m]) → twists."""
 
 
+class Memory(Protocol):
+    """A memory of past readings: adds objects to observations that are not perceived now."""
+
+    def forget(self, row: int, agents: int, dt: float) -> None:
+        """Forget all in ``row``, whose world has ``agents`` and decisions every ``dt`` [s]."""
+
+    def recall(self, observation: Observation) -> Observation:
+        """Return the observation of active agents with remembered objects; remember its own."""
+
+
 class AgentBatch:
     """B rows of worlds that share clock, rules and sensing, drawn from a pool in random order."""
 
@@ -79,6 +90,7 @@ class AgentBatch:
         autoreset: Autoreset = Autoreset.SAME_STEP,
         noise: Noise | None = None,
         reverse: bool = True,
+        memory: Memory | None = None,
     ) -> None:
         """Prepare the batch. No world is drawn before `reset`.
 
@@ -96,6 +108,8 @@ class AgentBatch:
                 perceive without error.
             reverse: whether the speeds of actions begin at full speed backwards for bodies that
                 can reverse, instead of at 0.
+            memory: of the learners, for an encoder with neighbours and edges; neither the reward
+                nor ``correct`` depends on it.
 
         Raises UsageError if no world of the pool has an agent that learns.
         """
@@ -128,7 +142,7 @@ class AgentBatch:
         self.active = np.zeros((s.B, s.A), np.bool_)
         self._slots = np.tile(np.arange(s.A), (s.B, 1))  # (B, A) all agents
         self._senses = NoisySenses(s, self._slots, noise) if noise is not None else None
-        self._reverse = reverse
+        self._reverse, self._memory = reverse, memory
         self.only: BoolArray | None = None  # (B, A) agents that learn now; None: all
 
     @property
@@ -208,7 +222,8 @@ class AgentBatch:
     def _observing(self, timed_out: BoolArray) -> BoolArray:
         """Return the agents (B, A) whose observation counts after a step."""
         going = self.active | timed_out
-        return going if self.only is None or self._senses is not None else going & self.only
+        ages = self._senses is not None or self._memory is not None  # each reading counts
+        return going if self.only is None or ages else going & self.only
 
     def _probability(self, seen: Observation) -> FloatArray:
         """Return the probability (B, A) of a collision with a mover."""
@@ -225,6 +240,9 @@ class AgentBatch:
             keys = self._rng.integers(0, 2**64, (len(rows), 2), np.uint64)
             self._senses.begin(rows, keys)
         self.active[rows] = s.present[rows] & s.agents["evaluated"][rows]
+        if self._memory is not None:
+            for row in rows:
+                self._memory.forget(int(row), s.A, s.pool[0].clock.dt)
         for k, driver in enumerate(self._drivers, 1):
             mine = [np.flatnonzero(s.pool[w].agents.driver == k) for w in worlds]
             driver.start(rows, mine, self._rng.spawn(len(rows)))
@@ -254,6 +272,8 @@ class AgentBatch:
         return self._needs if self._movers or self.correct is not None else self._encoded_needs
 
     def _encoded(self, seen: Observation) -> Float32Array:
+        if self._memory is not None:
+            seen = self._memory.recall(seen)
         return self.encoder.encode(seen, self._bodies)
 
 

@@ -5,12 +5,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from benchnav_baselines.learned.recurrent_ppo import detour
+from benchnav_baselines.learned.recurrent_ppo import detour, policy_at_work
 from benchnav_baselines.learned.recurrent_ppo.detour import Detours
 from benchnav_baselines.learned.recurrent_ppo.foresight import foresee
+from benchnav_baselines.learned.recurrent_ppo.policy_at_work import PolicyPilot
 from benchnav_baselines.learned.recurrent_ppo.sightings import MEMORY, Sightings
+from benchnav_baselines.learned.recurrent_ppo.weights import write_weights
 
 from benchnav.arena.solid import Kind
+from benchnav.envs.encoders.catalogue import encoder
 from benchnav.envs.encoders.encoder import Bodies
 from benchnav.errors import PluginError
 from benchnav.navigation.navigator import Need
@@ -43,6 +46,14 @@ def begun(part, told):
     return part
 
 
+def seeing(told, **kind):
+    """Sightings of which nothing is remembered yet."""
+    mine = Sightings(**kind)
+    for row, one in enumerate(told):
+        mine.forget(row, len(one), one.dt)
+    return mine
+
+
 def standing(seen, time, kind=Kind.DYNAMIC):
     """The same view, later, with neighbours of one kind."""
     kinds = np.full_like(seen.neighbours.kind, int(kind))
@@ -62,7 +73,7 @@ def assert_others(near, expected, b, a):
 
 def test_sightings_agree_with_their_twin(shown):
     told, views, bodies = shown
-    mine = begun(Sightings(), told)
+    mine = seeing(told)
     kept, remembered, hidden = {}, 0, 0
     for seen in views:
         found = mine.recall(seen)
@@ -84,21 +95,25 @@ def test_sightings_agree_with_their_twin(shown):
 
 def test_without_rays_all_in_sight_are_met_and_hidden_movers_remembered(shown):
     told, views, _ = shown
-    mine = begun(Sightings(rays=False), told)
-    kept, remembered = {}, 0
+    mine = seeing(told, rays=False)
+    kept, remembered, reordered = {}, 0, 0
     for seen in views:
         found = mine.recall(seen)
+        assert not found.neighbours.count[~seen.active].any()
         for b, a in np.argwhere(seen.active):
             kept[b, a] = slow_sightings.seen_others(seen, told[b].dt, kept.get((b, a), []), b, a)
-            assert_others(found.neighbours, kept[b, a], b, a)
+            nearest = sorted(kept[b, a], key=lambda one: math.dist(one[1], seen.position[b, a]))
+            assert_others(found.neighbours, nearest, b, a)
+            reordered += [*map(id, nearest)] != [*map(id, kept[b, a])]
             remembered += sum(one[-1] > 0 for one in kept[b, a])
         assert found.edges is seen.edges
     assert remembered > 3
+    assert reordered > 0
 
 
 def test_who_is_not_met_again_is_forgotten(shown):
     told, views, _ = shown
-    mine = begun(Sightings(), told)
+    mine = seeing(told)
     before = mine.recall(views[0]).neighbours.count.sum()
     assert before > 0
     blind = replace(views[0], rays=replace(views[0].rays, kind=np.zeros_like(views[0].rays.kind)))
@@ -224,6 +239,46 @@ def test_the_names_say_what_drives():
     assert hybrid.fingerprint == make(NAVIGATORS, "recurrent-ppo").fingerprint
     alone = make(NAVIGATORS, {"type": "recurrent-ppo-vo", "foresight": False, "patience": 0})
     assert alone.required == {Need.RAYS}
+
+
+@pytest.mark.parametrize("hidden_movers", [False, True])
+def test_hidden_movers_are_in_the_encoding_only_if_they_were_in_training(
+    shown, hidden_movers, tmp_path, monkeypatch
+):
+    told, views, _ = shown
+    size = encoder("surround").size
+    tensors = {"output.weight": np.zeros((size, 2), np.float32),
+               "output.bias": np.zeros(2, np.float32)}  # fmt: skip
+    about = {"encoder": "surround", "progress": {"decisions": 0, "seconds": 0.0}}
+    path = tmp_path / "w.safetensors"
+    write_weights(path, tensors, about | {"hidden_movers": hidden_movers})
+    pilot = PolicyPilot(path, foresight=True)
+    pilot.reset(told, np.arange(len(told)))
+    encoded, foreseen = [], []
+    encode = pilot._encoder.encode
+    monkeypatch.setattr(
+        type(pilot._encoder), "encode",
+        lambda self, seen, bodies: encoded.append(seen) or encode(seen, bodies),
+    )  # fmt: skip
+    monkeypatch.setattr(
+        policy_at_work, "foresee", lambda seen, bodies, *rest: foreseen.append(seen) or rest[0]
+    )
+    for seen in views:
+        pilot.twists(seen, np.full(seen.active.shape, 0.5))
+    counts = [[seen.neighbours.count.sum() for seen in many] for many in (views, encoded, foreseen)]
+    assert counts[2] != counts[0]
+    assert counts[1] == counts[2 if hidden_movers else 0]
+
+
+@pytest.mark.parametrize(("name", "value"), [("ego", True), ("surround", "false")])
+def test_weights_that_cannot_have_hidden_movers_are_refused(name, value, tmp_path):
+    size, path = encoder(name).size, tmp_path / "w.safetensors"
+    tensors = {"output.weight": np.zeros((size, 2), np.float32),
+               "output.bias": np.zeros(2, np.float32)}  # fmt: skip
+    about = {"encoder": name, "progress": {"decisions": 0, "seconds": 0.0}, "hidden_movers": value}
+    write_weights(path, tensors, about)
+    with pytest.raises(PluginError, match="`hidden_movers` must be true or false, and false with"):
+        PolicyPilot(path)
 
 
 def test_included_weights_have_names(tmp_path, monkeypatch):

@@ -58,7 +58,7 @@ def test_what_is_written_is_read(path):
     tensors = tensors_of()
     write_weights(path, tensors, ABOUT)
     actor, about = read_weights(path)
-    assert {**about, "sha256": None} == {**ABOUT, "sha256": None}
+    assert {**about, "sha256": None} == {**ABOUT, "sha256": None, "hidden_movers": False}
     assert actor.state_size == 16
     np.testing.assert_array_equal(actor.lstm[1].weight, tensors["lstm1.weight"])
     np.testing.assert_array_equal(actor.dense[0].bias, tensors["dense0.bias"])

@@ -213,13 +213,15 @@ def test_patience_counts_checkpoints_without_a_better_one():
 def test_the_hash_is_of_what_decides_the_weights():
     recipe = tiny()
     assert recipe.hash == tiny(description="other words").hash
-    assert recipe.hash == tiny(perception="exact", precision="auto", processes=1).hash
+    defaults = {"perception": "exact", "precision": "auto", "processes": 1, "hidden_movers": False}
+    assert recipe.hash == tiny(**defaults).hash
     others = [
         tiny(rows=3), tiny(gamma=0.9), tiny(encoder="paper"), tiny(sequence=7),
         tiny(precision="float32"), tiny(processes=2), tiny(perception="noisy"),
-        tiny(network={"lstm_layers": 1, "lstm_size": 9}),
+        tiny(network={"lstm_layers": 1, "lstm_size": 9}), tiny(encoder="surround"),
+        tiny(encoder="surround", hidden_movers=True),
     ]  # fmt: skip
-    assert len({recipe.hash, *(other.hash for other in others)}) == 9
+    assert len({recipe.hash, *(other.hash for other in others)}) == 11
 
 
 def test_a_recipe_trains_and_validates_in_its_perception_track():
@@ -268,6 +270,8 @@ def call(capfd, tmp_path):
          "recipe.yaml:10: stages[1].reward.wall is not a known key. Did you mean 'walls'?"),
         ("lstm_layers: 1", "lstm_layers: 0", "recipe.yaml:7: network must have LSTM or dense"),
         ("leaders/static", "leaders/statik", "leaders/static"),
+        ("rows: 2", "hidden_movers: true\nrows: 2",
+         "recipe.yaml:4: hidden_movers must be false with the encoder 'ego'"),
         ("rows: 2", "processes: 3\nrows: 2", "recipe.yaml:4: processes must be at most rows"),
     ],
 )  # fmt: skip

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from benchnav_baselines.learned.recurrent_ppo.actor import Actor
 from benchnav_baselines.learned.recurrent_ppo.learning.evaluate import evaluate
+from benchnav_baselines.learned.recurrent_ppo.sightings import Sightings
 from benchnav_baselines.learned.recurrent_ppo.weights import write_weights
 
 from benchnav.arena.solid import Kind
 from benchnav.arena.world import ContactRule
-from benchnav.envs.agent_batch import AgentBatch
+from benchnav.envs.agent_batch import AgentBatch, Autoreset
 from benchnav.envs.autoreset import KINDS, AutoresetSimulation
 from benchnav.envs.background_agents import BackgroundCommands
 from benchnav.envs.encoders.catalogue import encoder
@@ -348,6 +349,57 @@ def test_strict_success_is_what_the_runner_records(tensors, scenario, tmp_path):
         assert not np.isin(episode.contacts.agent, np.flatnonzero(there)).any()
     if tensors is STEERING and not drivers:
         assert 0 < arrived.mean() < 1
+
+
+@pytest.mark.parametrize("remembers", [False, True])
+def test_what_learners_remember_they_perceive_in_runs_too(remembers, tmp_path):
+    """Each number of the encoding changes the commands, and so the final positions."""
+    path, worlds = tmp_path / "w.safetensors", drawn("leaders/dynamic", 8, "validation")
+    chosen = encoder("dynamic-window")
+    output = 0.05 * np.random.default_rng(0).normal(size=(chosen.size, 2)).astype(np.float32)
+    output[[n.name for n in chosen.numbers].index("goal.sin"), 1] += 1.5
+    tensors = {"output.weight": output, "output.bias": np.array([0.2, 0.0], np.float32)}
+    about = {"encoder": "dynamic-window", "progress": {"decisions": 0, "seconds": 0.0}}
+    write_weights(path, tensors, about | {"hidden_movers": remembers})
+    actor, ends = Actor(tensors), {}
+    for memory in (None, Sightings(rays=False)):
+        batch = batch_of(
+            worlds, 8, "dynamic-window", memory=memory, autoreset=Autoreset.DISABLED, reverse=False
+        )
+        ends[memory is not None] = last_positions(actor, batch)
+    assert (ends[False] != ends[True]).any()
+    run = Assignment(
+        "leaders/dynamic", "hash", "validation", "unknown", "own",
+        {"type": "recurrent-ppo-plus", "weights": str(path), "foresight": False, "patience": 0},
+    )  # fmt: skip
+    for batch in rollout(run, list(enumerate(worlds))):
+        for episode in batch:
+            expected = ends[remembers][episode.identity.seed]
+            assert not episode.failure
+            np.testing.assert_array_equal(
+                episode.position[-1], expected[: len(episode.world.agents)]
+            )
+
+
+@pytest.mark.parametrize("autoreset", [Autoreset.SAME_STEP, Autoreset.NEXT_STEP])
+def test_a_row_that_starts_again_has_forgotten_everything(autoreset):
+    worlds = drawn("leaders/dynamic", 2, "validation")
+    batch = batch_of(worlds, 1, "dynamic-window", memory=Sightings(rays=False), autoreset=autoreset)
+    batch.reset(np.array([0]))
+    batch._queue = np.array([1])
+    fast = np.ones((1, batch.width, 2)) * [1.0, 0.1]
+    for _ in range(worlds[0].clock.steps + 2):
+        step = batch.step(fast)
+        if step.restarted.any():
+            break
+    fresh = batch_of(worlds, 1, "dynamic-window", memory=Sightings(rays=False))
+    np.testing.assert_array_equal(step.observation, fresh.reset(np.array([1])))
+
+
+def last_positions(actor, batch):
+    """(B, A, 2) [m] at the end of the first worlds."""
+    evaluate(actor, batch)
+    return batch.simulation.position.copy()
 
 
 def test_every_array_with_a_row_for_each_world_of_the_pool_has_one_for_each_row():

@@ -8,7 +8,7 @@ import pytest
 from benchnav.envs.encoders.catalogue import ENCODERS, encoder
 
 PAGE = (Path(__file__).parents[2] / "docs" / "environments.md").read_text("utf-8")
-REPEATED = re.compile(r"^(ray|scan|other|pan|soon)(\d+)\.")
+REPEATED = re.compile(r"^(ray|scan|other|pan|soon|window)(\d+)\.")
 HEAD = ("number", "unit", "range", "what it is")
 
 
@@ -23,7 +23,7 @@ def rows(numbers):
             f"`{name}`",
             n.unit,
             f"{n.low:g} … {n.high:g}",
-            n.meaning.replace("0° to", "k · 15° to"),
+            n.meaning.replace("0° to", "k · 15° to").replace("command 0", "command k"),
         )
 
 
@@ -53,6 +53,7 @@ def part(numbers, first, last):
         ("surround", 0, 80),
         ("panorama", 64, 160),
         ("outlook", 160, 210),
+        ("dynamic-window", 160, 295),
     ],
 )
 def test_every_number_is_listed(name, first, last):
@@ -70,13 +71,15 @@ def test_paper_and_ego_differ_in_six_numbers():
     assert [k for k in range(62) if paper[k] != ego[k]] == list(range(42, 48))
 
 
-@pytest.mark.parametrize("name", ["ego", "near", "surround", "panorama", "outlook"])
+@pytest.mark.parametrize(
+    "name", ["ego", "near", "surround", "panorama", "outlook", "dynamic-window"]
+)
 def test_what_repeats_is_alike(name):
     kept = {}
     for n in encoder(name).numbers:
         found = REPEATED.match(n.name)
         if found:
             key = (found[1], n.name[found.end() :])
-            says = re.sub(r"[\d.]+°", "°", n.meaning)
+            says = re.sub(r"[\d.]+°|command \d+", "°", n.meaning)
             kept.setdefault(key, set()).add((n.unit, n.low, n.high, says))
     assert all(len(kinds) == 1 for kinds in kept.values())

@@ -112,8 +112,9 @@ def assert_twin(name, seen, bodies, every=1):
 @pytest.mark.parametrize("scenario", SCENARIOS)
 def test_agrees_with_its_twin_in_worlds(name, scenario):
     observations, bodies = sensed(scenario)
+    every = 5 if name == "dynamic-window" else 2  # its twin is slow
     for seen in observations[::7]:
-        assert_twin(name, seen, bodies, every=2)
+        assert_twin(name, seen, bodies, every)
 
 
 @pytest.mark.parametrize("name", ENCODERS)
@@ -133,6 +134,7 @@ def test_agrees_with_its_twin_in_imagined_views(name, seed):
         ("surround", 80),
         ("panorama", 160),
         ("outlook", 210),
+        ("dynamic-window", 295),
     ],
 )
 def test_widths(name, width):
@@ -166,7 +168,9 @@ def test_what_is_out_of_range_is_clipped(name):
 
 
 @pytest.mark.parametrize("angle", [0.0, 1.0, -2.5, math.pi / 2])
-@pytest.mark.parametrize("name", ["ego", "ego-static", "near", "surround", "panorama"])
+@pytest.mark.parametrize(
+    "name", ["ego", "ego-static", "near", "surround", "panorama", "dynamic-window"]
+)
 def test_an_own_frame_is_blind_to_where_the_world_lies(name, angle):
     seen, bodies = imagined(1)
     there = moved(seen, angle, np.array([3.0, -4.0]))
@@ -232,3 +236,44 @@ def test_a_ray_by_hand():
     assert of_one_ray(Kind.DYNAMIC, 2.0, approach=1.0) == ([0, 0, 0, 0, 1, 1], [0.5, 0.25])
     in_front = of_one_ray(Kind.DYNAMIC, 4.0, goal=2.0, approach=-1.0)
     assert in_front == ([0, 0, 0, 1, 0, 0.25], [-0.5, 0.5])
+
+
+def window(edge=False, other=None, speed=0.0):
+    """The dynamic window {kind: (speeds, turns)} of an agent of 0.3 m that may drive 1 m/s.
+
+    Ahead of it is an edge 2.35 m away, or another of 0.3 m, 3 m away, which drives ahead.
+    """
+    seen, _ = imagined(B=1, A=1)
+    one = np.ones((1, 1, 1))
+    at = {"position": np.zeros((1, 1, 2)), "heading": np.zeros((1, 1))}
+    near = Neighbours(
+        one[..., None] * [3.0, 0.0], one[..., None] * [speed, 0.0], 0.3 * one,
+        (one * int(other or 0)).astype(np.int8), np.array([[int(other is not None)]]),
+    )  # fmt: skip
+    ends = [one[..., None] * [2.35, y] for y in (5.0, -5.0)]
+    flags = np.zeros((1, 1, 1), bool)
+    edges = Edges(*ends, *ends, flags, flags, np.array([[int(edge)]]))
+    body = Bodies(np.full((1, 1), 0.3), np.ones((1, 1)), np.ones((1, 1)))
+    values = encoder("dynamic-window").encode(
+        replace(seen, neighbours=near, edges=edges, **at), body
+    )
+    return dict(zip(("short", "long", "back"), values[0, 0, 160:].reshape(3, 5, 9), strict=True))
+
+
+def test_a_dynamic_window_by_hand():
+    """Straight on is turn 4; contact with the edge counts from 2.35 m - 0.3 m - 0.05 m on."""
+    wall = window(edge=True)
+    for kind in ("short", "long"):
+        assert wall[kind][4, 4] == pytest.approx(math.exp(-2.0 / 1.5))  # 2 m at 1 m/s
+        assert wall[kind][3, 4] == pytest.approx(math.exp(-2.0 / 0.75 / 1.5))
+        assert wall[kind][1, 4] == 0.0  # 8 s are beyond the horizon
+        assert (wall[kind][0] == 0.0).all()
+    assert wall["long"][4, 0] < wall["short"][4, 0] < wall["short"][4, 4]
+    assert not wall["back"].any()
+    leaving = window(other=Kind.DYNAMIC, speed=1.0)
+    assert not leaving["short"].any()
+    assert leaving["back"][0] == pytest.approx(math.exp(-2.35 / 1.5))
+    assert leaving["back"][4, 4] == pytest.approx(math.exp(-2.35 / 2 / 1.5))
+    agent = window(other=Kind.AGENT, speed=-1.0)
+    assert agent["short"][0] == pytest.approx(math.exp(-2.35 / 1.5))
+    assert not agent["back"].any()

@@ -187,6 +187,68 @@ def outlook(seen, at, bodies):
     return numbers
 
 
+def first_contact(positions, velocities, reaches):
+    """[s] until the first of the discs (N, 2), moving at (N, 2), comes within reach."""
+    times = [meeting(*other) for other in zip(positions, velocities, reaches, strict=True)]
+    return min(times, default=math.inf)
+
+
+def edge_contact(position, velocity, reach, start, end):
+    """[s] until a point comes within ``reach`` of an edge: at its ends, or at its two sides."""
+    before, after = distance_to_edges(position + np.outer([0, 1e-7], velocity), start, end)
+    times = []
+    for k, (p, q) in enumerate(zip(start, end, strict=True)):
+        if after[k] >= before[k] - 1e-9 * reach * 1e-7:
+            continue
+        if before[k] <= reach:
+            return 0.0
+        times += [meeting(position - p, velocity, reach), meeting(position - q, velocity, reach)]
+        along = (q - p) / max(math.hypot(*(q - p)), 1e-12)
+        across = np.array([-along[1], along[0]])
+        if abs(across @ velocity) > 1e-12:
+            for side in (-reach, reach):
+                t = (side - across @ (position - p)) / (across @ velocity)
+                way = along @ (position + t * velocity - p)
+                if t >= 0 and 0 <= way <= math.hypot(*(q - p)):
+                    times.append(t)
+    return min(times, default=math.inf)
+
+
+def contact(seen, at, bodies, speed, turn, held, back):
+    """[s] until a command, held for ``held`` pieces of 0.3 s, leads to a contact."""
+    near, edges = seen.neighbours, seen.edges
+    count = near.count[at]
+    which = np.array([not back or kind == Kind.DYNAMIC for kind in near.kind[at][:count]], bool)
+    places, speeds = near.position[at][:count][which], near.velocity[at][:count][which]
+    if back:
+        speeds = -speeds
+    reaches = bodies.radius[at] + near.radius[at][:count][which] + 0.05
+    start, end = (getattr(edges, x)[at][: edges.count[at]] for x in ("start", "end"))
+    position, angle, now = seen.position[at], seen.heading[at], 0.0
+    for piece in range(held + 1):
+        left = 0.3 if piece < held else 4.0 - now
+        middle = angle + (0.15 * turn if piece < held else 0)
+        velocity = speed * np.array([math.cos(middle), math.sin(middle)])
+        time = first_contact(position - places - now * speeds, velocity - speeds, reaches)
+        if not back:
+            edge = edge_contact(position, velocity, bodies.radius[at] + 0.05, start, end)
+            time = min(time, edge)
+        if time <= left:
+            return now + time
+        position, angle, now = position + left * velocity, angle + 0.3 * turn, now + left
+    return math.inf
+
+
+def dynamic_window(seen, at, bodies):
+    numbers = panorama(seen, at, bodies)
+    for held, back in ((1, False), (3, False), (1, True)):
+        for speed in np.linspace(0, 1, 5) * bodies.max_speed[at]:
+            for turn in np.linspace(-1, 1, 9) * bodies.max_turn_rate[at]:
+                time = contact(seen, at, bodies, speed, turn, held, back)
+                numbers.append(math.exp(-time / 1.5) if time < 4 else 0)
+    return numbers
+
+
 def surround(seen, at, bodies):
     numbers = relative(seen, at)
     numbers.append(math.exp(-math.hypot(*(seen.goal[at] - seen.position[at])) / 2))
@@ -205,6 +267,8 @@ def encode(name, seen, at, bodies):
         return panorama(seen, at, bodies)
     if name == "outlook":
         return outlook(seen, at, bodies)
+    if name == "dynamic-window":
+        return dynamic_window(seen, at, bodies)
     if name == "near":
         return near(seen, at)
     own = absolute if name.startswith("paper") else relative

@@ -18,7 +18,7 @@ from ...common.ray_fit import why_rays_do_not_fit
 from .actor import Actor
 from .detour import Detours
 from .foresight import HELD, foresee
-from .sightings import Sightings
+from .sightings import NEEDS, Sightings
 from .weights import read_weights
 
 SHIPPED = Path(__file__).parent / "weights"
@@ -63,6 +63,7 @@ class PolicyPilot(Pilot):
         patience: [s] of standing before a detour; 0: no detours.
 
     A policy with rays predicts collisions only with what its rays hit; all remember hidden movers.
+    A policy that was trained with `hidden_movers` perceives the remembered movers, too.
     """
 
     def __init__(
@@ -76,12 +77,13 @@ class PolicyPilot(Pilot):
         self._encoder = encoder(self.about["encoder"])
         self._foresight, self._hold = foresight, hold
         self._sightings = Sightings(rays=Need.RAYS in self._encoder.needs)
+        self._hidden_movers = self.about["hidden_movers"]
         self._detours = Detours(patience) if patience else None
         self._kept = RowTable()
 
     @property
     def needs(self) -> frozenset[Need]:
-        around = {Need.NEIGHBOURS, Need.EDGES} if self._foresight or self._detours else ()
+        around = NEEDS if self._foresight or self._detours else frozenset()
         return self._encoder.needs.union(around)
 
     @property
@@ -102,9 +104,9 @@ class PolicyPilot(Pilot):
             limits = {name: getattr(briefing, name) for name in _LIMITS}
             limits["tolerance"] = np.full(len(briefing), briefing.goal_tolerance)
             self._kept.put(int(row), memory=memory, **limits)
-            for part in (self._sightings, self._detours):
-                if part is not None:
-                    part.reset(int(row), briefing)
+            self._sightings.forget(int(row), len(briefing), briefing.dt)
+            if self._detours is not None:
+                self._detours.reset(int(row), briefing)
 
     def tolerance(self, observation: Observation) -> FloatArray:
         return self._limit("tolerance", observation)
@@ -113,7 +115,12 @@ class PolicyPilot(Pilot):
         active, rows = observation.active, observation.rows
         radius, speed, turn = (self._limit(name, observation) for name in _LIMITS)
         bodies = Bodies(radius, speed, turn)
-        encoded = self._encoder.encode(observation, bodies)
+        corrected = self._foresight or self._detours is not None
+        recalled = observation
+        if corrected or self._hidden_movers:
+            recalled = self._sightings.recall(observation)
+        perceived = recalled if self._hidden_movers else observation
+        encoded = self._encoder.encode(perceived, bodies)
         memory = self._kept.take("memory", rows, active.shape[1]).copy()
         now = memory[active]
         action = np.clip(self._actor.decide(encoded[active], now).astype(float), -1.0, 1.0)
@@ -123,19 +130,11 @@ class PolicyPilot(Pilot):
         command[active] = action
         command[..., 0] = 0.5 * (command[..., 0] + 1.0) * speed
         command[..., 1] *= turn
-        return self._corrected(observation, bodies, command, tolerance)
-
-    def _corrected(
-        self, observation: Observation, bodies: Bodies, command: FloatArray, tolerance: FloatArray
-    ) -> FloatArray:
-        if self._detours is None and not self._foresight:
-            return command
-        observation = self._sightings.recall(observation)
         if self._detours is not None:
-            self._detours.steer(observation, bodies, command)
-        if not self._foresight:
-            return command
-        return foresee(observation, bodies, command, tolerance, self._hold)
+            self._detours.steer(recalled, bodies, command)
+        if self._foresight:
+            command = foresee(recalled, bodies, command, tolerance, self._hold)
+        return command
 
     def _limit(self, name: str, observation: Observation) -> FloatArray:
         values: FloatArray = self._kept.take(name, observation.rows, observation.active.shape[1])

@@ -1,4 +1,4 @@
-"""Objects that an agent has perceived lately: the input of foresight.
+"""Objects that an agent has perceived lately: the input of foresight, and of some policies.
 
 The disc of a thick ray stops at an object: an agent or obstacle at that place counts as hit, and
 so does an edge. Agents and movers are reported with their velocity (as Eq. 22 of the paper
@@ -8,7 +8,9 @@ that obstacles hide; other agents may have arrived meanwhile.
 """
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,8 +18,9 @@ from benchnav.arena import Kind
 from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel, kernel_without_allocation
-from benchnav.navigation import Briefing, Edges, Neighbours, Observation, RowTable
+from benchnav.navigation import Edges, Need, Neighbours, Observation, RowTable
 
+NEEDS = frozenset({Need.NEIGHBOURS, Need.EDGES})
 MEMORY = 2.0  # [s] for which an agent or mover is remembered
 SLACK = 0.05  # [m] largest distance of a ray's disc from the object that it hit
 SAME = 0.8  # [m] within which a remembered object and a hit object are the same
@@ -34,14 +37,16 @@ class Sightings:
         self._rays = rays
         self._kept = RowTable()
 
-    def reset(self, row: int, briefing: Briefing) -> None:
-        """Forget all objects in the world ``row``."""
-        empty = np.zeros((len(briefing), MAX_OTHERS, 7))
+    def forget(self, row: int, agents: int, dt: float) -> None:
+        """Forget all objects in the world ``row``, which has decisions every ``dt`` [s]."""
+        empty = np.zeros((agents, MAX_OTHERS, 7))
         empty[..., _AGE] = math.inf
-        self._kept.put(row, met=empty, dt=np.full(len(briefing), briefing.dt))
+        self._kept.put(row, met=empty, dt=np.full(agents, dt))
 
     def recall(self, observation: Observation) -> Observation:
         """Return the observation with others that are met or remembered, and edges that rays hit.
+
+        Without rays, the others are nearest first.
 
         Args:
             observation: with neighbours, edges, and rays (if it is about them).
@@ -73,7 +78,15 @@ class Sightings:
             edges = _chosen(edges, touched)
         _remember(indices, *others, _flat(perceived), not self._rays, dt, _flat(met))
         self._kept.write("met", observation.rows, met)
-        return replace(observation, neighbours=_others(met), edges=edges)
+        neighbours = _others(met, observation.active)
+        if not self._rays:
+            neighbours = _nearest_first(neighbours, observation.position)
+        return replace(observation, neighbours=neighbours, edges=edges)
+
+
+def memory_of(about: Mapping[str, Any]) -> Sightings | None:
+    """Return what the encoder of a policy remembers, by the facts of its recipe or weights."""
+    return Sightings(rays=False) if about["hidden_movers"] else None
 
 
 def _flat(array: AnyArray) -> AnyArray:
@@ -81,11 +94,24 @@ def _flat(array: AnyArray) -> AnyArray:
     return array.reshape(-1, *array.shape[2:])
 
 
-def _others(met: FloatArray) -> Neighbours:
-    """Return the remembered agents and movers."""
+def _others(met: FloatArray, active: BoolArray) -> Neighbours:
+    """Return the remembered agents and movers, for active agents."""
+    count = np.where(active, np.isfinite(met[..., _AGE]).sum(axis=-1), 0)
     return Neighbours(
         met[..., _X : _Y + 1].copy(), met[..., _U : _V + 1].copy(), met[..., _RADIUS].copy(),
-        met[..., _KIND].astype(np.uint8), np.isfinite(met[..., _AGE]).sum(axis=-1),
+        met[..., _KIND].astype(np.uint8), count,
+    )  # fmt: skip
+
+
+def _nearest_first(others: Neighbours, position: FloatArray) -> Neighbours:
+    """Return the others by their distance from the agents at ``position`` (B, A, 2)."""
+    away = np.linalg.norm(others.position - position[..., None, :], axis=-1)
+    away[np.arange(away.shape[-1]) >= others.count[..., None]] = math.inf
+    worlds, agents, _ = np.ogrid[tuple(map(slice, away.shape))]
+    place = worlds, agents, np.argsort(away, axis=-1, kind="stable")
+    return Neighbours(
+        others.position[place], others.velocity[place], others.radius[place], others.kind[place],
+        others.count,
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from benchnav.errors import PluginError
 
 from ...common.tensor_file import read_tensors, write_tensors
 from .actor import Actor, Float32Array
+from .sightings import NEEDS
 
 FORMAT = "benchnav-actor-1"
 
@@ -40,6 +41,12 @@ def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
     name = about.get("encoder")
     if name not in ENCODERS:
         raise PluginError(f"{path}: made for the encoder {name!r}, which does not exist.")
+    hidden = about.setdefault("hidden_movers", False)  # older files do not have the key
+    if hidden is not False and not (hidden is True and encoder(name).needs >= NEEDS):
+        raise PluginError(
+            f"{path}: `hidden_movers` must be true or false, and false with the encoder {name!r}"
+            f" if that perceives by rays. Got {hidden!r} instead."
+        )
     actor = _fitting(path, _widened(file.tensors), encoder(name).size, name)
     return actor, about
 

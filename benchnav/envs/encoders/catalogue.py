@@ -1,5 +1,6 @@
 """Encoders by name."""
 
+from benchnav.envs.encoders.dynamic_window import DynamicWindowEncoder
 from benchnav.envs.encoders.encoder import Encoder
 from benchnav.envs.encoders.near import NearEncoder
 from benchnav.envs.encoders.outlook import OutlookEncoder
@@ -8,7 +9,13 @@ from benchnav.envs.encoders.paper import EgoEncoder, PaperEncoder
 from benchnav.envs.encoders.surround import SurroundEncoder
 from benchnav.errors import UsageError, did_you_mean
 
-ENCODERS = ("paper", "paper-static", "ego", "ego-static", "near", "surround", "panorama", "outlook")
+_OTHERS = {
+    kind.name: kind
+    for kind in (
+        NearEncoder, SurroundEncoder, PanoramaEncoder, OutlookEncoder, DynamicWindowEncoder,
+    )
+}  # fmt: skip
+ENCODERS = ("paper", "paper-static", "ego", "ego-static", *_OTHERS)
 
 
 def encoder(name: str) -> Encoder:
@@ -21,13 +28,7 @@ def encoder(name: str) -> Encoder:
             f"An encoder must be one of {', '.join(ENCODERS)}. Got {name!r} instead."
             f"{did_you_mean(name, ENCODERS)}"
         )
-    if name == "surround":
-        return SurroundEncoder()
-    if name == "panorama":
-        return PanoramaEncoder()
-    if name == "outlook":
-        return OutlookEncoder()
-    if name == "near":
-        return NearEncoder()
+    if name in _OTHERS:
+        return _OTHERS[name]()
     kind = PaperEncoder if name.startswith("paper") else EgoEncoder
     return kind(movers=not name.endswith("-static"))

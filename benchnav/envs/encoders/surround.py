@@ -71,7 +71,7 @@ class SurroundEncoder(Encoder):
         if agents:
             _scan(
                 seen.position.reshape(agents, 2), seen.heading.reshape(agents),
-                bodies.radius.reshape(agents), *_flat(seen.edges, agents),
+                bodies.radius.reshape(agents), *edge_numbers(seen.edges, agents),
                 scan.reshape(agents, DIRECTIONS),
             )  # fmt: skip
             _others(
@@ -103,7 +103,8 @@ def _other_numbers(k: int) -> list[Number]:
     ]
 
 
-def _flat(edges: Edges, agents: int) -> tuple[FloatArray, FloatArray, IntArray]:
+def edge_numbers(edges: Edges, agents: int) -> tuple[FloatArray, FloatArray, IntArray]:
+    """Return start, end and count of the edges of ``agents`` agents."""
     return (
         edges.start.reshape(agents, -1, 2), edges.end.reshape(agents, -1, 2),
         edges.count.reshape(agents),

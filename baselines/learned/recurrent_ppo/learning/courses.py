@@ -12,6 +12,7 @@ from benchnav.generation.build import build, noise_of
 from benchnav.navigation import Spec
 from benchnav.scenario.catalogue import find
 
+from ..sightings import memory_of
 from .recipe import Recipe, Stage
 
 
@@ -72,4 +73,5 @@ def _batch(recipe: Recipe, pool: Pool, rows: int) -> AgentBatch:
     return AgentBatch(
         pool.worlds, rows, encoder(recipe.encoder), RewardWeights(), np.random.default_rng(0),
         drivers=pool.drivers, noise=pool.noise, reverse=False,  # as `PolicyPilot` drives
+        memory=memory_of(recipe.model_dump()),
     )  # fmt: skip

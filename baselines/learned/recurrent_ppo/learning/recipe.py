@@ -12,9 +12,12 @@ from benchnav.envs import ENCODERS, RewardWeights, encoder
 from benchnav.errors import did_you_mean
 from benchnav.navigation import Need
 
+from ..sightings import NEEDS
+
 Share = Annotated[float, Field(ge=0, le=1)]
 Precision = Literal["float32", "bfloat16"]
 Rate = Annotated[float, Field(gt=0, le=1)]
+LATER = ("hidden_movers", "perception", "precision", "processes")  # not in older recipes
 LogStd = Annotated[float, Field(ge=-5, le=2)]
 
 
@@ -75,6 +78,11 @@ class Recipe(_Part):
     trainer: Literal["recurrent-ppo"] = "recurrent-ppo"
     description: str = Field("", max_length=5000)
     encoder: str = Field("ego", description=f"one of {', '.join(ENCODERS)}")
+    hidden_movers: bool = Field(
+        False,
+        description="keep movers that are no longer sensed in the observations for up to 2 s, at"
+        " constant velocity; needs an encoder with neighbours and edges",
+    )
     perception: Literal["exact", "noisy"] = Field(
         "exact", description="perception track of all worlds"
     )
@@ -106,7 +114,7 @@ class Recipe(_Part):
     def hash(self) -> str:
         """16 hex digits of everything that determines the weights, except the seed."""
         fields = self.model_dump(mode="json", exclude={"description"}, exclude_none=True)
-        for name in ("perception", "precision", "processes"):  # older recipes do not have the keys
+        for name in LATER:
             if fields[name] == Recipe.model_fields[name].default:
                 del fields[name]
         return hashlib.sha256(json.dumps(fields, sort_keys=True).encode()).hexdigest()[:16]
@@ -124,6 +132,12 @@ class Recipe(_Part):
                 f"must be one of {', '.join(ENCODERS)}; got {self.encoder!r}."
                 f"{did_you_mean(self.encoder, ENCODERS)}",
             )
+        needs = encoder(self.encoder).needs
+        if self.hidden_movers and not needs >= NEEDS:
+            raise FieldError(
+                ("hidden_movers",),
+                f"must be false with the encoder {self.encoder!r}, which perceives by rays only",
+            )
         if self.network.lstm_layers == 0 and not self.network.dense:
             raise FieldError(("network",), "must have LSTM or dense layers; got neither")
         _refuse_twice(self.courses, ("courses",))
@@ -139,7 +153,11 @@ class Recipe(_Part):
                     ("stages", i, "batch"),
                     f"must be > sequence, which is {self.sequence}; got {stage.batch}",
                 )
-            if stage.foresight and Need.EDGES not in encoder(self.encoder).needs:
+            if stage.foresight and self.hidden_movers:
+                raise FieldError(
+                    ("stages", i, "foresight"), "must be false with hidden_movers: true"
+                )
+            if stage.foresight and Need.EDGES not in needs:
                 raise FieldError(
                     ("stages", i, "foresight"),
                     f"must be false with the encoder {self.encoder!r}, which senses no edges",

@@ -243,7 +243,8 @@ class Training:
 
     def _about(self, progress: Progress, success: dict[str, float]) -> dict[str, Any]:
         return {
-            "encoder": self.recipe.encoder, "network": self.recipe.network.model_dump(mode="json"),
+            "encoder": self.recipe.encoder, "hidden_movers": self.recipe.hidden_movers,
+            "network": self.recipe.network.model_dump(mode="json"),
             "recipe": self.recipe.name, "recipe_hash": self.recipe.hash,
             "courses": [course.model_dump() for course in self.recipe.courses],
             "progress": asdict(progress), "success": success,
