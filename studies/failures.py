@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from benchnav_baselines.learned.recurrent_ppo.actor import Actor
 from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED
-from benchnav_baselines.learned.recurrent_ppo.sightings import memory_of
+from benchnav_baselines.learned.recurrent_ppo.sightings import memory_for
 from benchnav_baselines.learned.recurrent_ppo.weights import read_weights
 
 from benchnav.arena.body import Body
@@ -95,7 +95,7 @@ def drive(actor: Actor, about: Mapping[str, Any], worlds: Sequence[World]) -> li
     """
     batch = AgentBatch(
         worlds, len(worlds), encoder(about["encoder"]), RewardWeights(), np.random.default_rng(0),
-        autoreset=Autoreset.DISABLED, reverse=False, memory=memory_of(about),
+        autoreset=Autoreset.DISABLED, reverse=False, memory=memory_for(about["hidden_movers"]),
     )  # fmt: skip
     seen = batch.reset(np.arange(len(worlds)))
     state = np.zeros((batch.active.size, actor.state_size), np.float32)

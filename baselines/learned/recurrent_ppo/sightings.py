@@ -8,9 +8,7 @@ that obstacles hide; other agents may have arrived meanwhile.
 """
 
 import math
-from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -84,9 +82,9 @@ class Sightings:
         return replace(observation, neighbours=neighbours, edges=edges)
 
 
-def memory_of(about: Mapping[str, Any]) -> Sightings | None:
-    """Return what the encoder of a policy remembers, by the facts of its recipe or weights."""
-    return Sightings(rays=False) if about["hidden_movers"] else None
+def memory_for(hidden_movers: bool) -> Sightings | None:
+    """Return the memory of a policy that is trained with or without hidden movers."""
+    return Sightings(rays=False) if hidden_movers else None
 
 
 def _flat(array: AnyArray) -> AnyArray:

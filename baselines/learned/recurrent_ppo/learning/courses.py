@@ -12,7 +12,7 @@ from benchnav.generation.build import build, noise_of
 from benchnav.navigation import Spec
 from benchnav.scenario.catalogue import find
 
-from ..sightings import memory_of
+from ..sightings import memory_for
 from .recipe import Recipe, Stage
 
 
@@ -73,5 +73,5 @@ def _batch(recipe: Recipe, pool: Pool, rows: int) -> AgentBatch:
     return AgentBatch(
         pool.worlds, rows, encoder(recipe.encoder), RewardWeights(), np.random.default_rng(0),
         drivers=pool.drivers, noise=pool.noise, reverse=False,  # as `PolicyPilot` drives
-        memory=memory_of(recipe.model_dump()),
+        memory=memory_for(recipe.hidden_movers),
     )  # fmt: skip
