@@ -71,7 +71,7 @@ class Memory(Protocol):
         """Forget all in ``row``, whose world has ``agents`` and decisions every ``dt`` [s]."""
 
     def recall(self, observation: Observation) -> Observation:
-        """Return the observation of active agents with remembered objects; remember its own."""
+        """Add remembered objects to what active agents observe; store what they observe now."""
 
 
 class AgentBatch:

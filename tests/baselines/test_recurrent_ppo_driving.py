@@ -277,7 +277,7 @@ def test_weights_that_cannot_have_hidden_movers_are_refused(name, value, tmp_pat
                "output.bias": np.zeros(2, np.float32)}  # fmt: skip
     about = {"encoder": name, "progress": {"decisions": 0, "seconds": 0.0}, "hidden_movers": value}
     write_weights(path, tensors, about)
-    with pytest.raises(PluginError, match="`hidden_movers` must be true or false, and false with"):
+    with pytest.raises(PluginError, match=f"Got {value!r} with the encoder {name!r} instead"):
         PolicyPilot(path)
 
 

@@ -224,6 +224,13 @@ def test_the_hash_is_of_what_decides_the_weights():
     assert len({recipe.hash, *(other.hash for other in others)}) == 11
 
 
+def test_hidden_movers_and_foresight_exclude_each_other():
+    stages = [{"decisions": 100, "batch": 32, "foresight": True}]
+    tiny(encoder="surround", stages=stages)
+    with pytest.raises(ValueError, match="must be false with hidden_movers: true"):
+        tiny(encoder="surround", stages=stages, hidden_movers=True)
+
+
 def test_a_recipe_trains_and_validates_in_its_perception_track():
     for perception, noisy in (("exact", False), ("noisy", True)):
         recipe = tiny(perception=perception)

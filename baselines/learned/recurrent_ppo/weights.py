@@ -44,8 +44,8 @@ def read_weights(path: Path) -> tuple[Actor, dict[str, Any]]:
     hidden = about.setdefault("hidden_movers", False)  # older files do not have the key
     if hidden is not False and not (hidden is True and encoder(name).needs >= NEEDS):
         raise PluginError(
-            f"{path}: `hidden_movers` must be true or false, and false with the encoder {name!r}"
-            f" if that perceives by rays. Got {hidden!r} instead."
+            f"{path}: `hidden_movers` must be true or false, and may be true only with an encoder"
+            f" of neighbours and edges. Got {hidden!r} with the encoder {name!r} instead."
         )
     actor = _fitting(path, _widened(file.tensors), encoder(name).size, name)
     return actor, about

@@ -81,9 +81,6 @@ def _window(
 ) -> None:  # fmt: skip
     """Set ``out`` (N, 3 · 45) to the nearness in time of the first contact of each command."""
     for i in range(len(position)):
-        near = _others_in_reach(
-            position[i], top[i], radius[i], other[i], velocity[i], other_radius[i], others[i]
-        )
         for command in range(_COMMANDS):
             v = top[i] * (command // TURNS) / (SPEEDS - 1)
             w = turn[i] * (2.0 * (command % TURNS) / (TURNS - 1) - 1.0)
@@ -94,26 +91,10 @@ def _window(
                     continue
                 time = _contact(
                     position[i], heading[i], v, w, LONG if k == 1 else 1, k == 2, radius[i],
-                    other[i], velocity[i], other_radius[i], kind[i], near, first[i], second[i],
-                    edges[i],
+                    other[i], velocity[i], other_radius[i], kind[i], others[i], first[i],
+                    second[i], edges[i],
                 )  # fmt: skip
                 out[i, cell] = math.exp(-time / SOON) if time < FAR else 0.0
-
-
-@kernel_without_allocation
-def _others_in_reach(
-    position: FloatArray, top: float, radius: float, other: FloatArray, velocity: FloatArray,
-    other_radius: FloatArray, others: int,
-) -> int:  # fmt: skip
-    """Return how many others to test: those after them cannot be met in time."""
-    last = 0
-    for j in range(others):
-        x, y = other[j, 0] - position[0], other[j, 1] - position[1]
-        u, s = velocity[j, 0], velocity[j, 1]
-        reach = (top + math.sqrt(u * u + s * s)) * FAR + radius + other_radius[j] + 2.0 * MARGIN
-        if x * x + y * y < reach * reach:
-            last = j + 1
-    return last
 
 
 @kernel_without_allocation

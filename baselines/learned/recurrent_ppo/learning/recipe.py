@@ -17,7 +17,7 @@ from ..sightings import NEEDS
 Share = Annotated[float, Field(ge=0, le=1)]
 Precision = Literal["float32", "bfloat16"]
 Rate = Annotated[float, Field(gt=0, le=1)]
-LATER = ("hidden_movers", "perception", "precision", "processes")  # not in older recipes
+LATER_KEYS = ("hidden_movers", "perception", "precision", "processes")  # not in older recipes
 LogStd = Annotated[float, Field(ge=-5, le=2)]
 
 
@@ -114,7 +114,7 @@ class Recipe(_Part):
     def hash(self) -> str:
         """16 hex digits of everything that determines the weights, except the seed."""
         fields = self.model_dump(mode="json", exclude={"description"}, exclude_none=True)
-        for name in LATER:
+        for name in LATER_KEYS:
             if fields[name] == Recipe.model_fields[name].default:
                 del fields[name]
         return hashlib.sha256(json.dumps(fields, sort_keys=True).encode()).hexdigest()[:16]
