@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from . import cast
-from .curves import WITH, WITHOUT, gains, last_success
+from .curves import EARLY, WITH, WITHOUT, budget, early_success, gains, last_success
 from .encounters import SPEED, TURN, Behaviour
-from .evidence import Difference, Evidence
+from .evidence import Difference, Evidence, Value
 from .groups import cell as among_groups
 from .markdown import table
 from .table_2 import commands
@@ -98,8 +98,13 @@ def _planning_and_movers(m: Material) -> Finding:
 
 
 def _local_and_movers(m: Material) -> Finding:
-    hits = m.evidence.value("collisions_dynamic", (cast.DYNAMIC, "unknown", cast.LOCAL))
-    return _avoided(hits.low, hits.high), f"`{cast.LOCAL}`: {hits.text(100)} hits per 100 agents"
+    mine, blind = ((cast.DYNAMIC, "unknown", navigator) for navigator in (cast.LOCAL, cast.BLIND))
+    hits = m.evidence.value("collisions_dynamic", mine)
+    fewer = m.evidence.difference("collisions_dynamic", mine, blind)
+    return avoided(hits, fewer), (
+        f"`{cast.LOCAL}`: {hits.text(100)} hits per 100 agents, {fewer.text(100)} against going"
+        " straight"
+    )
 
 
 def _paper_and_movers(m: Material) -> Finding:
@@ -108,10 +113,7 @@ def _paper_and_movers(m: Material) -> Finding:
     hits = m.evidence.value("collisions_dynamic", mine)
     fewer = m.evidence.difference("collisions_dynamic", mine, blind)
     better = m.evidence.difference("success", mine, other)
-    verdict = _avoided(hits.low, hits.high)
-    if verdict == CONTRADICTED and fewer.sure and fewer.mean < 0:
-        verdict = PARTLY
-    return verdict, (
+    return avoided(hits, fewer), (
         f"`{cast.PAPER}`: {hits.text(100)} hits per 100 agents, {fewer.text(100)} against going"
         " straight;"
         f" success {_percent(m, 'success', mine)}, {better.text(100)} against `{cast.LOCAL}`;"
@@ -120,8 +122,13 @@ def _paper_and_movers(m: Material) -> Finding:
     )
 
 
-def _avoided(low: float, high: float) -> str:
-    return CONFIRMED if high <= SAFE else CONTRADICTED if low > SAFE else NOT
+def avoided(hits: Value, fewer: Difference) -> str:
+    """Judge by the hits of an agent, and by their difference from going straight."""
+    if hits.high <= SAFE:
+        return CONFIRMED
+    if fewer.sure and fewer.mean < 0:
+        return PARTLY
+    return CONTRADICTED if hits.low > SAFE else NOT
 
 
 def _reacts(m: Material) -> Finding:
@@ -169,18 +176,26 @@ def _local_stuck(m: Material) -> Finding:
 
 
 def _lstm(m: Material) -> Finding:
-    with_, without = last_success(WITH), last_success(WITHOUT)
-    if min(with_) > max(without):
+    budgets = (
+        (early_success(WITH), early_success(WITHOUT)),
+        (last_success(WITH), last_success(WITHOUT)),
+    )
+    if all(min(with_) > max(without) for with_, without in budgets):
         verdict = CONFIRMED
     else:
-        verdict = CONTRADICTED if max(with_) < min(without) else NOT
-    return verdict, (
-        "success after 300,000 decisions by seed: with "
-        + ", ".join(f"{100 * x:.1f}" for x in with_)
-        + " %, without "
-        + ", ".join(f"{100 * x:.1f}" for x in without)
-        + " %; longer budgets are not compared"
+        worse = all(max(with_) < min(without) for with_, without in budgets)
+        verdict = CONTRADICTED if worse else NOT
+    early, late = (
+        f"with {_percents(with_)} %, without {_percents(without)} %" for with_, without in budgets
     )
+    return verdict, (
+        f"success by seed after {EARLY / 1e6:.0f} million decisions: {early}; after"
+        f" {budget(WITH) / 1e6:.0f} million: {late}"
+    )
+
+
+def _percents(shares: list[float]) -> str:
+    return ", ".join(f"{100 * x:.1f}" for x in shares)
 
 
 def _curve(m: Material) -> Finding:

@@ -34,17 +34,17 @@ class Pictures:
         """Figs. 9 and 10."""
         figure = Figure(figsize=(10, 3.6), layout="constrained")
         left, right = figure.subplots(1, 2)
-        for log in curves.logs(curves.SHIPPED):
-            left.plot(curves.column(log, "decisions") / 1e6, curves.column(log, "reward"))
+        log = curves.full_rows(curves.shipped_log())
+        left.plot(curves.column(log, "decisions") / 1e6, curves.column(log, "reward"))
         left.set(title="recurrent-ppo while it learned", xlabel="million decisions",
                  ylabel="reward per attempt")  # fmt: skip
         for name, label, colour in (
             (curves.WITH, "with LSTM", TEAMS[0]), (curves.WITHOUT, "without", TEAMS[1]),
         ):  # fmt: skip
-            for k, log in enumerate(curves.logs(name)):
-                x, y = curves.column(log, "decisions") / 1e3, curves.column(log, "reward")
+            for k, log in enumerate(map(curves.full_rows, curves.logs(name))):
+                x, y = curves.column(log, "decisions") / 1e6, curves.column(log, "reward")
                 right.plot(x, y, color=colour, lw=1.2, label=label if k == 0 else None)
-        right.set(title="three seeds each, leaders/dynamic", xlabel="thousand decisions")
+        right.set(title="three seeds each, among movers", xlabel="million decisions")
         right.legend()
         for axes in (left, right):
             axes.grid(alpha=0.3)

@@ -67,6 +67,21 @@ def test_a_comparison_is_confirmed_only_where_it_is_sure(change, verdict):
     assert claims._compared(change, -1) == verdict
 
 
+@pytest.mark.parametrize(
+    ("hits", "fewer", "verdict"),
+    [
+        (Value(0.005, 0.001, 0.01, 100), Difference(0.0, -0.1, 0.1, 100, 0.9), claims.CONFIRMED),
+        (Value(0.1, 0.05, 0.2, 100), Difference(-0.1, -0.2, -0.05, 100, 0.01), claims.PARTLY),
+        (Value(0.02, 0.005, 0.04, 100), Difference(-0.1, -0.2, -0.05, 100, 0.01), claims.PARTLY),
+        (Value(0.1, 0.05, 0.2, 100), Difference(-0.1, -0.2, 0.05, 100, 0.2), claims.CONTRADICTED),
+        (Value(0.1, 0.05, 0.2, 100), Difference(0.1, 0.05, 0.2, 100, 0.01), claims.CONTRADICTED),
+        (Value(0.02, 0.005, 0.04, 100), Difference(0.0, -0.1, 0.1, 100, 0.9), claims.NOT),
+    ],
+)
+def test_movers_are_avoided_with_few_hits_and_in_part_with_fewer(hits, fewer, verdict):
+    assert claims.avoided(hits, fewer) == verdict
+
+
 @pytest.fixture(scope="module")
 def run(tmp_path_factory):
     """The whole suite on one seed."""
