@@ -58,7 +58,7 @@ def recipe(family: str, decisions: int) -> dict[str, Any]:
     """Return the recipe of a family: it differs from the others in name and courses only."""
     courses = FAMILIES[family]
     return {
-        "name": f"generalisation-{family}", "trainer": "recurrent-ppo", "encoder": "ego",
+        "name": f"generalisation-{family}", "trainer": "recurrent-ppo", "encoder": "near",
         "description": f"A policy for the family {family} alone, to be tested in others.",
         "courses": [{"scenario": name, "worlds": 2000 // len(courses)} for name in courses],
         "rows": 64, "rollout": 64, "sequence": 16,

@@ -6,8 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import torch
+import yaml
 from benchnav_baselines.learned.recurrent_ppo.learning import checkpoint
 from benchnav_baselines.learned.recurrent_ppo.learning.checkpoint import Progress
+from benchnav_baselines.learned.recurrent_ppo.learning.recipe import Recipe
+from benchnav_baselines.learned.recurrent_ppo.learning.trainer import RecurrentPPOTrainer
 from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED
 from benchnav_baselines.learned.recurrent_ppo.weights import FORMAT, read_weights, write_weights
 from hypothesis import HealthCheck, given, settings
@@ -232,9 +235,23 @@ def test_a_weight_without_two_axes_is_refused(path):
     assert "weights must have two axes" in refused(path)
 
 
+@pytest.mark.parametrize("name", ["recurrent-ppo", "recurrent-ppo-plus"])
+def test_three_trainings_of_an_entry_ship_and_have_the_recipe_that_ships(name):
+    paths = [SHIPPED / f"{name}.safetensors", *SHIPPED.glob(f"{name}-seed-?.safetensors")]
+    abouts = [read_weights(path)[1] for path in paths]
+    assert sorted(about["progress"]["seed"] for about in abouts) == [0, 1, 2]
+    for path, about in zip(paths[1:], abouts[1:], strict=True):
+        assert path.stem == f"{name}-seed-{about['progress']['seed']}"
+    recipe = yaml.safe_load(
+        (RecurrentPPOTrainer.recipes / f"{abouts[0]['recipe']}.yaml").read_text("utf-8")
+    )
+    assert {about["recipe_hash"] for about in abouts} == {Recipe(**recipe).hash}
+
+
 def test_weights_in_half_precision_are_read_as_what_they_hold(tmp_path):
     half = include(SHIPPED / "recurrent-ppo.safetensors", "recurrent-ppo", tmp_path)
-    assert half.name == "recurrent-ppo-seed-0.safetensors"
+    seed = read_weights(SHIPPED / "recurrent-ppo.safetensors")[1]["progress"]["seed"]
+    assert half.name == f"recurrent-ppo-seed-{seed}.safetensors"
     assert half.stat().st_size < 0.51 * (SHIPPED / "recurrent-ppo.safetensors").stat().st_size
     (whole, about), (found, same) = (
         read_weights(path) for path in (SHIPPED / "recurrent-ppo.safetensors", half)

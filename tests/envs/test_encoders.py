@@ -133,7 +133,6 @@ def test_agrees_with_its_twin_in_imagined_views(name, seed):
         ("ego-static", 48),
         ("surround", 80),
         ("panorama", 160),
-        ("outlook", 210),
         ("dynamic-window", 295),
     ],
 )

@@ -26,12 +26,12 @@ def share(navigator, name):
     [
         ("q-learning", "leaders/static", 0.93),
         ("q-learning", "leaders/dynamic", 0.79),
-        ("recurrent-ppo", "leaders/static", 0.95),
-        ("recurrent-ppo", "leaders/dynamic", 0.82),
-        ("recurrent-ppo-vo", "leaders/static", 0.97),
-        ("recurrent-ppo-vo", "leaders/dynamic", 0.94),
-        ("recurrent-ppo-plus", "leaders/static", 0.96),
-        ("recurrent-ppo-plus", "leaders/dynamic", 0.92),
+        ("recurrent-ppo", "leaders/static", 0.96),
+        ("recurrent-ppo", "leaders/dynamic", 0.88),
+        ("recurrent-ppo-vo", "leaders/static", 0.98),
+        ("recurrent-ppo-vo", "leaders/dynamic", 0.96),
+        ("recurrent-ppo-plus", "leaders/static", 0.98),
+        ("recurrent-ppo-plus", "leaders/dynamic", 0.96),
     ],
 )
 def test_success_of_what_ships(navigator, scenario, least):

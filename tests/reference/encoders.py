@@ -167,26 +167,6 @@ def meeting(offset, velocity, reach):
     return min(roots.real) if np.isreal(roots).all() else math.inf
 
 
-def outlook(seen, at, bodies):
-    near, angles = seen.neighbours, seen.heading[at] + np.radians(15 * np.arange(24))
-    ways = [
-        share * bodies.max_speed[at] * np.array([math.cos(angle), math.sin(angle)])
-        for angle in angles
-        for share in (1, 0.5)
-    ]
-    numbers = panorama(seen, at, bodies)
-    for way in [*ways, np.zeros(2), seen.velocity[at]]:
-        times = [
-            meeting(
-                seen.position[at] - near.position[at][j], way - near.velocity[at][j],
-                bodies.radius[at] + near.radius[at][j],
-            )
-            for j in range(near.count[at])
-        ]  # fmt: skip
-        numbers.append(math.exp(-min(times, default=math.inf) / 1.5))
-    return numbers
-
-
 def first_contact(positions, velocities, reaches):
     """[s] until the first of the discs (N, 2), moving at (N, 2), comes within reach."""
     times = [meeting(*other) for other in zip(positions, velocities, reaches, strict=True)]
@@ -265,8 +245,6 @@ def encode(name, seen, at, bodies):
         return surround(seen, at, bodies)
     if name == "panorama":
         return panorama(seen, at, bodies)
-    if name == "outlook":
-        return outlook(seen, at, bodies)
     if name == "dynamic-window":
         return dynamic_window(seen, at, bodies)
     if name == "near":

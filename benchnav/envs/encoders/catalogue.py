@@ -3,7 +3,6 @@
 from benchnav.envs.encoders.dynamic_window import DynamicWindowEncoder
 from benchnav.envs.encoders.encoder import Encoder
 from benchnav.envs.encoders.near import NearEncoder
-from benchnav.envs.encoders.outlook import OutlookEncoder
 from benchnav.envs.encoders.panorama import PanoramaEncoder
 from benchnav.envs.encoders.paper import EgoEncoder, PaperEncoder
 from benchnav.envs.encoders.surround import SurroundEncoder
@@ -11,10 +10,8 @@ from benchnav.errors import UsageError, did_you_mean
 
 _OTHERS = {
     kind.name: kind
-    for kind in (
-        NearEncoder, SurroundEncoder, PanoramaEncoder, OutlookEncoder, DynamicWindowEncoder,
-    )
-}  # fmt: skip
+    for kind in (NearEncoder, SurroundEncoder, PanoramaEncoder, DynamicWindowEncoder)
+}
 ENCODERS = ("paper", "paper-static", "ego", "ego-static", *_OTHERS)
 
 
