@@ -29,11 +29,10 @@ ABLATIONS = {
     "ablation-reference": "reference",
     "ablation-no-lstm": "no LSTM",
     "ablation-no-prediction": "no collision probability",
+    "ablation-ego-encoder": "lengths over 8 m (ego)",
     "ablation-paper-encoder": "absolute positions (paper)",
-    "ablation-table-1": "Table 1 per decision",
-    "ablation-static-first": "static first",
 }
-COLOURS = ("#1f6feb", "#d1495b", "#2a9d8f", "#8e5aa8", "#e07a3f", "#6b7280")
+COLOURS = ("#1f6feb", "#d1495b", "#2a9d8f", "#8e5aa8", "#e07a3f")
 TEAMS = ("#1f6feb", "#d1495b", "#2a9d8f", "#8e5aa8")
 
 
@@ -51,16 +50,16 @@ def ablations() -> Figure:
         if not runs:
             continue
         rows = min(map(len, runs))
-        x = np.mean([[row["decisions"] for row in run[:rows]] for run in runs], axis=0) / 1e3
+        x = np.mean([[row["decisions"] for row in run[:rows]] for run in runs], axis=0) / 1e6
         for axes, key, factor in (
             (left, "arrived", 100.0), (right, "validation leaders/dynamic", 100.0),
         ):  # fmt: skip
             y = factor * np.array([[row[key] for row in run[:rows]] for run in runs])
             axes.plot(x, y.mean(0), color=colour, label=f"{label} ({len(runs)})")
             axes.fill_between(x, y.min(0), y.max(0), color=colour, alpha=0.12, lw=0)
-    left.set(title="while training, sampled actions", xlabel="thousand decisions",
+    left.set(title="while training, sampled actions", xlabel="million decisions",
              ylabel="strict success [%]")  # fmt: skip
-    right.set(title="validation worlds, deterministic", xlabel="thousand decisions")
+    right.set(title="validation worlds, deterministic", xlabel="million decisions")
     for axes in (left, right):
         axes.grid(alpha=0.3)
         axes.set_ylim(bottom=0)
@@ -71,15 +70,18 @@ def ablations() -> Figure:
 def learning() -> Figure:
     """The whole trainings of what ships."""
     figure = Figure(figsize=(10, 3.6), layout="constrained")
-    for axes, name in zip(figure.subplots(1, 2, sharey=True), ("dynamic", "plus"), strict=True):
-        for run in curves(name)[:1]:
-            x = [row["decisions"] / 1e6 for row in run]
-            for key in [key for key in run[0] if key.startswith("validation ")]:
-                axes.plot(x, [100 * row[key] for row in run], label=key.removeprefix("validation "))
-            for k in range(1, len(run) - 1):
-                if run[k]["stage"] > run[k - 1]["stage"]:  # the row that ends a stage says the next
-                    axes.axvline(x[k], color="0.6", ls=":", lw=1)
-        axes.set(title=f"recipe {name}", xlabel="million decisions", ylim=(0, 101))
+    shipped = ("recurrent-ppo", "recurrent-ppo-plus")
+    for axes, navigator in zip(figure.subplots(1, 2, sharey=True), shipped, strict=True):
+        about = read_weights(SHIPPED / f"{navigator}.safetensors")[1]
+        recipe, seed = about["recipe"], about["progress"]["seed"]
+        run = read_rows(CURVES / f"{recipe}-{seed}.csv")
+        x = [row["decisions"] / 1e6 for row in run]
+        for key in [key for key in run[0] if key.startswith("validation ")]:
+            axes.plot(x, [100 * row[key] for row in run], label=key.removeprefix("validation "))
+        for k in range(1, len(run) - 1):
+            if run[k]["stage"] > run[k - 1]["stage"]:  # the row that ends a stage says the next
+                axes.axvline(x[k], color="0.6", ls=":", lw=1)
+        axes.set(title=f"recipe {recipe}, seed {seed}", xlabel="million decisions", ylim=(0, 101))
         axes.grid(alpha=0.3)
         axes.legend(fontsize="x-small", loc="lower right")
     figure.axes[0].set_ylabel("strict success on validation worlds [%]")
