@@ -37,6 +37,7 @@ SCENARIOS = (
     "bottleneck/door", "circle/antipodal", "office/rooms",
 )  # fmt: skip
 FOR_SEEDS = SCENARIOS[:-1]  # office/rooms takes as long as all others together
+MEMORY = " It also perceives movers that it sensed in the last two seconds and no longer senses."
 CHUNK = 50  # worlds of a task
 KINDS = (Kind.AGENT, Kind.WALL, Kind.STATIC, Kind.DYNAMIC)
 KNOWLEDGE = Path("docs/learning/full_knowledge.json")
@@ -134,14 +135,11 @@ def card(navigator: str, rows: list[Row], other: list[Row], seeds: dict[int, lis
     about = make(NAVIGATORS, navigator).pilot.about
     progress = about["progress"]
     known = {k["scenario"]: k for k in json.loads(KNOWLEDGE.read_text())}
-    memory = (
-        " It also perceives movers that it sensed in the last two seconds and no longer senses."
-    )
-    memory = memory if about["hidden_movers"] else ""
     lines = [
         f"# {navigator}",
         "",
-        f"Encoder `{about['encoder']}`, network {json.dumps(about['network'])}." + memory,
+        f"Encoder `{about['encoder']}`, network {json.dumps(about['network'])}."
+        + (MEMORY if about["hidden_movers"] else ""),
         f"Learned from {progress['decisions']:,} decisions in {progress['seconds']:,.0f} s, seed"
         f" {progress['seed']}, recipe `{about['recipe']}` ({about['recipe_hash']}), on"
         f" {about['machine']}, one thread. The log of the training stands in"
