@@ -9,7 +9,7 @@ docs/learning/checkpoints holds an early and a middle checkpoint, the late one s
 from pathlib import Path
 
 import numpy as np
-from benchnav_baselines.learned.recurrent_ppo.learning.log import read_rows
+from benchnav_baselines.learned.recurrent_ppo.learning.log import full_rows, read_rows
 from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED
 from benchnav_baselines.learned.recurrent_ppo.weights import read_weights
 from matplotlib.axes import Axes
@@ -47,14 +47,13 @@ def ablations() -> Figure:
     left, right = figure.subplots(1, 2)
     for (name, label), colour in zip(ABLATIONS.items(), COLOURS, strict=True):
         runs = curves(name)
-        if not runs:
-            continue
-        rows = min(map(len, runs))
-        x = np.mean([[row["decisions"] for row in run[:rows]] for run in runs], axis=0) / 1e6
-        for axes, key, factor in (
-            (left, "arrived", 100.0), (right, "validation leaders/dynamic", 100.0),
-        ):  # fmt: skip
-            y = factor * np.array([[row[key] for row in run[:rows]] for run in runs])
+        for axes, key, shown in (
+            (left, "arrived", [full_rows(run) for run in runs]),
+            (right, "validation leaders/dynamic", runs),
+        ):
+            rows = min(map(len, shown))
+            x = np.mean([[row["decisions"] for row in run[:rows]] for run in shown], axis=0) / 1e6
+            y = 100.0 * np.array([[row[key] for row in run[:rows]] for run in shown])
             axes.plot(x, y.mean(0), color=colour, label=f"{label} ({len(runs)})")
             axes.fill_between(x, y.min(0), y.max(0), color=colour, alpha=0.12, lw=0)
     left.set(title="while training, sampled actions", xlabel="million decisions",

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from benchnav_baselines.learned.recurrent_ppo.learning.log import read_rows
+from benchnav_baselines.learned.recurrent_ppo.learning.log import full_rows, read_rows
 from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED
 from benchnav_baselines.learned.recurrent_ppo.weights import read_weights
 
@@ -27,12 +27,6 @@ def shipped_log() -> list[dict[str, float]]:
     """Return the stored log of the training whose weights are `recurrent-ppo`."""
     about = read_weights(SHIPPED / "recurrent-ppo.safetensors")[1]
     return read_rows(CURVES / f"{about['recipe']}-{about['progress']['seed']}.csv")
-
-
-def full_rows(log: list[dict[str, float]]) -> list[dict[str, float]]:
-    """Return the rows of a log that are means over enough attempts; the last may have few."""
-    least = 0.5 * np.median(column(log, "attempts"))
-    return [row for row in log if row["attempts"] >= least]
 
 
 def column(log: list[dict[str, float]], name: str) -> FloatArray:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from benchnav_baselines.learned.recurrent_ppo.learning.log import full_rows
 from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
@@ -34,14 +35,14 @@ class Pictures:
         """Figs. 9 and 10."""
         figure = Figure(figsize=(10, 3.6), layout="constrained")
         left, right = figure.subplots(1, 2)
-        log = curves.full_rows(curves.shipped_log())
+        log = full_rows(curves.shipped_log())
         left.plot(curves.column(log, "decisions") / 1e6, curves.column(log, "reward"))
         left.set(title="recurrent-ppo while it learned", xlabel="million decisions",
                  ylabel="reward per attempt")  # fmt: skip
         for name, label, colour in (
             (curves.WITH, "with LSTM", TEAMS[0]), (curves.WITHOUT, "without", TEAMS[1]),
         ):  # fmt: skip
-            for k, log in enumerate(map(curves.full_rows, curves.logs(name))):
+            for k, log in enumerate(map(full_rows, curves.logs(name))):
                 x, y = curves.column(log, "decisions") / 1e6, curves.column(log, "reward")
                 right.plot(x, y, color=colour, lw=1.2, label=label if k == 0 else None)
         right.set(title="three seeds each, among movers", xlabel="million decisions")

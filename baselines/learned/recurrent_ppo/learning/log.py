@@ -3,6 +3,7 @@
 import csv
 from collections.abc import Mapping
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 CURVE = "curve.csv"
@@ -65,6 +66,12 @@ def read_rows(path: Path) -> list[dict[str, float]]:
             for row in rows
             if all(value not in (None, "") for value in row.values())
         ]
+
+
+def full_rows(rows: list[dict[str, float]]) -> list[dict[str, float]]:
+    """Return the rows that are means over enough attempts; the last may have few."""
+    least = 0.5 * median(row["attempts"] for row in rows)
+    return [row for row in rows if row["attempts"] >= least]
 
 
 def draw_curve(rows: list[dict[str, float]], path: Path) -> None:
