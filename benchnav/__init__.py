@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from benchnav.api.components.diagnosis import Diagnosis, doctor
     from benchnav.api.components.page import Page, show
     from benchnav.api.execution.env import make_env
+    from benchnav.api.execution.merge import merge
     from benchnav.api.execution.run import run
     from benchnav.api.execution.score import score
     from benchnav.api.execution.simulate import simulate
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
     from benchnav.api.records.episode import Episode
     from benchnav.api.records.episodes import Episodes
     from benchnav.api.records.leaderboard import Leaderboard
-    from benchnav.api.records.run import Run, merge, open_run
+    from benchnav.api.records.run import Run, open_run
     from benchnav.api.records.scenario import Scenario, load_scenario
     from benchnav.api.records.training import Training
     from benchnav.api.records.verification import Verification
@@ -65,7 +66,7 @@ else:
             "import_world": "benchnav.api.authoring.import_world",
             "load_scenario": "benchnav.api.records.scenario",
             "make_env": "benchnav.api.execution.env",
-            "merge": "benchnav.api.records.run",
+            "merge": "benchnav.api.execution.merge",
             "new_navigator": "benchnav.api.authoring.new_package",
             "new_package": "benchnav.api.authoring.new_package",
             "open_run": "benchnav.api.records.run",

@@ -9,7 +9,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import TYPE_CHECKING, Any
 
-from benchnav.api.output.messages import message, silent
+from benchnav.api.output.messages import message
 from benchnav.api.output.text_table import key_value_html
 from benchnav.errors import UsageError
 from benchnav.scenario.condition import EXACT, perceptions_of
@@ -36,28 +36,6 @@ def open_run(path: "str | PathLike[str]", summary: "Summary | None" = None) -> "
     """
     stack = ExitStack()
     return Run(stack.enter_context(opened(path)), stack, summary)
-
-
-def merge(
-    runs: "Iterable[Run | str | PathLike[str]]", out: "str | PathLike[str]", *, quiet: bool = False
-) -> "Run":
-    """Join runs that executed shares of one suite into the run folder ``out``.
-
-    Raises StoreError where two runs hold different episodes of the same seed.
-    """
-    from benchnav.store.runs import merge as store
-
-    try:
-        merged = store.merge([run.path if isinstance(run, Run) else Path(run) for run in runs], out)
-    except KeyboardInterrupt as stopped:
-        stopped.add_note(f"what was copied is kept. The same command continues in {out}.")
-        raise
-    again = f"; already there, and the same: {merged.twice}" if merged.twice else ""
-    say = silent if quiet else message
-    say(f"{counted(merged.copied, 'episode')} copied{again}")
-    run = open_run(out)
-    run.report_missing(say)
-    return run
 
 
 class Run:

@@ -17,6 +17,6 @@ def merge(
     Prints the merged run on stdout, and names its missing episodes. Episodes that several
     runs hold must be the same.
     """
-    from benchnav.api.records.run import merge as merged
+    from benchnav.api.execution.merge import merge as merged
 
     put(str(merged(runs, out).path))
