@@ -260,6 +260,7 @@ def test_hidden_movers_are_in_the_encoding_only_if_they_were_in_training(
         type(pilot._encoder), "encode",
         lambda self, seen, bodies: encoded.append(seen) or encode(seen, bodies),
     )  # fmt: skip
+    monkeypatch.setattr(policy_at_work, "without_agents_behind", lambda seen, _: seen)
     monkeypatch.setattr(
         policy_at_work, "foresee", lambda seen, bodies, *rest: foreseen.append(seen) or rest[0]
     )

@@ -122,7 +122,7 @@ def _others_in_reach(
         dx, dy = other[j, 0] - position[0], other[j, 1] - position[1]
         u, s = velocity[j, 0], velocity[j, 1]
         reach = way + math.sqrt(u * u + s * s) * HORIZON + radius + other_radius[j] + 2.0 * MARGIN
-        if _within(dx, dy, reach + SLACK):
+        if within(dx, dy, reach + SLACK):
             last = j + 1
     return last
 
@@ -136,7 +136,7 @@ def _edges_in_reach(
     x, y = position[0], position[1]
     for e in range(edges):
         px, py = nearest_on_segment(x, y, first[e, 0], first[e, 1], second[e, 0], second[e, 1])
-        if _within(px - x, py - y, way + MARGIN + SLACK):
+        if within(px - x, py - y, way + MARGIN + SLACK):
             last = e + 1
     return last
 
@@ -152,7 +152,7 @@ def _danger(
     for k in range(1, holds + 1):
         least = min(
             least,
-            _danger_held(
+            danger_held(
                 v, w, position, heading, goal, tolerance, radius, other, velocity, other_radius,
                 kind, others, first, second, edges, k * HELD,
             ),
@@ -163,12 +163,15 @@ def _danger(
 
 
 @kernel_without_allocation
-def _danger_held(
+def danger_held(
     v: float, w: float, position: FloatArray, heading: float, goal: FloatArray, tolerance: float,
     radius: float, other: FloatArray, velocity: FloatArray, other_radius: FloatArray,
     kind: ByteArray, others: int, first: FloatArray, second: FloatArray, edges: int, held: float,
 ) -> float:  # fmt: skip
-    """Return the danger of a twist: 0 without contact before the horizon or the goal."""
+    """Return the danger of a twist: at most `BACK` without contact before horizon or goal.
+
+    It is 0 without contact with an obstacle that would have to turn back, either.
+    """
     x, y, angle = position[0], position[1], heading
     back = 0.0
     for k in range(round(HORIZON / TICK)):
@@ -185,22 +188,23 @@ def _danger_held(
             reach = radius + other_radius[j] + (2.0 * MARGIN if mover else MARGIN)
             dx, dy = other[j, 0] - x, other[j, 1] - y
             u, s = t * velocity[j, 0], t * velocity[j, 1]
-            if mover and t <= FIXED and back == 0.0 and _within(dx - u, dy - s, reach):
+            if mover and t <= FIXED and back == 0.0 and within(dx - u, dy - s, reach):
                 back = BACK * (1.0 - k * TICK / FIXED)
-            if _within(dx + u, dy + s, reach):
+            if within(dx + u, dy + s, reach):
                 return HIT + SOONER * (1.0 - k * TICK / HORIZON) + back
         if t <= FIXED:
             for e in range(edges):
                 px, py = nearest_on_segment(
                     x, y, first[e, 0], first[e, 1], second[e, 0], second[e, 1]
                 )
-                if _within(px - x, py - y, radius + MARGIN):
+                if within(px - x, py - y, radius + MARGIN):
                     return HIT + SOONER * (1.0 - k * TICK / FIXED) + back
-        if _within(goal[0] - x, goal[1] - y, tolerance):
+        if within(goal[0] - x, goal[1] - y, tolerance):
             return back
     return back
 
 
 @kernel_without_allocation
-def _within(dx: float, dy: float, reach: float) -> bool:
+def within(dx: float, dy: float, reach: float) -> bool:
+    """Whether the offset (``dx``, ``dy``) is shorter than ``reach``."""
     return bool(dx * dx + dy * dy < reach * reach)

@@ -16,9 +16,11 @@ from benchnav.navigation import Briefing, Need, Observation, PluginConfig, RowTa
 from ...common.policy_runner import Pilot
 from ...common.ray_fit import why_rays_do_not_fit
 from .actor import Actor
+from .dash import dash
 from .detour import Detours
 from .foresight import HELD, foresee
-from .sightings import NEEDS, Sightings
+from .progress import Progress
+from .sightings import NEEDS, Sightings, without_agents_behind
 from .weights import read_weights
 
 SHIPPED = Path(__file__).parent / "weights"
@@ -63,6 +65,7 @@ class PolicyPilot(Pilot):
         patience: [s] of standing before a detour; 0: no detours.
 
     A policy with rays predicts collisions only with what its rays hit; all remember hidden movers.
+    A policy that views all round has learned to deal with agents behind it; foresight does not.
     A policy that was trained with `hidden_movers` perceives the remembered movers, too.
     """
 
@@ -76,9 +79,11 @@ class PolicyPilot(Pilot):
         self._actor, self.about = _loaded(weights)
         self._encoder = encoder(self.about["encoder"])
         self._foresight, self._hold = foresight, hold
-        self._sightings = Sightings(rays=Need.RAYS in self._encoder.needs)
+        self._rays = Need.RAYS in self._encoder.needs
+        self._sightings = Sightings(self._rays)
         self._hidden_movers = self.about["hidden_movers"]
         self._detours = Detours(patience) if patience else None
+        self._progress = Progress()
         self._kept = RowTable()
 
     @property
@@ -105,6 +110,7 @@ class PolicyPilot(Pilot):
             limits["tolerance"] = np.full(len(briefing), briefing.goal_tolerance)
             self._kept.put(int(row), memory=memory, **limits)
             self._sightings.forget(int(row), len(briefing), briefing.dt)
+            self._progress.reset(int(row), briefing)
             if self._detours is not None:
                 self._detours.reset(int(row), briefing)
 
@@ -133,7 +139,10 @@ class PolicyPilot(Pilot):
         if self._detours is not None:
             self._detours.steer(recalled, bodies, command)
         if self._foresight:
-            command = foresee(recalled, bodies, command, tolerance, self._hold)
+            stalled = self._progress.stalled(observation)
+            heeded = recalled if self._rays else without_agents_behind(recalled, stalled)
+            command = foresee(heeded, bodies, command, tolerance, self._hold)
+            dash(heeded, bodies, command, tolerance, self._hold, stalled)
         return command
 
     def _limit(self, name: str, observation: Observation) -> FloatArray:

@@ -21,11 +21,14 @@ from benchnav.navigation import Edges, Need, Neighbours, Observation, RowTable
 NEEDS = frozenset({Need.NEIGHBOURS, Need.EDGES})
 MEMORY = 2.0  # [s] for which an agent or mover is remembered
 SLACK = 0.05  # [m] largest distance of a ray's disc from the object that it hit
+YIELDING = 4.0  # [s] without coming nearer to the goal, after which an agent heeds those behind it
+BEHIND = -0.5  # cosine of the bearing beyond which an agent is behind
 SAME = 0.8  # [m] within which a remembered object and a hit object are the same
 MAX_OTHERS = 16  # agents and movers that an agent remembers
 _X, _Y, _U, _V, _RADIUS, _KIND, _AGE = range(7)
 
-_WALL, _STATIC, _MOVER = int(Kind.WALL), int(Kind.STATIC), int(Kind.DYNAMIC)
+_AGENT, _MOVER = int(Kind.AGENT), int(Kind.DYNAMIC)
+_WALL, _STATIC = int(Kind.WALL), int(Kind.STATIC)
 
 
 class Sightings:
@@ -80,6 +83,33 @@ class Sightings:
         if not self._rays:
             neighbours = _nearest_first(neighbours, observation.position)
         return replace(observation, neighbours=neighbours, edges=edges)
+
+
+def without_agents_behind(observation: Observation, stalled: FloatArray) -> Observation:
+    """Return the observation without agents more than 120° from the heading, nearest first.
+
+    They keep the distance themselves. In queues, an agent that avoids those behind it collides more
+    often. But in a jam, it makes room only if it does.
+
+    Args:
+        observation: with neighbours.
+        stalled: (B, A) [s] for which agents have come no nearer to their goals.
+    """
+    near, heading = observation.neighbours, observation.heading[..., None]
+    assert near is not None  # noqa: S101 - declared by the pilot
+    away = near.position - observation.position[..., None, :]
+    ahead = away[..., 0] * np.cos(heading) + away[..., 1] * np.sin(heading)
+    behind = ahead < BEHIND * np.sqrt(np.sum(away * away, axis=-1))
+    listed = np.arange(near.kind.shape[2]) < near.count[..., None]
+    moves_on = stalled[..., None] <= YIELDING
+    kept = listed & ~(moves_on & behind & (near.kind == _AGENT))
+    worlds, agents, _ = np.ogrid[tuple(map(slice, kept.shape))]
+    place = worlds, agents, np.argsort(~kept, axis=-1, kind="stable")
+    neighbours = Neighbours(
+        near.position[place], near.velocity[place], near.radius[place], near.kind[place],
+        kept.sum(axis=-1),
+    )  # fmt: skip
+    return replace(observation, neighbours=neighbours)
 
 
 def memory_for(hidden_movers: bool) -> Sightings | None:

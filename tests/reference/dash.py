@@ -1,0 +1,40 @@
+"""The slow, obvious twin of `benchnav_baselines.learned.recurrent_ppo.dash`."""
+
+import itertools
+import math
+
+import numpy as np
+from benchnav_baselines.learned.recurrent_ppo import foresight as f
+
+from .foresight import danger_held
+
+
+def dash(seen, bodies, tolerance, b, a, hold):
+    """The twist with which agent (b, a) is first at its goal, without a contact; None: none."""
+    top, rate = bodies.max_speed[b, a], bodies.max_turn_rate[b, a]
+    twists = itertools.product(
+        np.linspace(0, top, f.SPEEDS),
+        np.linspace(-rate, rate, f.TURNS),
+        np.arange(f.HELD, hold + 1e-9, f.HELD),
+    )
+    dashes = [
+        (arrival(v, w, seen, tolerance, b, a, held), v, w)
+        for v, w, held in twists
+        if danger_held((v, w), seen, bodies, tolerance, b, a, held) <= f.BACK
+    ]
+    time, v, w = min(dashes, key=lambda one: one[0], default=(math.inf, 0, 0))
+    return None if time == math.inf else (v, w)
+
+
+def arrival(v, w, seen, tolerance, b, a, held):
+    """The time [s] at which the agent is at its goal; inf: not before the horizon."""
+    spot, heading = seen.position[b, a].copy(), seen.heading[b, a]
+    for k in range(round(f.HORIZON / f.TICK)):
+        time = (k + 1) * f.TICK
+        turn = w if time <= held + 1e-9 else 0.0
+        way = heading + turn * f.TICK / 2
+        spot = spot + v * f.TICK * np.array([math.cos(way), math.sin(way)])
+        heading += turn * f.TICK
+        if math.dist(spot, seen.goal[b, a]) < tolerance[b, a]:
+            return time
+    return math.inf
