@@ -9,7 +9,7 @@ from benchnav_baselines.learned.recurrent_ppo.dash import IMPATIENT, dash
 from benchnav_baselines.learned.recurrent_ppo.progress import NEARER, Progress
 from benchnav_baselines.learned.recurrent_ppo.sightings import (
     BEHIND,
-    YIELDING,
+    JAMMED,
     without_agents_behind,
 )
 
@@ -87,7 +87,7 @@ def test_progress_is_counted_from_the_nearest_place_to_the_same_goal(shown):
 def test_agents_behind_are_left_out_unless_progress_has_stopped(shown):
     left_out = 0
     for seen in shown[1]:
-        stalled = np.where(np.arange(seen.active.shape[1]) % 3, YIELDING, YIELDING + 0.1)
+        stalled = np.where(np.arange(seen.active.shape[1]) % 3, JAMMED, JAMMED + 0.1)
         stalled = np.broadcast_to(stalled, seen.active.shape)
         found, near = without_agents_behind(seen, stalled).neighbours, seen.neighbours
         for b, a in np.argwhere(seen.active):
@@ -96,7 +96,7 @@ def test_agents_behind_are_left_out_unless_progress_has_stopped(shown):
                 away = near.position[b, a, n] - seen.position[b, a]
                 bearing = math.atan2(away[1], away[0]) - seen.heading[b, a]
                 ahead = math.cos(bearing) >= BEHIND
-                if ahead or near.kind[b, a, n] != Kind.AGENT or stalled[b, a] > YIELDING:
+                if ahead or near.kind[b, a, n] != Kind.AGENT or stalled[b, a] > JAMMED:
                     kept.append(n)
             assert found.count[b, a] == len(kept)
             for name in ("position", "velocity", "radius", "kind"):
@@ -106,8 +106,8 @@ def test_agents_behind_are_left_out_unless_progress_has_stopped(shown):
     assert left_out > 5
 
 
-@pytest.mark.parametrize(("name", "heeds"), [("plus", False), ("vo", True)])
-def test_only_a_policy_that_views_all_round_heeds_nobody_behind_it(name, heeds, monkeypatch):
+@pytest.mark.parametrize(("name", "ignores"), [("plus", True), ("vo", False)])
+def test_only_a_policy_that_views_all_round_ignores_agents_behind_it(name, ignores, monkeypatch):
     from benchnav_baselines.learned.recurrent_ppo import policy_at_work
 
     shown_to, real = [], policy_at_work.foresee
@@ -127,4 +127,4 @@ def test_only_a_policy_that_views_all_round_heeds_nobody_behind_it(name, heeds, 
         for seen in observations_of(worlds, SENSES | {Need.RAYS}, frames=20):
             driver.act(seen)
         counts.append(sum(shown_to))
-    assert (counts[0] == counts[1]) == heeds
+    assert (counts[0] < counts[1]) == ignores

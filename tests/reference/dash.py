@@ -6,7 +6,7 @@ import math
 import numpy as np
 from benchnav_baselines.learned.recurrent_ppo import foresight as f
 
-from .foresight import danger_held
+from .foresight import danger_held, places
 
 
 def dash(seen, bodies, tolerance, b, a, hold):
@@ -18,7 +18,7 @@ def dash(seen, bodies, tolerance, b, a, hold):
         np.arange(f.HELD, hold + 1e-9, f.HELD),
     )
     dashes = [
-        (arrival(v, w, seen, tolerance, b, a, held), v, w)
+        (arrival((v, w), seen, tolerance, b, a, held), v, w)
         for v, w, held in twists
         if danger_held((v, w), seen, bodies, tolerance, b, a, held) <= f.BACK
     ]
@@ -26,15 +26,9 @@ def dash(seen, bodies, tolerance, b, a, hold):
     return None if time == math.inf else (v, w)
 
 
-def arrival(v, w, seen, tolerance, b, a, held):
+def arrival(twist, seen, tolerance, b, a, held):
     """The time [s] at which the agent is at its goal; inf: not before the horizon."""
-    spot, heading = seen.position[b, a].copy(), seen.heading[b, a]
-    for k in range(round(f.HORIZON / f.TICK)):
-        time = (k + 1) * f.TICK
-        turn = w if time <= held + 1e-9 else 0.0
-        way = heading + turn * f.TICK / 2
-        spot = spot + v * f.TICK * np.array([math.cos(way), math.sin(way)])
-        heading += turn * f.TICK
+    for k, spot in enumerate(places(twist, seen, b, a, held)):
         if math.dist(spot, seen.goal[b, a]) < tolerance[b, a]:
-            return time
+            return (k + 1) * f.TICK
     return math.inf

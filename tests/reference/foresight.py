@@ -17,20 +17,14 @@ def danger(twist, seen, bodies, tolerance, b, a, hold):
 
 def danger_held(twist, seen, bodies, tolerance, b, a, held):
     """0 where it touches nothing before horizon or goal."""
-    v, w = twist
     near, edges = seen.neighbours, seen.edges
     radius = bodies.radius[b, a]
-    spot, heading = seen.position[b, a].copy(), seen.heading[b, a]
     walls = [
         LineString([edges.start[b, a, e], edges.end[b, a, e]]) for e in range(edges.count[b, a])
     ]
     back = 0.0
-    for k in range(round(f.HORIZON / f.TICK)):
+    for k, spot in enumerate(places(twist, seen, b, a, held)):
         time = (k + 1) * f.TICK
-        turn = w if time <= held + 1e-9 else 0.0
-        way = heading + turn * f.TICK / 2
-        spot = spot + v * f.TICK * np.array([math.cos(way), math.sin(way)])
-        heading += turn * f.TICK
         for n in range(near.count[b, a]):
             if time > f.AGENT_HORIZON + 1e-9 and near.kind[b, a, n] == Kind.AGENT:
                 continue
@@ -48,6 +42,18 @@ def danger_held(twist, seen, bodies, tolerance, b, a, held):
         if math.dist(spot, seen.goal[b, a]) < tolerance[b, a]:
             return back
     return back
+
+
+def places(twist, seen, b, a, held):
+    """The place at each tick until the horizon: the course is kept after the twist."""
+    v, w = twist
+    spot, heading = seen.position[b, a], seen.heading[b, a]
+    for k in range(round(f.HORIZON / f.TICK)):
+        turn = w if (k + 1) * f.TICK <= held + 1e-9 else 0.0
+        way = heading + turn * f.TICK / 2
+        spot = spot + v * f.TICK * np.array([math.cos(way), math.sin(way)])
+        heading += turn * f.TICK
+        yield spot
 
 
 def corrected(twist, seen, bodies, tolerance, b, a, hold=f.HELD):

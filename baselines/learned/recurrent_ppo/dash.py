@@ -10,12 +10,13 @@ import math
 
 import numpy as np
 
-from benchnav.arrays import AnyArray, ByteArray, FloatArray, IntArray
+from benchnav.arrays import ByteArray, FloatArray, IntArray
 from benchnav.envs import Bodies
 from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Observation
 
 from .foresight import BACK, HELD, HORIZON, SPEEDS, TICK, TURNS, danger_held, within
+from .sightings import flat
 
 IMPATIENT = 8.0  # [s] without coming nearer to the goal
 
@@ -42,16 +43,12 @@ def dash(
     assert near is not None  # noqa: S101 - declared by the pilot
     assert edges is not None  # noqa: S101
 
-    def flat(array: AnyArray) -> AnyArray:
-        return array.reshape(-1, *array.shape[2:])
-
     _dash(
         np.flatnonzero(observation.active & (stalled > IMPATIENT)),
         flat(observation.position), flat(observation.heading), flat(observation.goal),
-        flat(tolerance),
-        flat(bodies.radius), flat(bodies.max_speed), flat(bodies.max_turn_rate),
-        flat(near.position), flat(near.velocity), flat(near.radius),
-        flat(near.kind), flat(near.count), flat(edges.start), flat(edges.end), flat(edges.count),
+        flat(tolerance), flat(bodies.radius), flat(bodies.max_speed), flat(bodies.max_turn_rate),
+        flat(near.position), flat(near.velocity), flat(near.radius), flat(near.kind),
+        flat(near.count), flat(edges.start), flat(edges.end), flat(edges.count),
         round(hold / HELD), flat(command),
     )  # fmt: skip
 
@@ -74,28 +71,14 @@ def _dash(
                     tick = _arrival(
                         v, w, position[i], heading[i], goal[i], tolerance[i], k * HELD, soonest
                     )
-                    if (
-                        tick < soonest
-                        and danger_held(
-                            v,
-                            w,
-                            position[i],
-                            heading[i],
-                            goal[i],
-                            tolerance[i],
-                            radius[i],
-                            other[i],
-                            velocity[i],
-                            other_radius[i],
-                            kind[i],
-                            others[i],
-                            first[i],
-                            second[i],
-                            edges[i],
-                            k * HELD,
-                        )
-                        <= BACK
-                    ):
+                    if tick == soonest:
+                        continue
+                    danger = danger_held(
+                        v, w, position[i], heading[i], goal[i], tolerance[i], radius[i], other[i],
+                        velocity[i], other_radius[i], kind[i], others[i], first[i], second[i],
+                        edges[i], k * HELD,
+                    )  # fmt: skip
+                    if danger <= BACK:
                         soonest = tick
                         out[i, 0], out[i, 1] = v, w
 

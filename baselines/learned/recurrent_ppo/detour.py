@@ -11,11 +11,13 @@ import math
 import numpy as np
 
 from benchnav.arena import Kind
-from benchnav.arrays import AnyArray, BoolArray, ByteArray, FloatArray, IntArray
+from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.envs import Bodies
 from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Briefing, Observation, RowTable
+
+from .sightings import flat
 
 PLACE = 0.5  # [m] an agent that stays within this distance makes no progress
 LASTS = 2.0  # [s] of a first detour; each further one near it lasts longer by this time,
@@ -64,9 +66,6 @@ class Detours:
         agents = observation.active.shape[1]
         state = self._kept.take("state", observation.rows, agents)
         dt = self._kept.take("dt", observation.rows, agents)
-
-        def flat(array: AnyArray) -> AnyArray:
-            return array.reshape(-1, *array.shape[2:])
 
         _detour(
             np.flatnonzero(observation.active), self.patience, flat(dt), flat(observation.position),

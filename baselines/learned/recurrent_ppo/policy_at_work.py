@@ -65,7 +65,7 @@ class PolicyPilot(Pilot):
         patience: [s] of standing before a detour; 0: no detours.
 
     A policy with rays predicts collisions only with what its rays hit; all remember hidden movers.
-    A policy that views all round has learned to deal with agents behind it; foresight does not.
+    Agents behind are not predicted for a policy that perceives them, unless it is in a jam.
     A policy that was trained with `hidden_movers` perceives the remembered movers, too.
     """
 
@@ -140,9 +140,9 @@ class PolicyPilot(Pilot):
             self._detours.steer(recalled, bodies, command)
         if self._foresight:
             stalled = self._progress.stalled(observation)
-            heeded = recalled if self._rays else without_agents_behind(recalled, stalled)
-            command = foresee(heeded, bodies, command, tolerance, self._hold)
-            dash(heeded, bodies, command, tolerance, self._hold, stalled)
+            predicted = recalled if self._rays else without_agents_behind(recalled, stalled)
+            command = foresee(predicted, bodies, command, tolerance, self._hold)
+            dash(predicted, bodies, command, tolerance, self._hold, stalled)
         return command
 
     def _limit(self, name: str, observation: Observation) -> FloatArray:

@@ -21,7 +21,7 @@ from benchnav.navigation import Edges, Need, Neighbours, Observation, RowTable
 NEEDS = frozenset({Need.NEIGHBOURS, Need.EDGES})
 MEMORY = 2.0  # [s] for which an agent or mover is remembered
 SLACK = 0.05  # [m] largest distance of a ray's disc from the object that it hit
-YIELDING = 4.0  # [s] without coming nearer to the goal, after which an agent heeds those behind it
+JAMMED = 4.0  # [s] without coming nearer to the goal, after which agents behind matter
 BEHIND = -0.5  # cosine of the bearing beyond which an agent is behind
 SAME = 0.8  # [m] within which a remembered object and a hit object are the same
 MAX_OTHERS = 16  # agents and movers that an agent remembers
@@ -57,27 +57,27 @@ class Sightings:
         assert edges is not None  # noqa: S101
         indices = np.flatnonzero(observation.active)
         agents = observation.active.shape[1]
-        dt = _flat(self._kept.take("dt", observation.rows, agents))
+        dt = flat(self._kept.take("dt", observation.rows, agents))
         met = self._kept.take("met", observation.rows, agents)
         others = (
-            _flat(near.position), _flat(near.velocity), _flat(near.radius), _flat(near.kind),
-            _flat(near.count),
+            flat(near.position), flat(near.velocity), flat(near.radius), flat(near.kind),
+            flat(near.count),
         )  # fmt: skip
         perceived = np.ones(near.radius.shape, np.bool_)
         if self._rays:
             assert rays is not None  # noqa: S101
             ends = (
-                _flat(observation.position), _flat(observation.heading), _flat(rays.radius),
-                rays.angle, _flat(rays.distance), _flat(rays.kind),
+                flat(observation.position), flat(observation.heading), flat(rays.radius),
+                rays.angle, flat(rays.distance), flat(rays.kind),
             )  # fmt: skip
             touched = np.zeros(edges.start.shape[:3], dtype=np.bool_)
-            _hit(indices, *ends, *others, _flat(perceived))
+            _hit(indices, *ends, *others, flat(perceived))
             _touch(
-                indices, *ends, _flat(edges.start), _flat(edges.end), _flat(edges.count),
-                _flat(touched),
+                indices, *ends, flat(edges.start), flat(edges.end), flat(edges.count),
+                flat(touched),
             )  # fmt: skip
             edges = _chosen(edges, touched)
-        _remember(indices, *others, _flat(perceived), not self._rays, dt, _flat(met))
+        _remember(indices, *others, flat(perceived), not self._rays, dt, flat(met))
         self._kept.write("met", observation.rows, met)
         neighbours = _others(met, observation.active)
         if not self._rays:
@@ -88,8 +88,9 @@ class Sightings:
 def without_agents_behind(observation: Observation, stalled: FloatArray) -> Observation:
     """Return the observation without agents more than 120° from the heading, nearest first.
 
-    They keep the distance themselves. In queues, an agent that avoids those behind it collides more
-    often. But in a jam, it makes room only if it does.
+    They keep the distance themselves: in queues, an agent that avoids those behind it collides more
+    often. But a jam dissolves faster if its agents avoid those behind them, so after `JAMMED` an
+    agent perceives all again.
 
     Args:
         observation: with neighbours.
@@ -101,7 +102,7 @@ def without_agents_behind(observation: Observation, stalled: FloatArray) -> Obse
     ahead = away[..., 0] * np.cos(heading) + away[..., 1] * np.sin(heading)
     behind = ahead < BEHIND * np.sqrt(np.sum(away * away, axis=-1))
     listed = np.arange(near.kind.shape[2]) < near.count[..., None]
-    moves_on = stalled[..., None] <= YIELDING
+    moves_on = stalled[..., None] <= JAMMED
     kept = listed & ~(moves_on & behind & (near.kind == _AGENT))
     worlds, agents, _ = np.ogrid[tuple(map(slice, kept.shape))]
     place = worlds, agents, np.argsort(~kept, axis=-1, kind="stable")
@@ -117,7 +118,7 @@ def memory_for(hidden_movers: bool) -> Sightings | None:
     return Sightings(rays=False) if hidden_movers else None
 
 
-def _flat(array: AnyArray) -> AnyArray:
+def flat(array: AnyArray) -> AnyArray:
     """Return (B · A, …) of (B, A, …)."""
     return array.reshape(-1, *array.shape[2:])
 
