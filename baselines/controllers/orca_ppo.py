@@ -24,7 +24,7 @@ from benchnav.navigation import (
 from ..common.policy_runner import TURN_ON_THE_SPOT
 from ..common.twist_conversion import as_velocity
 from ..learned.recurrent_ppo.controller import RecurrentPPOPlusController
-from ..learned.recurrent_ppo.detour import in_crowd
+from ..learned.recurrent_ppo.detour import CROWD
 from ..learned.recurrent_ppo.policy_at_work import CorrectedConfig
 from .orca.avoidance import OrcaConfig
 from .orca.controller import OrcaController
@@ -50,6 +50,17 @@ class OrcaPpoConfig(PluginConfig):
         description="[m] a path is a detour if it is longer than the straight line by more than"
         " this; on a detour the policy drives to waypoints, and not because of a crowd",
     )
+    crowd: float = Field(
+        5.0,
+        ge=0,
+        description=f"[m] an agent with {CROWD} or more others within this distance is in a crowd",
+    )
+
+
+class _Policy(RecurrentPPOPlusController):
+    """Corrected for agents behind too: if ORCA drives them, they make half of the avoidance."""
+
+    agents_behind: ClassVar[bool] = True
 
 
 class OrcaPpo(Controller):
@@ -70,7 +81,7 @@ class OrcaPpo(Controller):
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
         self._orca = OrcaController(self.config.orca)
-        self._policy = RecurrentPPOPlusController(self.config.policy)
+        self._policy = _Policy(self.config.policy)
         self._kept = RowTable()
 
     @property
@@ -103,7 +114,7 @@ class OrcaPpo(Controller):
         rows, agents = observation.rows, observation.active.shape[1]
         turning, dt = (self._kept.take(name, rows, agents) for name in ("turning", "dt"))
         direct = self._direct(observation, guide)
-        crowded = direct & in_crowd(observation)
+        crowded = direct & self._crowded(observation)
         learned = observation.active & (turning | self._wary(observation) | crowded)
         velocity = np.zeros((*learned.shape, 2))
         other = observation.active & ~learned
@@ -129,6 +140,17 @@ class OrcaPpo(Controller):
         self._kept.write("wary", rows, until)
         wary: BoolArray = time <= until
         return wary
+
+    def _crowded(self, observation: Observation) -> BoolArray:
+        """Whether each agent (B, A) perceives a crowd around it."""
+        near = observation.neighbours
+        assert near is not None  # noqa: S101 - both parts declare them
+        listed = np.arange(near.kind.shape[2]) < near.count[..., None]
+        away = near.position - observation.position[..., None, :]
+        close = np.sqrt(np.sum(away * away, axis=-1)) < self.config.crowd
+        others = np.sum(listed & close & (near.kind == Kind.AGENT), axis=-1)
+        crowded: BoolArray = others >= CROWD
+        return crowded
 
     def _direct(self, observation: Observation, guide: Guide) -> BoolArray:
         """Whether the path of each agent (B, A) is no detour."""

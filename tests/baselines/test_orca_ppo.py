@@ -5,6 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from benchnav_baselines.common.twist_conversion import CREEP, as_velocity
+from benchnav_baselines.learned.recurrent_ppo import policy_at_work
+from benchnav_baselines.learned.recurrent_ppo.controller import RecurrentPPOPlusController
 from benchnav_baselines.learned.recurrent_ppo.policy_at_work import SHIPPED
 from hypothesis import given
 from hypothesis import strategies as st
@@ -53,11 +55,11 @@ def with_a_mover(one):
 
 
 def in_a_crowd(one):
-    """Whether two agents or more are within 3 m of each agent (B, A); there are no movers."""
+    """Whether two agents or more are within 5 m of each agent (B, A); there are no movers."""
     crowded = np.zeros(one.active.shape, np.bool_)
     for b, a in np.argwhere(one.active):
         others = one.neighbours.position[b, a, : one.neighbours.count[b, a]]
-        crowded[b, a] = sum(np.hypot(*(other - one.position[b, a])) < 3.0 for other in others) > 1
+        crowded[b, a] = sum(np.hypot(*(other - one.position[b, a])) < 5.0 for other in others) > 1
     return crowded
 
 
@@ -101,8 +103,9 @@ def test_holonomic_bodies_on_detours_are_driven_by_orca_among_agents():
 
 
 @pytest.mark.parametrize("policy", [{}, {"weights": str(SHIPPED / "recurrent-ppo.safetensors")}])
-def test_in_a_crowd_the_policy_drives_on_a_straight_way(policy):
+def test_in_a_crowd_the_policy_drives_on_a_straight_way(policy, monkeypatch):
     """The second policy has an LSTM, whose state stays while ORCA drives."""
+    monkeypatch.setattr(RecurrentPPOPlusController, "agents_behind", True)
     controller, told, seen = views(Dynamics.HOLONOMIC, **policy)
     orca = orca_of(controller)
     started(controller, told)
@@ -120,6 +123,19 @@ def test_in_a_crowd_the_policy_drives_on_a_straight_way(policy):
         alone_once |= bool((one.active & ~crowded).any())
     assert crowded_once
     assert alone_once
+
+
+def test_agents_behind_are_predicted_too(monkeypatch):
+    """`recurrent-ppo-plus` leaves them to its policy."""
+    calls = []
+    monkeypatch.setattr(
+        policy_at_work, "without_agents_behind", lambda seen, _: calls.append(seen) or seen
+    )
+    controller, told, seen = views(Dynamics.UNICYCLE)
+    plus = make(CONTROLLERS, "recurrent-ppo-plus")
+    for one, expected in ((controller, 0), (plus, 1)):
+        started(one, told).steer(seen[0], towards(seen[0], seen[0].goal, 0.0))
+        assert len(calls) == expected
 
 
 @pytest.mark.parametrize(("more", "goal"), [(0.0, True), (0.4, True), (0.6, False)])

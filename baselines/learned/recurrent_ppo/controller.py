@@ -13,10 +13,11 @@ class RecurrentPPOController(PilotedController):
 
     Config = PolicyConfig
     shipped: ClassVar[str] = "recurrent-ppo.safetensors"
+    agents_behind: ClassVar[bool] = False  # see `PolicyPilot`
 
     def __init__(self, config: PluginConfig | None = None) -> None:
         super().__init__(config)
-        self.pilot = pilot_of(self.config, self.shipped)
+        self.pilot = pilot_of(self.config, self.shipped, self.agents_behind)
 
 
 class RecurrentPPOVOController(RecurrentPPOController):

@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from benchnav.arena import Kind
-from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
+from benchnav.arrays import ByteArray, FloatArray, IntArray
 from benchnav.envs import Bodies
 from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel_without_allocation
@@ -75,27 +75,6 @@ class Detours:
             flat(edges.start), flat(edges.end), flat(edges.count), flat(state), flat(command),
         )  # fmt: skip
         self._kept.write("state", observation.rows, state)
-
-
-def in_crowd(observation: Observation) -> BoolArray:
-    """Whether each agent (B, A) perceives a crowd around it; the observation has neighbours."""
-    near = observation.neighbours
-    assert near is not None  # noqa: S101 - declared by the caller
-    crowded = np.zeros(observation.active.shape, np.bool_)
-    agents, count = crowded.size, near.kind.shape[2]
-    _find_crowds(
-        observation.position.reshape(agents, 2), near.position.reshape(agents, count, 2),
-        near.kind.reshape(agents, count), near.count.reshape(agents), crowded.reshape(agents),
-    )  # fmt: skip
-    return crowded
-
-
-@kernel_without_allocation
-def _find_crowds(
-    position: FloatArray, other: FloatArray, kind: ByteArray, others: IntArray, crowded: BoolArray
-) -> None:
-    for i in range(len(position)):
-        crowded[i] = _in_crowd(position[i, 0], position[i, 1], other[i], kind[i], others[i])
 
 
 @kernel_without_allocation

@@ -63,9 +63,10 @@ class PolicyPilot(Pilot):
         foresight: correct twists that would collide.
         hold: [s] largest duration of a twist.
         patience: [s] of standing before a detour; 0: no detours.
+        agents_behind: predict agents behind always; otherwise a policy that perceives them is
+            left to avoid them, except in a jam.
 
     A policy with rays predicts collisions only with what its rays hit; all remember hidden movers.
-    Agents behind are not predicted for a policy that perceives them, unless it is in a jam.
     A policy that was trained with `hidden_movers` perceives the remembered movers, too.
     """
 
@@ -75,11 +76,13 @@ class PolicyPilot(Pilot):
         foresight: bool = False,
         hold: float = HELD,
         patience: float = 0.0,
+        agents_behind: bool = False,
     ) -> None:
         self._actor, self.about = _loaded(weights)
         self._encoder = encoder(self.about["encoder"])
         self._foresight, self._hold = foresight, hold
         self._rays = Need.RAYS in self._encoder.needs
+        self._agents_behind = agents_behind or self._rays
         self._sightings = Sightings(self._rays)
         self._hidden_movers = self.about["hidden_movers"]
         self._detours = Detours(patience) if patience else None
@@ -140,7 +143,9 @@ class PolicyPilot(Pilot):
             self._detours.steer(recalled, bodies, command)
         if self._foresight:
             stalled = self._progress.stalled(observation)
-            predicted = recalled if self._rays else without_agents_behind(recalled, stalled)
+            predicted = recalled
+            if not self._agents_behind:
+                predicted = without_agents_behind(recalled, stalled)
             command = foresee(predicted, bodies, command, tolerance, self._hold)
             dash(predicted, bodies, command, tolerance, self._hold, stalled)
         return command
@@ -150,10 +155,11 @@ class PolicyPilot(Pilot):
         return values
 
 
-def pilot_of(config: PluginConfig, shipped: str) -> PolicyPilot:
+def pilot_of(config: PluginConfig, shipped: str, agents_behind: bool = False) -> PolicyPilot:
     """Return the pilot of a `PolicyConfig`; ``shipped`` are the weights if it names none."""
     parameters = config.model_dump()
-    return PolicyPilot(_weights_file(parameters.pop("weights") or shipped), **parameters)
+    weights = _weights_file(parameters.pop("weights") or shipped)
+    return PolicyPilot(weights, **parameters, agents_behind=agents_behind)
 
 
 def _weights_file(name: str) -> Path:

@@ -21,7 +21,7 @@ from benchnav.navigation import Edges, Need, Neighbours, Observation, RowTable
 NEEDS = frozenset({Need.NEIGHBOURS, Need.EDGES})
 MEMORY = 2.0  # [s] for which an agent or mover is remembered
 SLACK = 0.05  # [m] largest distance of a ray's disc from the object that it hit
-JAMMED = 4.0  # [s] without coming nearer to the goal, after which agents behind matter
+JAMMED = 2.0  # [s] without coming nearer to the goal, after which agents behind matter
 BEHIND = -0.5  # cosine of the bearing beyond which an agent is behind
 SAME = 0.8  # [m] within which a remembered object and a hit object are the same
 MAX_OTHERS = 16  # agents and movers that an agent remembers
