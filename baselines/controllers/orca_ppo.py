@@ -24,7 +24,7 @@ from benchnav.navigation import (
 from ..common.policy_runner import TURN_ON_THE_SPOT
 from ..common.twist_conversion import as_velocity
 from ..learned.recurrent_ppo.controller import RecurrentPPOPlusController
-from ..learned.recurrent_ppo.detour import CROWD
+from ..learned.recurrent_ppo.detour import CROWD, in_crowd
 from ..learned.recurrent_ppo.policy_at_work import CorrectedConfig
 from .orca.avoidance import OrcaConfig
 from .orca.controller import OrcaController
@@ -58,7 +58,7 @@ class OrcaPpoConfig(PluginConfig):
 
 
 class _Policy(RecurrentPPOPlusController):
-    """Corrected for agents behind too: if ORCA drives them, they make half of the avoidance."""
+    """`recurrent-ppo-plus` as a controller, corrected for agents behind it as well."""
 
     agents_behind: ClassVar[bool] = True
 
@@ -114,7 +114,7 @@ class OrcaPpo(Controller):
         rows, agents = observation.rows, observation.active.shape[1]
         turning, dt = (self._kept.take(name, rows, agents) for name in ("turning", "dt"))
         direct = self._direct(observation, guide)
-        crowded = direct & self._crowded(observation)
+        crowded = direct & in_crowd(observation, self.config.crowd)
         learned = observation.active & (turning | self._wary(observation) | crowded)
         velocity = np.zeros((*learned.shape, 2))
         other = observation.active & ~learned
@@ -140,17 +140,6 @@ class OrcaPpo(Controller):
         self._kept.write("wary", rows, until)
         wary: BoolArray = time <= until
         return wary
-
-    def _crowded(self, observation: Observation) -> BoolArray:
-        """Whether each agent (B, A) perceives a crowd around it."""
-        near = observation.neighbours
-        assert near is not None  # noqa: S101 - both parts declare them
-        listed = np.arange(near.kind.shape[2]) < near.count[..., None]
-        away = near.position - observation.position[..., None, :]
-        close = np.sqrt(np.sum(away * away, axis=-1)) < self.config.crowd
-        others = np.sum(listed & close & (near.kind == Kind.AGENT), axis=-1)
-        crowded: BoolArray = others >= CROWD
-        return crowded
 
     def _direct(self, observation: Observation, guide: Guide) -> BoolArray:
         """Whether the path of each agent (B, A) is no detour."""

@@ -15,7 +15,7 @@ from benchnav.envs import Bodies
 from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Observation
 
-from .foresight import BACK, HELD, HORIZON, SPEEDS, TICK, TURNS, danger_held, within
+from .foresight import BACK, HELD, HORIZON, SPEEDS, TICK, TURNS, danger_held, surroundings, within
 from .sightings import flat
 
 IMPATIENT = 8.0  # [s] without coming nearer to the goal
@@ -39,27 +39,18 @@ def dash(
         hold: [s] largest duration of a twist; multiples of `HELD` up to it are tried.
         stalled: (B, A) [s] for which agents have come no nearer to their goals.
     """
-    near, edges = observation.neighbours, observation.edges
-    assert near is not None  # noqa: S101 - declared by the pilot
-    assert edges is not None  # noqa: S101
-
     _dash(
-        np.flatnonzero(observation.active & (stalled > IMPATIENT)),
-        flat(observation.position), flat(observation.heading), flat(observation.goal),
-        flat(tolerance), flat(bodies.radius), flat(bodies.max_speed), flat(bodies.max_turn_rate),
-        flat(near.position), flat(near.velocity), flat(near.radius), flat(near.kind),
-        flat(near.count), flat(edges.start), flat(edges.end), flat(edges.count),
-        round(hold / HELD), flat(command),
+        flat(command), np.flatnonzero(observation.active & (stalled > IMPATIENT)),
+        round(hold / HELD), *surroundings(observation, bodies, tolerance),
     )  # fmt: skip
 
 
 @kernel_without_allocation
 def _dash(
-    indices: IntArray, position: FloatArray, heading: FloatArray, goal: FloatArray,
-    tolerance: FloatArray, radius: FloatArray, max_speed: FloatArray, max_turn: FloatArray,
-    other: FloatArray, velocity: FloatArray, other_radius: FloatArray, kind: ByteArray,
-    others: IntArray, first: FloatArray, second: FloatArray, edges: IntArray, holds: int,
-    out: FloatArray,
+    out: FloatArray, indices: IntArray, holds: int, position: FloatArray, heading: FloatArray,
+    goal: FloatArray, tolerance: FloatArray, radius: FloatArray, max_speed: FloatArray,
+    max_turn: FloatArray, other: FloatArray, velocity: FloatArray, other_radius: FloatArray,
+    kind: ByteArray, others: IntArray, first: FloatArray, second: FloatArray, edges: IntArray,
 ) -> None:  # fmt: skip
     for i in indices:
         soonest = round(HORIZON / TICK) + 1

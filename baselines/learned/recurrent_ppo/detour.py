@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from benchnav.arena import Kind
-from benchnav.arrays import ByteArray, FloatArray, IntArray
+from benchnav.arrays import BoolArray, ByteArray, FloatArray, IntArray
 from benchnav.envs import Bodies
 from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel_without_allocation
@@ -77,6 +77,31 @@ class Detours:
         self._kept.write("state", observation.rows, state)
 
 
+def in_crowd(observation: Observation, within: float) -> BoolArray:
+    """Whether each agent (B, A) perceives `CROWD` or more other agents ``within`` a distance [m].
+
+    The observation has neighbours.
+    """
+    near = observation.neighbours
+    assert near is not None  # noqa: S101 - declared by the caller
+    crowded = np.zeros(observation.active.shape, np.bool_)
+    _find_crowds(
+        flat(observation.position), flat(near.position), flat(near.kind), flat(near.count), within,
+        flat(crowded),
+    )  # fmt: skip
+    return crowded
+
+
+@kernel_without_allocation
+def _find_crowds(
+    position: FloatArray, other: FloatArray, kind: ByteArray, others: IntArray, within: float,
+    crowded: BoolArray,
+) -> None:  # fmt: skip
+    for i in range(len(position)):
+        x, y = position[i, 0], position[i, 1]
+        crowded[i] = _in_crowd(x, y, other[i], kind[i], others[i], within)
+
+
 @kernel_without_allocation
 def _detour(
     indices: IntArray, patience: float, dt: FloatArray, position: FloatArray, heading: FloatArray,
@@ -86,7 +111,7 @@ def _detour(
 ) -> None:  # fmt: skip
     for i in indices:
         x, y, s = position[i, 0], position[i, 1], state[i]
-        if _in_crowd(x, y, other[i], kind[i], others[i]):
+        if _in_crowd(x, y, other[i], kind[i], others[i], AROUND):
             s[_X], s[_Y], s[_WAITED], s[_LEFT] = x, y, 0.0, 0.0
             continue
         if s[_LEFT] <= 0.0:
@@ -112,10 +137,12 @@ def _detour(
 
 
 @kernel_without_allocation
-def _in_crowd(x: float, y: float, other: FloatArray, kind: ByteArray, others: int) -> bool:
+def _in_crowd(
+    x: float, y: float, other: FloatArray, kind: ByteArray, others: int, within: float
+) -> bool:
     near = 0
     for j in range(others):
-        if kind[j] == _AGENT and math.hypot(other[j, 0] - x, other[j, 1] - y) < AROUND:
+        if kind[j] == _AGENT and math.hypot(other[j, 0] - x, other[j, 1] - y) < within:
             near += 1
     return near >= CROWD
 

@@ -14,11 +14,13 @@ import math
 import numpy as np
 
 from benchnav.arena import Kind
-from benchnav.arrays import ByteArray, FloatArray, IntArray
+from benchnav.arrays import AnyArray, ByteArray, FloatArray, IntArray
 from benchnav.envs import Bodies
 from benchnav.geometry import nearest_on_segment
 from benchnav.kernels import kernel_without_allocation
 from benchnav.navigation import Observation
+
+from .sightings import flat
 
 HORIZON = 2.0  # [s] of prediction for dynamic obstacles
 AGENT_HORIZON = 1.1  # [s] for agents: most of them avoid others too, and change their velocity
@@ -51,31 +53,35 @@ def foresee(
         tolerance: (B, A) [m] of the goal; obstacles behind the goal do not matter.
         hold: [s] largest duration of a twist; multiples of `HELD` up to it are tried.
     """
-    assert observation.neighbours is not None  # noqa: S101 - declared by the encoder
-    assert observation.edges is not None  # noqa: S101
-    out = command.reshape(-1, 2).copy()
-    agents = len(out)
-    near, edges = observation.neighbours, observation.edges
+    out = command.copy()
     _correct(
-        np.flatnonzero(observation.active), observation.position.reshape(agents, 2),
-        observation.heading.reshape(agents), observation.goal.reshape(agents, 2),
-        tolerance.reshape(agents), bodies.radius.reshape(agents),
-        bodies.max_speed.reshape(agents), bodies.max_turn_rate.reshape(agents),
-        near.position.reshape(agents, -1, 2), near.velocity.reshape(agents, -1, 2),
-        near.radius.reshape(agents, -1), near.kind.reshape(agents, -1), near.count.reshape(agents),
-        edges.start.reshape(agents, -1, 2), edges.end.reshape(agents, -1, 2),
-        edges.count.reshape(agents), round(hold / HELD), out,
+        flat(out), np.flatnonzero(observation.active), round(hold / HELD),
+        *surroundings(observation, bodies, tolerance),
     )  # fmt: skip
-    return out.reshape(command.shape)
+    return out
+
+
+def surroundings(
+    observation: Observation, bodies: Bodies, tolerance: FloatArray
+) -> tuple[AnyArray, ...]:
+    """Return what the kernels of a correction read of each agent, (B · A, …) each."""
+    near, edges = observation.neighbours, observation.edges
+    assert near is not None  # noqa: S101 - declared by the pilot
+    assert edges is not None  # noqa: S101
+    return (
+        flat(observation.position), flat(observation.heading), flat(observation.goal),
+        flat(tolerance), flat(bodies.radius), flat(bodies.max_speed), flat(bodies.max_turn_rate),
+        flat(near.position), flat(near.velocity), flat(near.radius), flat(near.kind),
+        flat(near.count), flat(edges.start), flat(edges.end), flat(edges.count),
+    )  # fmt: skip
 
 
 @kernel_without_allocation
 def _correct(
-    indices: IntArray, position: FloatArray, heading: FloatArray, goal: FloatArray,
-    tolerance: FloatArray, radius: FloatArray, max_speed: FloatArray, max_turn: FloatArray,
-    other: FloatArray, velocity: FloatArray, other_radius: FloatArray, kind: ByteArray,
-    others: IntArray, first: FloatArray, second: FloatArray, edges: IntArray, holds: int,
-    out: FloatArray,
+    out: FloatArray, indices: IntArray, holds: int, position: FloatArray, heading: FloatArray,
+    goal: FloatArray, tolerance: FloatArray, radius: FloatArray, max_speed: FloatArray,
+    max_turn: FloatArray, other: FloatArray, velocity: FloatArray, other_radius: FloatArray,
+    kind: ByteArray, others: IntArray, first: FloatArray, second: FloatArray, edges: IntArray,
 ) -> None:  # fmt: skip
     for i in indices:
         v, w = out[i, 0], out[i, 1]
